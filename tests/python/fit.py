@@ -17,7 +17,7 @@ import numpy as np  # noqa: E402
 
 import crawler  # noqa: E402
 from crawler.fitting.uncertainty import curvature_bias  # noqa: E402
-from crawler.measured import Samples  # noqa: E402
+from crawler.measured import Samples, read_samples  # noqa: E402
 
 BODY, WAVE = "Body/", "Active stress/Travelling wave/"
 P, K, GAMMA, AMPLITUDE = BODY + "Anchoring exponent", BODY + "Elastic modulus", BODY + "Friction coefficient", WAVE + "Amplitude"
@@ -240,14 +240,25 @@ class Untold(unittest.TestCase):
 
     def test_says_that_a_scene_does_not_fit(self):
         found = fit({**STRESS, WAVE + "Wave number": 1.3}, tracks(STRESS), P, K, standard_deviation=NOISE)
-        self.assertIn("does not fit", " ".join(found.notes))
+        self.assertIn("does not fit", found.notes[0])
         found = fit({**STRESS, WAVE + "Wave number": 1.3}, tracks(STRESS), P, K)
         self.assertIn("alike", " ".join(found.notes))
 
     def test_says_that_a_value_is_at_its_limit(self):
         found = crawler.fit({**STRAIN, P: 1.5}, tracks(STRAIN), {P: (0.5, 1.8)}, standard_deviation=NOISE)
         self.assertEqual(found.variables[P]["at_limit"], "to")
-        self.assertIn("at its limit", " ".join(found.notes))
+        self.assertIn("at the limit of its range, 1.8:", " ".join(found.notes))
+
+    def test_names_the_largest_residual(self):
+        """A wrong number makes a scene fail; of it and its place speaks the first sentence, and none of what the data tell."""
+        for size, name, words in ((300, GAMMA, ("does not fit", "marker 4, t = 1 of the run")), (10, P, ("is it an outlier", "marker 4, t = 1 of the run"))):
+            data = tracks(STRAIN)
+            data.values[20, 4] += size * NOISE
+            found = fit(STRAIN, data, name, standard_deviation=NOISE)
+            for word in words:
+                self.assertIn(word, found.notes[0])
+            self.assertEqual(found.undetermined, [])
+            self.assertAlmostEqual(abs(found.goodness.largest_residual.deviations) / size, 1, delta=0.5)
 
 
 class Files(unittest.TestCase):
@@ -260,6 +271,22 @@ class Files(unittest.TestCase):
             (place / "summary.json").write_text('{"status": "finished", "variables": {"Body/Length": {"value": 2}}}', encoding="utf-8")
             study = crawler.read(place)
             self.assertEqual((study.kind, study.variables["Body/Length"].value, float(study.table["residual"][0])), ("fit", 2, -0.5))
+
+
+    def test_says_what_was_in_another_order(self):
+        """Markers of which two stand in each other's place, and a time with one wrong digit."""
+        x, order = tracks(STRAIN).values, [0, 1, 2, 4, 3, 5, 6]
+        for t, words in ((T, ("the markers put in order along the body: x1, x2, x3, x5, x4",)), (np.where(np.arange(41) == 33, 0.165, T),
+                         ("do not ascend in the file: t = 0.165 in row 35 stands behind 1.6;", "put in order along the body"))):
+            text = "t," + ",".join(f"x{i + 1}" for i in range(7)) + "\n" + "".join(
+                f"{at:.9g}," + ",".join(map(repr, row[order].tolist())) + "\n" for at, row in zip(t, x))
+            with tempfile.TemporaryDirectory() as folder:
+                file = pathlib.Path(folder, "tracks.csv")
+                file.write_text(text, encoding="utf-8")
+                notes = fit(STRAIN, read_samples(file), P, standard_deviation=1).notes
+            for word in words:
+                self.assertIn(word, " ".join(notes))
+            self.assertEqual("ascend" in " ".join(notes), len(words) == 2)
 
 
 class Refusals(unittest.TestCase):

@@ -17,6 +17,8 @@ from .result import value_in_words
 DESCRIPTION = """Finds numbers of a parameter file, with their uncertainty, from measured data (section Fit; doc/fit.md). With several
 files all are fitted to the same data, and a table says which of them the data prefer."""
 
+GOOD = 0.01  # probability of chi-square, from which on another minimum could hardly fit better
+
 
 def command_line():
     """The options."""
@@ -54,8 +56,9 @@ def lines_of(found):
     fits = (f"chi-square {goodness.chi_square:.5g} with {goodness.degrees_of_freedom} degrees of freedom (probability {goodness.probability:.2g})"
             if goodness.deviation_is_given else f"standard deviation of a datum {goodness.deviation_of_data:.3g}, from the residuals")
     yield f"data: {goodness.n_data}, variables: {len(found.variables)}, besides for origin and places: {goodness.n_constants}; {fits}"
-    alone = ["1 start: the minimum may be local (Fit/Starts)"] if len(found.starts) == 1 else []
-    for sentence in [*found.undetermined, *found.notes, *alone]:
+    is_open = len(found.starts) == 1 and (goodness.probability or 0) < GOOD
+    alone = ["1 start: the minimum may be local (Fit/Starts)"] if is_open else []
+    for sentence in [*found.notes, *found.undetermined, *alone]:
         yield f"{sentence[0].upper()}{sentence[1:]}."
 
 

@@ -22,7 +22,7 @@ class Data:
     that [length/time]. t: times of the run [time], increasing; places: on the body [length], of markers and strain, else empty;
     values: array [time, place]. deviation: the standard deviation of a number, None if it is not known. has_origin: is x of the
     run known where the data count it from? place_deviation: of the places of markers [length]; 0: they are known, inf: they are
-    free. names: of the places.
+    free. names: of the places. notes: sentences on what a file has in another order.
     """
     kind: str
     t: np.ndarray
@@ -32,6 +32,7 @@ class Data:
     has_origin: bool = True
     place_deviation: float = 0.0
     names: list = dataclasses.field(default_factory=list)
+    notes: list = dataclasses.field(default_factory=list)
 
     @property
     def is_there(self):
@@ -92,7 +93,7 @@ def read_data(data, parameters, **reading):
     if 0 < free < math.inf and deviation == "automatic":
         raise InputError('"Fit/Place deviation" is set, but not "Fit/Standard deviation", without which the two cannot be weighed; it is expected')
     return Data(kind, np.clip(t, 0, end), np.clip(places, 0, length), samples.values, None if deviation == "automatic" else float(deviation),
-                kind not in ("markers", "centre") or parameters["Fit/Origin"] != "unknown", free, list(samples.names))
+                kind not in ("markers", "centre") or parameters["Fit/Origin"] != "unknown", free, list(samples.names), list(samples.notes))
 
 
 def _read(name, reading):

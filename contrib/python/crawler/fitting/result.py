@@ -13,6 +13,8 @@ SHARE = 0.1           # largest numerical error, of the statistical one
 MOST_STEPS = 1000     # of a search, which takes some hundred along a curved valley
 NEAR = 1e-3           # to a limit, in ranges
 UNLIKELY = 1e-3       # probability of chi-square below which the scene does not fit
+HOPELESS = 1e-6       # the same, below which nothing is said of what the data tell of its variables
+OUTLYING = 1e-4       # probability of a residual as large as the largest
 MUCH = 100            # chi-square per degree of freedom that no noise has
 ALIKE = 5             # correlation of residuals in time, in its own deviations, that is not by chance
 
@@ -83,7 +85,7 @@ def unfinished(problem, starts, is_stopped):
                f"the search did not end within {MOST_STEPS} steps: the values are those so far, and not the best ones; a start that is nearer, "
                "narrower ranges or fewer variables are expected")
     found = {"status": "stopped" if is_stopped else "failed", "reason": "signal" if is_stopped else "no_convergence", "message": message,
-             "variables": variables, "undetermined": [], "notes": [] if is_stopped else [message],
+             "variables": variables, "undetermined": [], "notes": [*data.notes, *([] if is_stopped else [message])],
              "goodness": goodness, "residuals": math.sqrt(squares / goodness["n_data"]) * problem.scale, "accuracy": model.accuracy,
              "n_runs": model.n_runs, "starts": starts}
     return Fit(found, data, data.values + grid * problem.scale, dict(one.split("=", 1) for one in model.overrides(values)), None)
@@ -100,15 +102,22 @@ def described(problem, best, starts):
     likelihood = goodness["chi_square"] if data.deviation else n * math.log(max(float(residual @ residual), 1e-300) * problem.scale ** 2 / n)
     matrix = covariance(best.jacobian)
     found = {"status": "finished", "reason": "converged", "message": "", "variables": variables,
-             "undetermined": [*(in_words(*one, model.names, values, problem.width) for one in zip(best.loose, best.members)),
-                              *(f"the data do not tell {name}: its interval of 95 % reaches both limits of its range"
-                                for name, one, involved in zip(variables, variables.values(), best.involved) if not one["determined"] and not involved)],
-             "notes": list(_notes(best, variables, goodness)),
+             "undetermined": list(_untold(problem, best, variables, values)) if goodness["probability"] is None or goodness["probability"] >= HOPELESS else [],
+             "notes": list(_notes(best, variables, goodness, data)),
              "correlation": (matrix / np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))).tolist(), "goodness": goodness,
              "information": {"aic": likelihood + 2 * k, "bic": likelihood + k * math.log(n)},
              "accuracy": model.accuracy, "n_runs": model.n_runs, "starts": starts}
     return Fit(found, data, data.values + grid * problem.scale, dict(one.split("=", 1) for one in model.overrides(values)),
                matrix * best.deviation ** 2 * np.outer(problem.width, problem.width))
+
+
+def _untold(problem, best, variables, values):
+    """Sentences on what the data do not tell."""
+    for direction, members in zip(best.loose, best.members):
+        yield in_words(direction, members, problem.model.names, values, problem.width)
+    for (name, one), is_involved in zip(variables.items(), best.involved):
+        if not one["determined"] and not is_involved:
+            yield f"the data do not tell {name}: its interval of 95 % reaches both limits of its range"
 
 
 def _variables(problem, best, values):
@@ -142,23 +151,45 @@ def _goodness(problem, best, residual, grid):
     chi_square, freedom = float(residual @ residual) / best.deviation ** 2, n - len(best.z) - data.n_constants
     return {"kind": data.kind, "n_data": n, "n_variables": len(best.z), "n_constants": data.n_constants, "chi_square": chi_square,
             "degrees_of_freedom": freedom, "probability": probability(chi_square, freedom) if data.deviation else None,
-            "deviation_of_data": best.deviation * problem.scale, "deviation_is_given": data.deviation is not None,
+            "largest_residual": _largest(data, grid / best.deviation), "deviation_of_data": best.deviation * problem.scale, "deviation_is_given": data.deviation is not None,
             "correlation_in_time": correlation_in_time(grid)}
 
 
-def _notes(best, variables, goodness):
-    """Sentences on what is perhaps not meant."""
-    for name, one in variables.items():
-        if one["at_limit"] and one["determined"]:
-            yield f"{name} is at its limit, {one['value']:.6g}: the best value may lie beyond it"
-        if abs(one["bias"] or 0) > BIASED * (one["deviation"] or math.inf):
-            yield (f"of many such data the mean of {name} would be about {abs(one['bias']):.2g} too {'large' if one['bias'] > 0 else 'small'}, as the run "
-                   "is not linear in it; the interval allows for that")
+def _largest(data, grid):
+    """The largest of residuals [time, place] in deviations, the time of the run, and the name of the marker or s of the place."""
+    j, i = np.unravel_index(np.nanargmax(np.abs(grid)), grid.shape)
+    place = None if not len(data.places) else data.names[i] if data.kind == "markers" and len(data.names) > i else f"{data.places[i]:.6g}"
+    return {"deviations": float(grid[j, i]), "t": float(data.t[j]), "place": place}
+
+
+def _does_not_fit(goodness):
+    """Whether the scene does not fit the data at all, as a sentence with the worst of them; nothing if it may."""
     chi_square, freedom, p_value = (goodness[key] for key in ("chi_square", "degrees_of_freedom", "probability"))
     if p_value is not None and p_value < UNLIKELY:
         units = ' (units? see "--unit-of-s" and "--unit-of-t")' if chi_square > MUCH * freedom else ""
         yield (f"the scene does not fit the data: chi-square is {chi_square:.4g} with {freedom} degrees of freedom (probability {p_value:.1g}), so "
-               f"the deviations are too small; another scene, or another standard deviation, is expected{units}")
+               f"the deviations are too small; {_largest_in_words(goodness)}; another scene, or another standard deviation, is expected{units}")
+    elif goodness["n_data"] * probability(goodness["largest_residual"]["deviations"] ** 2, 1) < OUTLYING:
+        yield f"{_largest_in_words(goodness)}: more than noise gives; is it an outlier?"
+
+
+def _largest_in_words(goodness):
+    """The largest residual, where it is."""
+    one = goodness["largest_residual"]
+    place = {"markers": f"marker {one['place']}, ", "strain": f"s = {one['place']}, "}.get(goodness["kind"], "")
+    return f"the largest residual is {abs(one['deviations']):.3g} deviations, at {place}t = {one['t']:.6g} of the run"
+
+
+def _notes(best, variables, goodness, data):
+    """Sentences on what is perhaps not meant."""
+    yield from _does_not_fit(goodness)
+    yield from data.notes
+    for name, one in variables.items():
+        if one["at_limit"] and one["determined"]:
+            yield f"{name} is at the limit of its range, {one[one['at_limit']]:g}: the best value may lie beyond it"
+        if abs(one["bias"] or 0) > BIASED * (one["deviation"] or math.inf):
+            yield (f"of many such data the mean of {name} would be about {abs(one['bias']):.2g} too {'large' if one['bias'] > 0 else 'small'}, as the run "
+                   "is not linear in it; the interval allows for that")
     if goodness["correlation_in_time"] > ALIKE / math.sqrt(goodness["n_data"]):
         yield (f"residuals that are neighbours in time are alike (correlation {goodness['correlation_in_time']:.2g}): the scene does not describe "
                "all that the data have, or their errors are not independent, and the deviations are too small")
