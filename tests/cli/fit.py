@@ -27,12 +27,13 @@ REFUSED = [
     ([], 2, "FILE"), (["nowhere.prm"], 6, "nowhere.prm"), (["fit_worm.prm"], 2, "--overwrite"), (["fit_worm.prm", "--data", "no.csv"], 2, "no.csv"),
     (["fit_worm.prm", "--outptu", "x"], 2, "--output"), (["fit_worm.prm", "--set", "Body/Length"], 2, "Section/Entry=value"),
     (["fit_worm.prm", "--set", "Body/Lenght=3"], 2, "Length"), (["fit_worm.prm", "--set", "Fit/Data="], 2, "Fit/Data is empty"),
-    (["fit_worm.prm", "--set", "Fit/Variables="], 2, "Variables is empty"), (["fit_worm.prm", "--unit-of-t", "1000"], 2, "Time/End time"),
+    (["fit_worm.prm", "--set", "Fit/Variables="], 2, 'Variables" is empty'), (["fit_worm.prm", "--unit-of-t", "1000"], 2, "Time/End time"),
     (["fit_worm.prm", "--output", "fit_worm.prm"], 2, "is a file"), (["fit_worm.prm", "--output", "other", "--overwrite"], 2, "not the folder of a fit"),
     (["fit_worm.prm", "--set", "Fit/Variables=Active stress/Travelling wave/Amplitude : 5 to 6", "--set",
       "Active stress/Travelling wave/Amplitude=5.5"], 2, "cannot be run"),
     (["fit_worm.prm", "--workers", "0"], 2, "from 1"), (["fit_worm.prm", "--workers", "two"], 2, "whole number"),
-    (["fit_worm.prm", "three.prm", "--output", "output-fit_worm"], 2, "something else"), (["fit_worm.prm", "--set", "Fit/Markers at=0,1"], 2, "9 markers"), (["fit_worm.prm", "other/fit_worm.prm"], 2, "same name")]
+    (["fit_worm.prm", "three.prm", "--output", "output-fit_worm"], 2, "something else"), (["fit_worm.prm", "--set", "Fit/Markers at=0,1"], 2, "9 markers"), (["fit_worm.prm", "other/fit_worm.prm"], 2, '"fit_worm.prm" and "other/fit_worm.prm" have the same name'),
+    (["fit_worm.prm", "three.prm", "--set", "Fit/Variables="], 2, 'fit_worm.prm: "Fit/Variables" is empty')]
 THREE = ("fit", "three.prm")
 checks = Checks()
 check = checks.expect

@@ -17,7 +17,7 @@ import numpy as np  # noqa: E402
 
 import crawler  # noqa: E402
 from crawler.fitting.uncertainty import curvature_bias  # noqa: E402
-from crawler.measured import Samples, read_samples  # noqa: E402
+from crawler.measured import Samples, Settings, prepare, read_samples  # noqa: E402
 
 BODY, WAVE = "Body/", "Active stress/Travelling wave/"
 P, K, GAMMA, AMPLITUDE = BODY + "Anchoring exponent", BODY + "Elastic modulus", BODY + "Friction coefficient", WAVE + "Amplitude"
@@ -273,6 +273,20 @@ class Files(unittest.TestCase):
             self.assertEqual((study.kind, study.variables["Body/Length"].value, float(study.table["residual"][0])), ("fit", 2, -0.5))
 
 
+    def test_path_is_read_in_its_units(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "path.csv")
+            for head, factor in (("t [ms],centre [mm]", 1e-3), ("t [ms],speed [mm/s]", 1e-3), ("t [ms],speed [mm/min]", 1e-3 / 60), ("t [ms],speed [mm]", 1)):
+                file.write_text(f"{head}\n100,2\n200,3\n", encoding="utf-8")
+                samples = read_samples(file, unit_of_s="m", unit_of_t="s")
+                self.assertEqual((samples.quantity, samples.values.shape), (head[7:].split()[0], (2, 1)))
+                np.testing.assert_allclose(samples.t, (0.1, 0.2))
+                np.testing.assert_allclose(samples.values[:, 0], (2 * factor, 3 * factor))
+            with self.assertRaisesRegex(crawler.InputError, "--head.*along a body"):
+                read_samples(file, head="x")
+            with self.assertRaisesRegex(crawler.InputError, "crawler fit"):
+                prepare(read_samples(file), Settings())
+
     def test_says_what_was_in_another_order(self):
         """Markers of which two stand in each other's place, and a time with one wrong digit."""
         x, order = tracks(STRAIN).values, [0, 1, 2, 4, 3, 5, 6]
@@ -306,11 +320,16 @@ class Refusals(unittest.TestCase):
                 ("more data or fewer variables", {"data": few}), ("Time/End time", {"data": late}), ("Body/Length", {"data": wide}),
                 ("samples of m", {"data": Samples("m", S, T, np.zeros((41, 7)))}), ("Fit/Data is empty", {"data": ""}),
                 ("nowhere.csv", {"data": "nowhere.csv"}), ("2 places, but", {"markers_at": "0, 1"}), ("growing places", {"markers_at": [6, 5, 4, 3, 2, 1, 0]}),
-                ("a list of numbers is expected", {"markers_at": "here"}), ("Variables is empty", {"variables": {}}),
+                ("a list of numbers is expected", {"markers_at": "here"}), ('Variables" is empty', {"variables": {}}),
                 ("Anchoring exponent", {"variables": {BODY + "Anchoring exponnent": (1, 2)}}), ("in its range", {"variables": {P: (3, 4)}}),
                 ("whose Body/Length is 3", {"set": {BODY + "Length": 3}}), ("Standard deviation", {"place_deviation": 0.1}),
                 ('"Body/Length" from 1.5 to 4, but the outermost marker is at 2', {"variables": {BODY + "Length": (1.5, 4)}, "markers_at": S}),
                 ("a list of places", {"variables": {BODY + "Length": (1.9, 4)}}), ("data do not depend", {"variables": {"Time/End time": (2, 4)}}),
+                ("of the type ndarray, but the name of a file or measured.Samples", {"data": np.zeros((41, 7))}),
+                ("of the type tuple", {"data": (T, np.zeros(41))}), ("measured.read_samples(NAME, unit_of_t=...)", {"unit_of_t": "1/30"}),
+                ("the time 1.95 behind 2", {"data": Samples("centre", np.zeros(1), T[::-1], np.zeros((41, 1)))}),
+                ("the data have inf at t = 0", {"data": Samples("centre", np.zeros(1), T, np.full((41, 1), np.inf))}),
+                ("shape (41,)", {"data": Samples("centre", np.zeros(1), T, np.zeros(41))}),
                 ("cannot be run", {"scene": inverted, "variables": {AMPLITUDE: (4, 6)}})):
             with self.subTest(sentence=sentence):
                 self.refused(sentence, **more)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """crawler fit: numbers of scenes from measured data, with their uncertainty; of several scenes, which the data prefer."""
+import contextlib
 import os
 import pathlib
 import shlex
@@ -102,6 +103,21 @@ def found_and_written(name, folder, model, options, say):
         folder.leave()
 
 
+@contextlib.contextmanager
+def naming(file):
+    """Sees to it that sentences on what is wrong name the parameter file."""
+    try:
+        yield
+    except (InputError, Failed) as error:
+        raise error if str(file) in str(error) else type(error)(f"{file}: {error}") from None
+
+
+def prepared_by(name, options):
+    """The Model of a parameter file and notes on it. Raises InputError and FileError."""
+    with naming(name):
+        return prepared(name, options.set, options.data, **reading_of(options))
+
+
 def require_sense(options):
     """Raises InputError where options contradict each other or mean nothing."""
     if options.resume and options.overwrite:
@@ -111,8 +127,10 @@ def require_sense(options):
     ranks = max(int(os.environ.get(name, "1")) for name in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"))
     if ranks > 1:
         raise InputError(f'{ranks} processes of mpirun or srun were started, but a fit begins its own; "crawler fit --workers {ranks}" is expected')
-    if len(set(map(lambda name: pathlib.Path(name).stem, options.files))) < len(options.files):
-        raise InputError("two of the parameter files have the same name, but names of their own are expected, as their folders have them")
+    stems = {}
+    for name in options.files:
+        if (other := stems.setdefault(pathlib.Path(name).stem, name)) is not name:
+            raise InputError(f'"{other}" and "{name}" have the same name, but names of their own are expected, as their folders have them')
     for setting in options.set:
         if "=" not in setting:
             raise InputError(f'"--set" is "{setting}", but "Section/Entry=value" is expected')
@@ -145,14 +163,15 @@ def main():
     require_sense(options)
     comparison = Comparison(path_of(options.files[0], options).parent, options) if len(options.files) > 1 else None
     folders = {name: Folder(path_of(name, options), options.resume, options.overwrite) for name in options.files}
-    models = {name: prepared(name, options.set, options.data, **reading_of(options)) for name in folders}
+    models = {name: prepared_by(name, options) for name in folders}
     if comparison:
         require_comparable({name: model for name, (model, _) in models.items()})
     fits = {}
     for name, folder in folders.items():
         model, notes = models[name]
         say("\n  ".join([f"{name}:", *notes]))
-        fits[name] = found_and_written(name, folder, model, options, lambda text: say(f"  {text}"))
+        with naming(name):
+            fits[name] = found_and_written(name, folder, model, options, lambda text: say(f"  {text}"))
     if comparison:
         for line in comparison.written(fits, origin_of(model, options, start)):
             say(line)

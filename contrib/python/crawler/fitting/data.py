@@ -2,15 +2,13 @@
 """What was measured, as a fit compares it with a run."""
 import dataclasses
 import math
-import pathlib
+import os
 
 import numpy as np
 
-from ..measured.samples import Samples, bytes_of, read_samples
-from ..measured.sheet import read_sheet
+from ..measured.samples import Samples, read_samples
 from ..needs import FileError, InputError
 
-PATHS = {"centre": ("centre", "center", "centre of mass", "center of mass"), "speed": ("speed", "velocity")}  # names of columns
 CLOSE = 0.02  # outermost markers are at the ends of the body, but for this part of its length
 
 
@@ -64,22 +62,25 @@ class Data:
 def read_data(data, parameters, **reading):
     """The Data of a file or of Samples, as section Fit of a scene says.
 
-    data: a name, or Samples, whose quantity may be "centre" or "speed" too. parameters: all entries of the scene. reading: options
+    data: a name, or Samples. parameters: all entries of the scene. reading: options
     of measured.read_samples(). Raises InputError, also for a file that cannot be read, as for those of other entries.
     """
+    if not isinstance(data, (str, os.PathLike, Samples)):
+        raise InputError(f"the data are of the type {type(data).__name__}, but the name of a file or measured.Samples(quantity, s, t, values) is expected")
     try:
-        samples = data if isinstance(data, Samples) else _read(data, reading)
+        samples = data if isinstance(data, Samples) else read_samples(data, **reading)
     except FileError as error:
         raise InputError(str(error)) from None
     kind = {"x": "markers", "strain": "strain", "centre": "centre", "speed": "speed"}.get(samples.quantity)
     name = "the data" if isinstance(data, Samples) else f'"{data}"'
+    _require_sound(samples, name)
     if kind is None:
         raise InputError(f"{name} has samples of {samples.quantity}, but markers, strain, or columns t and centre or speed are expected")
     length, end = parameters["Body/Length"], parameters["Time/End time"]
     places, free = np.array(samples.s, dtype=float), 0.0
     if kind == "markers":
         places, free = _places_of_markers(samples, parameters, length, name)
-    elif kind in PATHS:
+    elif kind in ("centre", "speed"):
         places = np.empty(0)
     elif places[0] < 0 or places[-1] > length * (1 + 1e-9):
         raise InputError(f"{name} has strain from s = {places[0]:g} to {places[-1]:g}, but places from 0 to Body/Length = {length:g} are "
@@ -96,21 +97,19 @@ def read_data(data, parameters, **reading):
                 kind not in ("markers", "centre") or parameters["Fit/Origin"] != "unknown", free, list(samples.names), list(samples.notes))
 
 
-def _read(name, reading):
-    """Samples; of a path or a speed with one place."""
-    if not str(name).lower().endswith((".h5", ".hdf5")):
-        sheet = read_sheet(bytes_of(pathlib.Path(name)), str(name), reading.get("decimal", ""))
-        names = [one.lower() for one in sheet.names]
-        for kind, known in PATHS.items():
-            column = next((i for i, one in enumerate(names) if one in known), None)
-            if column is not None and len(names) > 1:
-                if "t" not in names and "time" not in names:
-                    raise InputError(f'"{name}" has the columns {", ".join(sheet.names)}, but t is expected beside {sheet.names[column]}')
-                t = sheet.times(names.index("t" if "t" in names else "time"))
-                if np.any(np.isnan(t)) or np.any(np.diff(t) <= 0):
-                    raise InputError(f'"{name}" has times that are missing or do not grow, but growing times are expected')
-                return Samples(kind, np.zeros(1), t, sheet.column(column)[:, None])
-    return read_samples(name, **reading)
+def _require_sound(samples, name):
+    """Raises InputError for Samples whose shapes, times or numbers cannot be those of data."""
+    t, values = np.asarray(samples.t, dtype=float), np.asarray(samples.values, dtype=float)
+    if t.ndim != 1 or values.shape != (len(t), len(samples.s)):
+        raise InputError(f"{name} have values of the shape {values.shape}, but {(np.size(t), len(samples.s))}, [time, place], is expected")
+    falls = np.flatnonzero(~(np.diff(t) > 0))
+    if not np.all(np.isfinite(t)) or len(falls):
+        where = f"{t[falls[0] + 1]:g} behind {t[falls[0]]:g}" if len(falls) else f"{t[~np.isfinite(t)][0]:g}"
+        raise InputError(f"{name} have the time {where}, but times that ascend are expected")
+    if np.any(np.isinf(values)):
+        j, i = np.argwhere(np.isinf(values))[0]
+        place = f"marker {samples.names[i] if samples.names else i + 1}, " if samples.quantity == "x" else f"s = {samples.s[i]:g}, " if values.shape[1] > 1 else ""
+        raise InputError(f"{name} have {values[j, i]:g} at {place}t = {t[j]:g}, but finite numbers, or NaN for a gap, are expected")
 
 
 def _places_of_markers(samples, parameters, length, name):

@@ -10,6 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from ..needs import FileError, InputError
 from .formats import WITH_ANIMALS, Tracks, read_hdf5, tracks_of
+from .paths import factors_of_path, path_in
 from .sheet import read_sheet
 from .units import number_of, unit_factor, unit_of
 
@@ -29,8 +30,9 @@ FRAMES = ("frame", "timestamp", "slice", "slice n°")
 class Samples:
     """What was measured at all points of a grid; a gap is NaN.
 
-    quantity: "m" (active stress [force]), "strain" [1] or "x" (the places of markers [length], from tail to head);
-    s: places [length], or the numbers of the markers, increasing; t: times [time], increasing; values: array [time, place];
+    quantity: "m" (active stress [force]), "strain" [1], "x" (the places of markers [length], from tail to head), "centre" (the path of the
+    centre of mass [length]) or "speed" (of that [length/time]); s: places [length], or the numbers of the markers, increasing, one
+    number for centre and speed; t: times [time], increasing; values: array [time, place];
     names: of the markers. notes: sentences on markers and times that the file has in another order.
     """
     quantity: str
@@ -63,6 +65,9 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
         sheet = read_sheet(data, str(path), decimal)
         is_renamed = any(not part.strip().startswith("t=") for part in columns.split(",") if part)
         found = None if is_renamed or quantity not in ("", "markers") else tracks_of(sheet, animal)
+        if not found and not quantity and not columns and (path_found := path_in(sheet)):
+            return _samples_of_path(path_found, sheet, unit_of_s, unit_of_t, shift_t, words, {
+                "unit-of-m": unit_of_m, "shift-s": shift_s, "animal": animal, "head": head, "confidence": confidence})
         found, units = (found, _units_of(sheet, found)) if found else _generic(sheet, quantity, columns)
         words += sheet.words
         notes += sheet.notes
@@ -101,6 +106,21 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
         raise InputError("a unit is negative, but only that of m may be")
     if isinstance(found, Tracks) and found.counts_frames and not unit_of_t:
         words.append('t counts frames; "--unit-of-t 1/30" turns those of a film of 30 frames a second into seconds')
+    return samples
+
+
+def _samples_of_path(found, sheet, unit_of_s, unit_of_t, shift_t, words, others):
+    """Samples of what path_in() has found. others: {option: value} that only samples along a body have."""
+    kind, t, values, unit, unit_t = found
+    for option, value in others.items():
+        if value:
+            raise InputError(f'"--{option}" is for samples along a body, but "{sheet.name}" has the {"path" if kind == "centre" else kind} of its centre of mass')
+    factor, factor_t = factors_of_path(kind, unit, unit_t, unit_of_s, unit_of_t)
+    words += [*sheet.words, f"{kind} at {len(t)} times, {np.isnan(values).sum()} gaps"]
+    samples = Samples(kind, np.zeros(1), _converted(t, "t", factor_t, shift_t, words), _converted(values, kind, factor, "", words))
+    _require_possible(samples, sheet.name)
+    if factor < 0 or factor_t < 0:
+        raise InputError("a unit is negative, but only that of m may be")
     return samples
 
 
