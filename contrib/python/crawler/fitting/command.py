@@ -155,6 +155,25 @@ class Screen:
             raise self.problem
 
 
+def fitted(models, folders, comparison, options, say):
+    """{name of a parameter file: Fit}, whose files are there then."""
+    fits = {}
+    try:
+        if comparison:
+            comparison.begin()
+        for name, folder in folders.items():
+            model, notes = models[name]
+            say("\n  ".join([f"{name}:", *notes]))
+            with naming(name):
+                fits[name] = found_and_written(name, folder, model, options, lambda text: say(f"  {text}"))
+            if comparison:
+                comparison.note([one for one, found in fits.items() if found.status == "finished"])
+        return fits
+    finally:
+        if comparison:
+            comparison.leave()
+
+
 def main():
     """Fits, writes and tells."""
     start = time.monotonic()
@@ -166,14 +185,9 @@ def main():
     models = {name: prepared_by(name, options) for name in folders}
     if comparison:
         require_comparable({name: model for name, (model, _) in models.items()})
-    fits = {}
-    for name, folder in folders.items():
-        model, notes = models[name]
-        say("\n  ".join([f"{name}:", *notes]))
-        with naming(name):
-            fits[name] = found_and_written(name, folder, model, options, lambda text: say(f"  {text}"))
+    fits = fitted(models, folders, comparison, options, say)
     if comparison:
-        for line in comparison.written(fits, origin_of(model, options, start)):
+        for line in comparison.written(fits, origin_of(models[options.files[0]][0], options, start)):
             say(line)
     for name, found in fits.items():
         if found.status != "finished":

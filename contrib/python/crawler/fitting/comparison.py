@@ -6,10 +6,10 @@ import pathlib
 
 import numpy as np
 
-from ..needs import InputError, write_whole
-from .folder import bytes_of, drawn
+from ..needs import FileError, InputError, write_whole
+from .folder import bytes_of, drawn, require_usable
 
-TABLE, SUMMARY = "comparison.csv", "summary.json"
+TABLE, SUMMARY, PAGES = "comparison.csv", "summary.json", ("comparison.png", "report.html")
 WEIGHED_BY = tuple(f"Fit/{name}" for name in ("Standard deviation", "Place deviation", "Origin", "First time"))  # what the data are worth
 
 
@@ -17,12 +17,35 @@ class Comparison:
     """The files of a comparison."""
 
     def __init__(self, path, options):
-        """Writes nothing yet. Raises InputError if there is something that is not to be replaced."""
-        self.path = path
-        if (path / TABLE).exists() and not (options.resume or options.overwrite):
-            raise InputError(f'the output folder "{path}" is not empty; give another one with --output, or --overwrite to replace the results in it')
-        if (path / SUMMARY).exists() and not (path / TABLE).exists():
-            raise InputError(f'"{path}" has the results of something else; another folder is expected for --output')
+        """Writes nothing yet. Raises InputError if there is something that is not to be replaced or gone on with."""
+        self.path, self.files = path, options.files
+        require_usable(path, "comparison", (TABLE,), options.resume, options.overwrite)
+
+    def begin(self):
+        """Makes the folder, which tells from now on that the comparison has not ended. Raises FileError."""
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise FileError(f'cannot write to "{self.path}": {error.strerror or error}') from None
+        for name in PAGES:
+            (self.path / name).unlink(missing_ok=True)
+        write_whole(self.path / TABLE, b"scene,folder\n")
+        self.note([])
+
+    def note(self, finished):
+        """Writes which scenes are finished, in words, for readers of a comparison that was broken off."""
+        there = f"finished: {', '.join(finished)}, each in a folder of its own" if finished else "none of them is finished"
+        write_whole(self.path / SUMMARY, bytes_of({"status": "stopped", "reason": "signal", "comparison": [], "message":
+                                                   f"the comparison of {', '.join(self.files)} has not ended ({there}); --resume goes on"}))
+
+    def leave(self):
+        """Removes the folder if no scene has left anything in it."""
+        if any((self.path / pathlib.Path(name).stem).exists() for name in self.files):
+            return
+        for name in (TABLE, SUMMARY):
+            (self.path / name).unlink(missing_ok=True)
+        if self.path.is_dir() and not any(self.path.iterdir()):
+            self.path.rmdir()
 
     def written(self, fits, origin):
         """Lines for the screen; the files are there then. Scenes whose search did not end are left out of the table. fits: {name of a
@@ -32,7 +55,6 @@ class Comparison:
         message = f"the search did not end for {', '.join(open_ends)}: not in the comparison" if open_ends else ""
         summary = {"status": "failed" if open_ends else "finished", "reason": "no_convergence" if open_ends else "converged",
                    "message": message, "comparison": rows, **origin}
-        (self.path / "report.html").unlink(missing_ok=True)
         text = io.StringIO()
         csv.writer(text, lineterminator="\n").writerows([rows[0] if rows else ["scene"], *(row.values() for row in rows)])
         write_whole(self.path / TABLE, text.getvalue().encode())
