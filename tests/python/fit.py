@@ -96,6 +96,25 @@ class Values(unittest.TestCase):
         sides = [fields({**STRAIN, P: at + d}).position for d in (-step, step)]
         self.assertAlmostEqual(found.variables[P]["deviation"] / (NOISE / np.linalg.norm((sides[1] - sides[0]) / (2 * step))), 1, delta=1e-3)
 
+    def test_each_number_has_its_deviation(self):
+        """The same everywhere it is Fit/Standard deviation; a number of which it is huge counts as nothing, a gap."""
+        data = path(STRESS)
+        data.deviation = np.full((41, 1), NOISE)
+        one, same = fit(STRESS, data, P), fit(STRESS, path(STRESS), P, standard_deviation=NOISE)
+        self.assertAlmostEqual(one.goodness.chi_square, same.goodness.chi_square, delta=1e-6)
+        self.assertAlmostEqual(one.variables[P]["value"], same.variables[P]["value"], delta=1e-4 * same.variables[P]["deviation"])
+        gaps = path(STRESS)
+        gaps.values[20:] = np.nan
+        data.values[20:] += 1
+        data.deviation[20:] = 1e6
+        one, same = fit(STRESS, data, P), fit(STRESS, gaps, P, standard_deviation=NOISE)
+        for key in ("value", "deviation"):
+            self.assertAlmostEqual(one.variables[P][key], same.variables[P][key], delta=1e-3 * same.variables[P]["deviation"])
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "path.csv")
+            file.write_text("t,centre [mm],deviation\n0,1,0.5\n1,2,0.25\n", encoding="utf-8")
+            np.testing.assert_allclose(read_samples(file, unit_of_s="m").deviation[:, 0], (5e-4, 2.5e-4))
+
     def test_deviation_is_a_share_of_the_noise(self):
         small, large = (fit(STRESS, tracks(STRESS, noise), P, K, AMPLITUDE, standard_deviation=noise) for noise in (1e-5, 1e-4))
         for name in (P, K, AMPLITUDE):
@@ -329,6 +348,8 @@ class Refusals(unittest.TestCase):
                 ("of the type tuple", {"data": (T, np.zeros(41))}), ("measured.read_samples(NAME, unit_of_t=...)", {"unit_of_t": "1/30"}),
                 ("the time 1.95 behind 2", {"data": Samples("centre", np.zeros(1), T[::-1], np.zeros((41, 1)))}),
                 ("the data have inf at t = 0", {"data": Samples("centre", np.zeros(1), T, np.full((41, 1), np.inf))}),
+                ("the deviation 0 at t = 0", {"data": Samples("centre", np.zeros(1), T, np.zeros((41, 1)), deviation=np.zeros((41, 1)))}),
+                ("one of the two", {"data": Samples("centre", np.zeros(1), T, np.zeros((41, 1)), deviation=np.ones((41, 1))), "standard_deviation": 1}),
                 ("shape (41,)", {"data": Samples("centre", np.zeros(1), T, np.zeros(41))}),
                 ("cannot be run", {"scene": inverted, "variables": {AMPLITUDE: (4, 6)}})):
             with self.subTest(sentence=sentence):

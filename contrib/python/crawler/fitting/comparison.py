@@ -73,7 +73,7 @@ def require_comparable(models):
                 raise InputError(f'"{entry}" is {_text(here)} in "{first}", but {_text(there)} in "{name}"; the same is expected of all scenes that are compared, '
                                  "as the data are weighed by it")
         if one.data.kind != other.data.kind or any(not np.array_equal(getattr(one.data, key), getattr(other.data, key), equal_nan=True)
-                                                   for key in ("t", "values")):
+                                                   for key in ("t", "values", "relative", "deviation")):
             raise InputError(f'"{first}" and "{name}" do not fit the same data, which are expected of scenes that are compared (--data names those of all)')
 
 

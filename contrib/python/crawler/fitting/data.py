@@ -18,7 +18,8 @@ class Data:
 
     kind: "markers", the x of markers [length]; "strain" [1]; "centre", the x of the centre of mass [length]; or "speed", of
     that [length/time]. t: times of the run [time], increasing; places: on the body [length], of markers and strain, else empty;
-    values: array [time, place]. deviation: the standard deviation of a number, None if it is not known. has_origin: is x of the
+    values: array [time, place]. deviation: the standard deviation of a number, None if it is not known; relative: that of each number over
+    this one, [time, place], 1 where all have the same. has_origin: is x of the
     run known where the data count it from? place_deviation: of the places of markers [length]; 0: they are known, inf: they are
     free. names: of the places. notes: sentences on what a file has in another order.
     """
@@ -31,6 +32,10 @@ class Data:
     place_deviation: float = 0.0
     names: list = dataclasses.field(default_factory=list)
     notes: list = dataclasses.field(default_factory=list)
+    relative: np.ndarray = None
+
+    def __post_init__(self):
+        self.relative = np.ones(self.values.shape) if self.relative is None else self.relative
 
     @property
     def is_there(self):
@@ -90,11 +95,28 @@ def read_data(data, parameters, **reading):
     if t[0] < -1e-9 * end or t[-1] > end * (1 + 1e-9):
         raise InputError(f"{name} has times from {t[0]:g} to {t[-1]:g} of the run, but from 0 to Time/End time = {end:g} are expected; see "
                          "Fit/First time and \"--unit-of-t\"")
-    deviation = parameters["Fit/Standard deviation"]
-    if 0 < free < math.inf and deviation == "automatic":
+    deviation, relative = _deviation_of(samples, parameters["Fit/Standard deviation"], name)
+    if 0 < free < math.inf and deviation is None:
         raise InputError('"Fit/Place deviation" is set, but not "Fit/Standard deviation", without which the two cannot be weighed; it is expected')
-    return Data(kind, np.clip(t, 0, end), np.clip(places, 0, length), samples.values, None if deviation == "automatic" else float(deviation),
-                kind not in ("markers", "centre") or parameters["Fit/Origin"] != "unknown", free, list(samples.names), list(samples.notes))
+    return Data(kind, np.clip(t, 0, end), np.clip(places, 0, length), samples.values, deviation,
+                kind not in ("markers", "centre") or parameters["Fit/Origin"] != "unknown", free, list(samples.names), list(samples.notes), relative)
+
+
+def _deviation_of(samples, wanted, name):
+    """That of all numbers and, [time, place], that of each over it; (None, None) if it is not known. wanted: Fit/Standard deviation."""
+    if samples.deviation is None:
+        return (None if wanted == "automatic" else float(wanted)), None
+    if wanted != "automatic":
+        raise InputError(f'"Fit/Standard deviation" is {wanted:g}, but {name} have a deviation for each number; one of the two is expected')
+    each, there = np.asarray(samples.deviation, dtype=float), ~np.isnan(samples.values)
+    if each.shape != samples.values.shape:
+        raise InputError(f"{name} have deviations of the shape {each.shape}, but {samples.values.shape}, that of the values, is expected")
+    wrong = there & ~((each > 0) & np.isfinite(each))
+    if np.any(wrong):
+        j, i = np.argwhere(wrong)[0]
+        raise InputError(f"{name} have the deviation {each[j, i]:g} at t = {samples.t[j]:g}, but a number above 0 is expected for each that was measured")
+    common = float(np.mean(each[there] ** -2.0) ** -0.5) if np.any(there) else 1.0
+    return common, np.where(there, each / common, 1.0)
 
 
 def _require_sound(samples, name):

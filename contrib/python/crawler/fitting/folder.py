@@ -185,9 +185,9 @@ def _text(value):
 
 
 def _digest(data):
-    """Of all numbers that were measured, and where they are."""
+    """Of all numbers that were measured, where they are, and their deviations."""
     digest = hashlib.sha256(data.kind.encode())
-    for values in (data.t, data.places, data.values):
+    for values in (data.t, data.places, data.values, data.relative * (data.deviation or 0)):
         digest.update(np.ascontiguousarray(values, dtype=float).tobytes())
     return digest.hexdigest()
 

@@ -88,7 +88,7 @@ def unfinished(problem, starts, is_stopped):
              "variables": variables, "undetermined": [], "notes": [*data.notes, *([] if is_stopped else [message])],
              "goodness": goodness, "residuals": math.sqrt(squares / goodness["n_data"]) * problem.scale, "accuracy": model.accuracy,
              "n_runs": model.n_runs, "starts": starts}
-    return Fit(found, data, data.values + grid * problem.scale, dict(one.split("=", 1) for one in model.overrides(values)), None)
+    return Fit(found, data, data.values + grid * problem.scale * data.relative, dict(one.split("=", 1) for one in model.overrides(values)), None)
 
 
 def described(problem, best, starts):
@@ -107,7 +107,7 @@ def described(problem, best, starts):
              "correlation": (matrix / np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))).tolist(), "goodness": goodness,
              "information": {"aic": likelihood + 2 * k, "bic": likelihood + k * math.log(n)},
              "accuracy": model.accuracy, "n_runs": model.n_runs, "starts": starts}
-    return Fit(found, data, data.values + grid * problem.scale, dict(one.split("=", 1) for one in model.overrides(values)),
+    return Fit(found, data, data.values + grid * problem.scale * data.relative, dict(one.split("=", 1) for one in model.overrides(values)),
                matrix * best.deviation ** 2 * np.outer(problem.width, problem.width))
 
 

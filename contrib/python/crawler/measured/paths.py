@@ -6,11 +6,12 @@ from ..needs import InputError
 from .units import unit_factor
 
 PATHS = {"centre": ("centre", "center", "centre of mass", "center of mass"), "speed": ("speed", "velocity")}  # names of columns
+DEVIATIONS = ("deviation", "standard deviation", "sigma")
 TIMES, ALONG = ("t", "time"), ("s", "marker", "track_id", "id")  # names of columns; with one of the latter it is no path
 
 
 def path_in(sheet):
-    """(kind, t, values [time, 1], unit of values, unit of t) of a sheet; None if it has no such column. Raises InputError if its times
+    """(kind, t, values [time, 1], their deviations or None, unit of values, unit of t) of a sheet; None if it has no such column. Raises InputError if its times
     do not grow."""
     names = [one.lower() for one in sheet.names]
     found = [(kind, i) for kind, known in PATHS.items() for i, one in enumerate(names) if one in known]
@@ -24,7 +25,8 @@ def path_in(sheet):
     if np.any(np.isnan(t)) or np.any(np.diff(t) <= 0):
         k = int(np.argmax(np.isnan(t))) if np.any(np.isnan(t)) else int(np.argmax(np.diff(t) <= 0)) + 1
         raise InputError(f'"{sheet.name}" has times that are missing or do not grow (row {sheet.lines[k]}), but growing times are expected')
-    return kind, t, sheet.column(column)[:, None], sheet.units[column], sheet.units[time]
+    deviation = next((sheet.column(i)[:, None] for i, one in enumerate(names) if one in DEVIATIONS), None)
+    return kind, t, sheet.column(column)[:, None], deviation, sheet.units[column], sheet.units[time]
 
 
 def factors_of_path(kind, unit, unit_t, unit_of_s, unit_of_t):

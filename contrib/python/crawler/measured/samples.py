@@ -33,7 +33,8 @@ class Samples:
     quantity: "m" (active stress [force]), "strain" [1], "x" (the places of markers [length], from tail to head), "centre" (the path of the
     centre of mass [length]) or "speed" (of that [length/time]); s: places [length], or the numbers of the markers, increasing, one
     number for centre and speed; t: times [time], increasing; values: array [time, place];
-    names: of the markers. notes: sentences on markers and times that the file has in another order.
+    names: of the markers. notes: sentences on markers and times that the file has in another order. deviation: the standard deviation of
+    each value, an array [time, place], in the unit of the values; None if it is not known.
     """
     quantity: str
     s: np.ndarray
@@ -41,6 +42,7 @@ class Samples:
     values: np.ndarray
     names: list = dataclasses.field(default_factory=list)
     notes: list = dataclasses.field(default_factory=list)
+    deviation: np.ndarray = None
 
 
 def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", unit_of_m="", shift_s="", shift_t="",
@@ -111,13 +113,14 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
 
 def _samples_of_path(found, sheet, unit_of_s, unit_of_t, shift_t, words, others):
     """Samples of what path_in() has found. others: {option: value} that only samples along a body have."""
-    kind, t, values, unit, unit_t = found
+    kind, t, values, deviation, unit, unit_t = found
     for option, value in others.items():
         if value:
             raise InputError(f'"--{option}" is for samples along a body, but "{sheet.name}" has the {"path" if kind == "centre" else kind} of its centre of mass')
     factor, factor_t = factors_of_path(kind, unit, unit_t, unit_of_s, unit_of_t)
     words += [*sheet.words, f"{kind} at {len(t)} times, {np.isnan(values).sum()} gaps"]
-    samples = Samples(kind, np.zeros(1), _converted(t, "t", factor_t, shift_t, words), _converted(values, kind, factor, "", words))
+    samples = Samples(kind, np.zeros(1), _converted(t, "t", factor_t, shift_t, words), _converted(values, kind, factor, "", words),
+                      deviation=None if deviation is None else deviation * factor)
     _require_possible(samples, sheet.name)
     if factor < 0 or factor_t < 0:
         raise InputError("a unit is negative, but only that of m may be")
