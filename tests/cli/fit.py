@@ -27,12 +27,13 @@ REFUSED = [
     ([], 2, "FILE"), (["nowhere.prm"], 6, "nowhere.prm"), (["fit_worm.prm"], 2, "--overwrite"), (["fit_worm.prm", "--data", "no.csv"], 2, "no.csv"),
     (["fit_worm.prm", "--outptu", "x"], 2, "--output"), (["fit_worm.prm", "--set", "Body/Length"], 2, "Section/Entry=value"),
     (["fit_worm.prm", "--set", "Body/Lenght=3"], 2, "Length"), (["fit_worm.prm", "--set", "Fit/Data="], 2, "Fit/Data is empty"),
-    (["fit_worm.prm", "--set", "Fit/Variables="], 2, "Variables is empty"), (["fit_worm.prm", "--unit-of-t", "1000"], 2, "Time/End time"),
+    (["fit_worm.prm", "--set", "Fit/Variables="], 2, 'Variables" is empty'), (["fit_worm.prm", "--unit-of-t", "1000"], 2, "Time/End time"),
     (["fit_worm.prm", "--output", "fit_worm.prm"], 2, "is a file"), (["fit_worm.prm", "--output", "other", "--overwrite"], 2, "not the folder of a fit"),
     (["fit_worm.prm", "--set", "Fit/Variables=Active stress/Travelling wave/Amplitude : 5 to 6", "--set",
       "Active stress/Travelling wave/Amplitude=5.5"], 2, "cannot be run"),
     (["fit_worm.prm", "--workers", "0"], 2, "from 1"), (["fit_worm.prm", "--workers", "two"], 2, "whole number"),
-    (["fit_worm.prm", "three.prm", "--output", "output-fit_worm"], 2, "something else"), (["fit_worm.prm", "--set", "Fit/Markers at=0,1"], 2, "9 markers"), (["fit_worm.prm", "other/fit_worm.prm"], 2, "same name")]
+    (["fit_worm.prm", "three.prm", "--output", "output-fit_worm"], 2, "not empty"), (["fit_worm.prm", "--set", "Fit/Markers at=0,1"], 2, "9 markers"), (["fit_worm.prm", "other/fit_worm.prm"], 2, '"fit_worm.prm" and "other/fit_worm.prm" have the same name'),
+    (["fit_worm.prm", "three.prm", "--set", "Fit/Variables="], 2, 'fit_worm.prm: "Fit/Variables" is empty')]
 THREE = ("fit", "three.prm")
 checks = Checks()
 check = checks.expect
@@ -48,6 +49,18 @@ def contents(folder):
     files = {str(file.relative_to(folder)): file.read_bytes() for file in pathlib.Path(folder).rglob("*") if file.is_file() and file.suffix not in (".png", ".html")}
     files["summary.json"] = {key: value for key, value in json.loads(files["summary.json"]).items() if key not in ("command_line", "seconds")}
     return files
+
+
+def compares_only_what_is_weighed_alike():
+    """Scenes of which the data are weighed differently have no common likelihood."""
+    data = pathlib.Path("fit_worm.csv").read_text(encoding="utf-8").splitlines(keepends=True)
+    pathlib.Path("fewer.csv").write_text("".join(data[:-9]), encoding="utf-8")
+    for entry, value in (("Standard deviation", "0.02"), ("Standard deviation", "automatic"), ("Origin", "tail"), ("First time", "0"),
+                         ("Place deviation", "0.01"), ("Data", "fewer.csv")):
+        pathlib.Path("weighed.prm").write_text(f"include fit_worm.prm\nsubsection Fit\n  set {entry} = {value}\nend\n", encoding="utf-8")
+        ended = crawler("fit", "fit_worm.prm", "weighed.prm", "--output", "weighed")
+        check(ended.returncode == 2 and all(word in ended.stderr for word in ("same data" if entry == "Data" else f"Fit/{entry}", '"fit_worm.prm"', '"weighed.prm"'))
+              and ended.stderr.count("\n") == 1 and not pathlib.Path("weighed").exists(), f"{entry} = {value} in one of two: {ended.stderr}")
 
 
 def resumes():
@@ -113,6 +126,27 @@ def resumes():
         check(ended.returncode == 2 and phrase in ended.stderr and ended.stderr.count("\n") == 1, f"--resume {arguments}: {ended.stderr}")
 
 
+def resumes_a_comparison():
+    """One that is stopped in the second scene says which is finished; nothing foreign is written over."""
+    words = ("fit", "three.prm", "fit_worm.prm", "--set", "Fit/Starts=1", "--output", "stopped")
+    ended = crawler(*words, stop_at="step:3000:TERM")
+    check(ended.returncode == 5 and "fit_worm.prm:" in ended.stdout, f"stopped in the second: {ended.stdout}{ended.stderr}")
+    for command in ("report", "plot"):
+        ended = crawler(command, "stopped")
+        check(ended.returncode == 2 and all(word in ended.stderr for word in ("finished: three.prm,", "fit_worm.prm", "--resume")) and ended.stderr.count("\n") == 1,
+              f"{command} of a comparison that was stopped: {ended.stderr}")
+    ended = crawler(*words)
+    check(ended.returncode == 2 and "--resume goes on" in ended.stderr, f"a comparison that was stopped, called again: {ended.stderr}")
+    ended = crawler(*words, "--resume")
+    check(ended.returncode == 0 and "1 of 1 starts" in ended.stdout and crawler("plot", "stopped").returncode == 0, f"--resume of a comparison: {ended.stderr}")
+    for option, phrase in ((None, "not empty"), ("--overwrite", "not the folder of a comparison"), ("--resume", "no comparison that could be resumed")):
+        ended = crawler("fit", "fit_worm.prm", "three.prm", "--output", "other", *filter(None, [option]))
+        check(ended.returncode == 2 and phrase in ended.stderr and not pathlib.Path("other/three").exists(), f"a comparison beside a foreign file: {ended.stderr}")
+    ended = crawler("fit", "fit_worm.prm", "three.prm", "--output", "new", "--set", "Active stress/Travelling wave/Amplitude=3",
+                    "--set", "Fit/Variables=Active stress/Travelling wave/Amplitude : 3 to 4")
+    check(ended.returncode == 2 and "fit_worm.prm: the scene cannot be run" in ended.stderr and not pathlib.Path("new").exists(), f"no scene runs: {ended.stderr}")
+
+
 def refuses():
     """Every mistake is one sentence and a code, and nothing is lost."""
     pathlib.Path("other").mkdir()
@@ -152,6 +186,7 @@ def main():
     check(again.returncode == 0 and all(abs(other[name]["value"] - summary["variables"][name]["value"]) < 0.02 * other[name]["deviation"] for name in TRUTH),
           "the scene that was written fits otherwise")
     refuses()
+    compares_only_what_is_weighed_alike()
     pathlib.Path("plain.prm").write_text("include fit_worm.prm\nsubsection Body\n  set Anchoring exponent = 0\nend\nsubsection Fit\n"
                                          "  set Variables = Body/Elastic modulus : 0.3 to 4; Active stress/Travelling wave/Amplitude : 0.02 to 0.8\nend\n",
                                          encoding="utf-8")
@@ -176,6 +211,7 @@ def main():
     ended = crawler("run", "fit_worm.prm", "--output", "run")
     check(ended.returncode == 0 and 'section "Fit" has no effect with "crawler run"' in ended.stdout, f"a run does not note section Fit: {ended.stdout}")
     resumes()
+    resumes_a_comparison()
 
 
 if __name__ == "__main__":

@@ -303,7 +303,7 @@ def test_obstacles(place):
 def test_bad_input(place):
     """One sentence, exit code 2, no folder."""
     no_limit = ["Optimize/Smallest strain=automatic", "Optimize/Largest strain=automatic"]
-    for settings, words in ((["Optimize/Variables="], "Variables is empty"),
+    for settings, words in ((["Optimize/Variables="], 'Variables" is empty'),
                             (["Optimize/Variables=Body/Lenght : 1 to 2"], "nearest name is \"Body/Length\""),
                             (["Optimize/Variables=Active stress/Modes/Harmonics : 1 to 2"], "is a whole number"),
                             (["Optimize/Variables=Body/Length : 2 to 3"], "in its range, from 2 to 3"),

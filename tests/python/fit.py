@@ -9,6 +9,7 @@ import pathlib
 import sys
 import tempfile
 import unittest
+import unittest.mock
 import warnings
 
 sys.path.insert(0, sys.argv.pop(1))
@@ -16,7 +17,7 @@ import numpy as np  # noqa: E402
 
 import crawler  # noqa: E402
 from crawler.fitting.uncertainty import curvature_bias  # noqa: E402
-from crawler.measured import Samples  # noqa: E402
+from crawler.measured import Samples, Settings, prepare, read_samples  # noqa: E402
 
 BODY, WAVE = "Body/", "Active stress/Travelling wave/"
 P, K, GAMMA, AMPLITUDE = BODY + "Anchoring exponent", BODY + "Elastic modulus", BODY + "Friction coefficient", WAVE + "Amplitude"
@@ -73,6 +74,11 @@ class Values(unittest.TestCase):
             for name in names:  # the mean over points is good to 1e-5
                 self.assertAlmostEqual(found.variables[name]["used"], STRESS[name], delta=5e-4, msg=data.quantity)
 
+    def test_length_from_the_path_of_the_middle(self):
+        """With a known origin the centre of mass starts in the middle of the body."""
+        found = crawler.fit({**STRESS, BODY + "Length": 2.1}, path(STRESS, 0), {BODY + "Length": (1.5, 3)}, origin="tail")
+        self.assertAlmostEqual(found.variables[BODY + "Length"]["used"], 2, delta=5e-4)
+
     def test_more_starts_change_no_better_value(self):
         """The random starts of this seed end elsewhere or fail; places of markers stay those of the best one."""
         data = tracks(STRESS)
@@ -89,6 +95,25 @@ class Values(unittest.TestCase):
         step, at = 1e-3, found.variables[P]["used"]
         sides = [fields({**STRAIN, P: at + d}).position for d in (-step, step)]
         self.assertAlmostEqual(found.variables[P]["deviation"] / (NOISE / np.linalg.norm((sides[1] - sides[0]) / (2 * step))), 1, delta=1e-3)
+
+    def test_each_number_has_its_deviation(self):
+        """The same everywhere it is Fit/Standard deviation; a number of which it is huge counts as nothing, a gap."""
+        data = path(STRESS)
+        data.deviation = np.full((41, 1), NOISE)
+        one, same = fit(STRESS, data, P), fit(STRESS, path(STRESS), P, standard_deviation=NOISE)
+        self.assertAlmostEqual(one.goodness.chi_square, same.goodness.chi_square, delta=1e-6)
+        self.assertAlmostEqual(one.variables[P]["value"], same.variables[P]["value"], delta=1e-4 * same.variables[P]["deviation"])
+        gaps = path(STRESS)
+        gaps.values[20:] = np.nan
+        data.values[20:] += 1
+        data.deviation[20:] = 1e6
+        one, same = fit(STRESS, data, P), fit(STRESS, gaps, P, standard_deviation=NOISE)
+        for key in ("value", "deviation"):
+            self.assertAlmostEqual(one.variables[P][key], same.variables[P][key], delta=1e-3 * same.variables[P]["deviation"])
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "path.csv")
+            file.write_text("t,centre [mm],deviation\n0,1,0.5\n1,2,0.25\n", encoding="utf-8")
+            np.testing.assert_allclose(read_samples(file, unit_of_s="m").deviation[:, 0], (5e-4, 2.5e-4))
 
     def test_deviation_is_a_share_of_the_noise(self):
         small, large = (fit(STRESS, tracks(STRESS, noise), P, K, AMPLITUDE, standard_deviation=noise) for noise in (1e-5, 1e-4))
@@ -161,6 +186,38 @@ class Values(unittest.TestCase):
             self.assertGreater(found.goodness.probability, 1e-3)
 
 
+class Valley(unittest.TestCase):
+    """Exponent and amplitude change the path of the centre of mass in nearly the same way: along a curved valley."""
+    SCENE = {**STRESS, WAVE + "Frequency": 0.5, "Time/End time": 8}
+
+    @classmethod
+    def setUpClass(cls):
+        t = np.linspace(0, 8, 60)
+        centre = np.mean(crawler.run(cls.SCENE, fields=t, places=np.linspace(0.001, 1.999, 1000), accuracy=1e-8, check=True).fields.position, axis=1)
+        cls.data = Samples("centre", np.zeros(1), t, (centre + 1e-4 * np.random.default_rng(1).standard_normal(60))[:, None])
+
+    def from_start(self, exponent, amplitude):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return crawler.fit({**self.SCENE, P: exponent, AMPLITUDE: amplitude}, self.data, {P: (0.5, 5), AMPLITUDE: RANGES[AMPLITUDE]}, standard_deviation=1e-4)
+
+    def test_search_follows_it_to_its_end(self):
+        far, near = self.from_start(3, 0.15), self.from_start(2, 0.3)
+        for found in (far, near):
+            self.assertEqual(found.status, "finished")
+            self.assertLess(abs(found.variables[P]["value"] - 2), 3 * found.variables[P]["deviation"])
+        self.assertAlmostEqual(far.variables[P]["value"], near.variables[P]["value"], delta=0.03 * near.variables[P]["deviation"])
+
+    def test_search_that_does_not_end_has_values_so_far_only(self):
+        with unittest.mock.patch("crawler.fitting.fit.MOST_STEPS", 5):
+            found = self.from_start(3, 0.15)
+        self.assertEqual((found.status, found.undetermined), ("failed", []))
+        self.assertIn("did not end", found.message)
+        for one in found.variables.values():
+            self.assertEqual([one[key] for key in ("determined", "deviation", "interval_95", "profile")], [None, None, None, []])
+        self.assertNotIn("information", found)
+
+
 class Untold(unittest.TestCase):
     """What the data do not tell is said, and not returned as a number."""
 
@@ -192,16 +249,35 @@ class Untold(unittest.TestCase):
             with self.subTest(names=names):
                 self.check(fit(scene, data, *names, standard_deviation=1e-4 if data.quantity == "centre" else NOISE), ())
 
+    def test_does_not_tell_what_may_be_anywhere_in_its_range(self):
+        """A range of less than two deviations at each side."""
+        data, settings = tracks(STRAIN), {"standard_deviation": NOISE, "markers_at": S}
+        best = crawler.fit(STRAIN, data, {P: RANGES[P]}, **settings).variables[P]
+        for width, untold in ((1.6, (P,)), (2.4, ())):
+            ends = [float(best["value"] + side * width * best["deviation"]) for side in (-1, 1)]
+            self.check(crawler.fit({**STRAIN, P: best["value"]}, data, {P: ends}, **settings), untold)
+
     def test_says_that_a_scene_does_not_fit(self):
         found = fit({**STRESS, WAVE + "Wave number": 1.3}, tracks(STRESS), P, K, standard_deviation=NOISE)
-        self.assertIn("does not fit", " ".join(found.notes))
+        self.assertIn("does not fit", found.notes[0])
         found = fit({**STRESS, WAVE + "Wave number": 1.3}, tracks(STRESS), P, K)
         self.assertIn("alike", " ".join(found.notes))
 
     def test_says_that_a_value_is_at_its_limit(self):
         found = crawler.fit({**STRAIN, P: 1.5}, tracks(STRAIN), {P: (0.5, 1.8)}, standard_deviation=NOISE)
         self.assertEqual(found.variables[P]["at_limit"], "to")
-        self.assertIn("at its limit", " ".join(found.notes))
+        self.assertIn("at the limit of its range, 1.8:", " ".join(found.notes))
+
+    def test_names_the_largest_residual(self):
+        """A wrong number makes a scene fail; of it and its place speaks the first sentence, and none of what the data tell."""
+        for size, name, words in ((300, GAMMA, ("does not fit", "marker 4, t = 1 of the run")), (10, P, ("is it an outlier", "marker 4, t = 1 of the run"))):
+            data = tracks(STRAIN)
+            data.values[20, 4] += size * NOISE
+            found = fit(STRAIN, data, name, standard_deviation=NOISE)
+            for word in words:
+                self.assertIn(word, found.notes[0])
+            self.assertEqual(found.undetermined, [])
+            self.assertAlmostEqual(abs(found.goodness.largest_residual.deviations) / size, 1, delta=0.5)
 
 
 class Files(unittest.TestCase):
@@ -214,6 +290,36 @@ class Files(unittest.TestCase):
             (place / "summary.json").write_text('{"status": "finished", "variables": {"Body/Length": {"value": 2}}}', encoding="utf-8")
             study = crawler.read(place)
             self.assertEqual((study.kind, study.variables["Body/Length"].value, float(study.table["residual"][0])), ("fit", 2, -0.5))
+
+
+    def test_path_is_read_in_its_units(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "path.csv")
+            for head, factor in (("t [ms],centre [mm]", 1e-3), ("t [ms],speed [mm/s]", 1e-3), ("t [ms],speed [mm/min]", 1e-3 / 60), ("t [ms],speed [mm]", 1)):
+                file.write_text(f"{head}\n100,2\n200,3\n", encoding="utf-8")
+                samples = read_samples(file, unit_of_s="m", unit_of_t="s")
+                self.assertEqual((samples.quantity, samples.values.shape), (head[7:].split()[0], (2, 1)))
+                np.testing.assert_allclose(samples.t, (0.1, 0.2))
+                np.testing.assert_allclose(samples.values[:, 0], (2 * factor, 3 * factor))
+            with self.assertRaisesRegex(crawler.InputError, "--head.*along a body"):
+                read_samples(file, head="x")
+            with self.assertRaisesRegex(crawler.InputError, "crawler fit"):
+                prepare(read_samples(file), Settings())
+
+    def test_says_what_was_in_another_order(self):
+        """Markers of which two stand in each other's place, and a time with one wrong digit."""
+        x, order = tracks(STRAIN).values, [0, 1, 2, 4, 3, 5, 6]
+        for t, words in ((T, ("the markers put in order along the body: x1, x2, x3, x5, x4",)), (np.where(np.arange(41) == 33, 0.165, T),
+                         ("do not ascend in the file: t = 0.165 in row 35 stands behind 1.6;", "put in order along the body"))):
+            text = "t," + ",".join(f"x{i + 1}" for i in range(7)) + "\n" + "".join(
+                f"{at:.9g}," + ",".join(map(repr, row[order].tolist())) + "\n" for at, row in zip(t, x))
+            with tempfile.TemporaryDirectory() as folder:
+                file = pathlib.Path(folder, "tracks.csv")
+                file.write_text(text, encoding="utf-8")
+                notes = fit(STRAIN, read_samples(file), P, standard_deviation=1).notes
+            for word in words:
+                self.assertIn(word, " ".join(notes))
+            self.assertEqual("ascend" in " ".join(notes), len(words) == 2)
 
 
 class Refusals(unittest.TestCase):
@@ -233,9 +339,18 @@ class Refusals(unittest.TestCase):
                 ("more data or fewer variables", {"data": few}), ("Time/End time", {"data": late}), ("Body/Length", {"data": wide}),
                 ("samples of m", {"data": Samples("m", S, T, np.zeros((41, 7)))}), ("Fit/Data is empty", {"data": ""}),
                 ("nowhere.csv", {"data": "nowhere.csv"}), ("2 places, but", {"markers_at": "0, 1"}), ("growing places", {"markers_at": [6, 5, 4, 3, 2, 1, 0]}),
-                ("a list of numbers is expected", {"markers_at": "here"}), ("Variables is empty", {"variables": {}}),
+                ("a list of numbers is expected", {"markers_at": "here"}), ('Variables" is empty', {"variables": {}}),
                 ("Anchoring exponent", {"variables": {BODY + "Anchoring exponnent": (1, 2)}}), ("in its range", {"variables": {P: (3, 4)}}),
                 ("whose Body/Length is 3", {"set": {BODY + "Length": 3}}), ("Standard deviation", {"place_deviation": 0.1}),
+                ('"Body/Length" from 1.5 to 4, but the outermost marker is at 2', {"variables": {BODY + "Length": (1.5, 4)}, "markers_at": S}),
+                ("a list of places", {"variables": {BODY + "Length": (1.9, 4)}}), ("data do not depend", {"variables": {"Time/End time": (2, 4)}}),
+                ("of the type ndarray, but the name of a file or measured.Samples", {"data": np.zeros((41, 7))}),
+                ("of the type tuple", {"data": (T, np.zeros(41))}), ("measured.read_samples(NAME, unit_of_t=...)", {"unit_of_t": "1/30"}),
+                ("the time 1.95 behind 2", {"data": Samples("centre", np.zeros(1), T[::-1], np.zeros((41, 1)))}),
+                ("the data have inf at t = 0", {"data": Samples("centre", np.zeros(1), T, np.full((41, 1), np.inf))}),
+                ("the deviation 0 at t = 0", {"data": Samples("centre", np.zeros(1), T, np.zeros((41, 1)), deviation=np.zeros((41, 1)))}),
+                ("one of the two", {"data": Samples("centre", np.zeros(1), T, np.zeros((41, 1)), deviation=np.ones((41, 1))), "standard_deviation": 1}),
+                ("shape (41,)", {"data": Samples("centre", np.zeros(1), T, np.zeros(41))}),
                 ("cannot be run", {"scene": inverted, "variables": {AMPLITUDE: (4, 6)}})):
             with self.subTest(sentence=sentence):
                 self.refused(sentence, **more)

@@ -211,12 +211,17 @@ def optimize(scene, variables=None, *, set=None, output=None, overwrite=False, v
 def fit(scene, data=None, variables=None, *, set=None, workers=1, verbose=False, **keywords):
     """Numbers of a scene, with their uncertainty, from what was measured, as `crawler fit` finds them (doc/fit.md): a Fit.
 
-    data: the name of a file, or measured.Samples; None: that of the scene (Fit/Data). variables: {entry: (from, to), ...};
+    data: the name of a file, or measured.Samples, as measured.read_samples(name, unit_of_t="1/30") gives for a file in other units;
+    None: that of the scene (Fit/Data). variables: {entry: (from, to), ...};
     None: Fit/Variables. starts=8, standard_deviation=0.01, ... are entries of section Fit. workers: so many processes share the
     starts; the result does not depend on it. Fit.variables has, for each, value, deviation, intervals and numerical error;
     Fit.undetermined what the data cannot tell. Raises InputError, FileError, and RuntimeError where the fit fails.
     """
     own = {_keyword(entry): entry for entry in entries() if entry.startswith("Fit/")}
+    for option, _, _ in importlib.import_module(".measured.options", __name__).READING:
+        if (name := option.replace("-", "_")) in keywords:
+            raise InputError(f'"{name}" is for the reading of a file: data = measured.read_samples(NAME, {name}=...) is expected (the entry of a table: '
+                             "set={...} with its full name)")
     overrides = _overrides({**(set or {}), **{own[name]: keywords.pop(name) for name in list(keywords) if name in own}}, keywords)
     if variables is not None:
         overrides.append(f"Fit/Variables={_ranges(variables)}")

@@ -85,7 +85,8 @@ namespace crawler
     const Refusal refuse{entry};
     std::string list = trimmed(form.declarations.value(entry));
     if (list.empty())
-      throw InputError("Variables is empty, but \"Section/Entry : FROM to TO\" is expected: what may vary", entry);
+      throw InputError(
+        fmt::format("\"{}\" is empty, but \"Section/Entry : FROM to TO\" is expected: what may vary", entry), entry);
     const SceneNumbers numbers(form);
     std::vector<Variable> variables;
     if (list.ends_with(';'))

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """crawler fit: numbers of scenes from measured data, with their uncertainty; of several scenes, which the data prefer."""
+import contextlib
 import os
 import pathlib
 import shlex
@@ -10,12 +11,14 @@ from .. import _compiled
 from ..measured.options import add_reading_options, reading_of
 from ..needs import Failed, InputError, Parser, Stopped
 from . import Interrupted, find, prepared
-from .comparison import Comparison
+from .comparison import Comparison, require_comparable
 from .folder import Folder, drawn
 from .result import value_in_words
 
 DESCRIPTION = """Finds numbers of a parameter file, with their uncertainty, from measured data (section Fit; doc/fit.md). With several
 files all are fitted to the same data, and a table says which of them the data prefer."""
+
+GOOD = 0.01  # probability of chi-square, from which on another minimum could hardly fit better
 
 
 def command_line():
@@ -49,13 +52,14 @@ def lines_of(found):
         ends = one["interval_95"] or [None, None]
         interval = "" if not one["determined"] else " 95 %: " + " to ".join("the limit" if end is None else f"{end:.6g}" for end in ends)
         yield f"{name:{width}}  {value_in_words(one)}{interval}"
-    if found.status == "stopped":
+    if found.status != "finished":
         return
     fits = (f"chi-square {goodness.chi_square:.5g} with {goodness.degrees_of_freedom} degrees of freedom (probability {goodness.probability:.2g})"
             if goodness.deviation_is_given else f"standard deviation of a datum {goodness.deviation_of_data:.3g}, from the residuals")
     yield f"data: {goodness.n_data}, variables: {len(found.variables)}, besides for origin and places: {goodness.n_constants}; {fits}"
-    alone = ["1 start: the minimum may be local (Fit/Starts)"] if len(found.starts) == 1 else []
-    for sentence in [*found.undetermined, *found.notes, *alone]:
+    is_open = len(found.starts) == 1 and (goodness.probability or 0) < GOOD
+    alone = ["1 start: the minimum may be local (Fit/Starts)"] if is_open else []
+    for sentence in [*found.notes, *found.undetermined, *alone]:
         yield f"{sentence[0].upper()}{sentence[1:]}."
 
 
@@ -99,6 +103,21 @@ def found_and_written(name, folder, model, options, say):
         folder.leave()
 
 
+@contextlib.contextmanager
+def naming(file):
+    """Sees to it that sentences on what is wrong name the parameter file."""
+    try:
+        yield
+    except (InputError, Failed) as error:
+        raise error if str(file) in str(error) else type(error)(f"{file}: {error}") from None
+
+
+def prepared_by(name, options):
+    """The Model of a parameter file and notes on it. Raises InputError and FileError."""
+    with naming(name):
+        return prepared(name, options.set, options.data, **reading_of(options))
+
+
 def require_sense(options):
     """Raises InputError where options contradict each other or mean nothing."""
     if options.resume and options.overwrite:
@@ -108,8 +127,10 @@ def require_sense(options):
     ranks = max(int(os.environ.get(name, "1")) for name in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"))
     if ranks > 1:
         raise InputError(f'{ranks} processes of mpirun or srun were started, but a fit begins its own; "crawler fit --workers {ranks}" is expected')
-    if len(set(map(lambda name: pathlib.Path(name).stem, options.files))) < len(options.files):
-        raise InputError("two of the parameter files have the same name, but names of their own are expected, as their folders have them")
+    stems = {}
+    for name in options.files:
+        if (other := stems.setdefault(pathlib.Path(name).stem, name)) is not name:
+            raise InputError(f'"{other}" and "{name}" have the same name, but names of their own are expected, as their folders have them')
     for setting in options.set:
         if "=" not in setting:
             raise InputError(f'"--set" is "{setting}", but "Section/Entry=value" is expected')
@@ -134,6 +155,25 @@ class Screen:
             raise self.problem
 
 
+def fitted(models, folders, comparison, options, say):
+    """{name of a parameter file: Fit}, whose files are there then."""
+    fits = {}
+    try:
+        if comparison:
+            comparison.begin()
+        for name, folder in folders.items():
+            model, notes = models[name]
+            say("\n  ".join([f"{name}:", *notes]))
+            with naming(name):
+                fits[name] = found_and_written(name, folder, model, options, lambda text: say(f"  {text}"))
+            if comparison:
+                comparison.note([one for one, found in fits.items() if found.status == "finished"])
+        return fits
+    finally:
+        if comparison:
+            comparison.leave()
+
+
 def main():
     """Fits, writes and tells."""
     start = time.monotonic()
@@ -142,18 +182,14 @@ def main():
     require_sense(options)
     comparison = Comparison(path_of(options.files[0], options).parent, options) if len(options.files) > 1 else None
     folders = {name: Folder(path_of(name, options), options.resume, options.overwrite) for name in options.files}
-    models = {name: prepared(name, options.set, options.data, **reading_of(options)) for name in folders}
-    if len({int(model.data.is_there.sum()) for model, _ in models.values()}) > 1:
-        raise InputError("the parameter files do not fit the same data, so they cannot be compared")
-    fits = {}
-    for name, folder in folders.items():
-        model, notes = models[name]
-        say("\n  ".join([f"{name}:", *notes]))
-        fits[name] = found_and_written(name, folder, model, options, lambda text: say(f"  {text}"))
+    models = {name: prepared_by(name, options) for name in folders}
     if comparison:
-        for line in comparison.written(fits, origin_of(model, options, start)):
+        require_comparable({name: model for name, (model, _) in models.items()})
+    fits = fitted(models, folders, comparison, options, say)
+    if comparison:
+        for line in comparison.written(fits, origin_of(models[options.files[0]][0], options, start)):
             say(line)
     for name, found in fits.items():
         if found.status != "finished":
-            raise Failed(f'the search for "{name}" did not end: the result is not the best one')
+            raise Failed(f"{name}: {found.message}")
     say.require_written()

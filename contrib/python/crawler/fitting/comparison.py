@@ -4,41 +4,87 @@ import csv
 import io
 import pathlib
 
-from ..needs import InputError, write_whole
-from .folder import bytes_of, drawn
+import numpy as np
 
-TABLE, SUMMARY = "comparison.csv", "summary.json"
+from ..needs import FileError, InputError, write_whole
+from .folder import bytes_of, drawn, require_usable
+
+TABLE, SUMMARY, PAGES = "comparison.csv", "summary.json", ("comparison.png", "report.html")
+WEIGHED_BY = tuple(f"Fit/{name}" for name in ("Standard deviation", "Place deviation", "Origin", "First time"))  # what the data are worth
 
 
 class Comparison:
     """The files of a comparison."""
 
     def __init__(self, path, options):
-        """Writes nothing yet. Raises InputError if there is something that is not to be replaced."""
-        self.path = path
-        if (path / TABLE).exists() and not (options.resume or options.overwrite):
-            raise InputError(f'the output folder "{path}" is not empty; give another one with --output, or --overwrite to replace the results in it')
-        if (path / SUMMARY).exists() and not (path / TABLE).exists():
-            raise InputError(f'"{path}" has the results of something else; another folder is expected for --output')
+        """Writes nothing yet. Raises InputError if there is something that is not to be replaced or gone on with."""
+        self.path, self.files = path, options.files
+        require_usable(path, "comparison", (TABLE,), options.resume, options.overwrite)
+
+    def begin(self):
+        """Makes the folder, which tells from now on that the comparison has not ended. Raises FileError."""
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise FileError(f'cannot write to "{self.path}": {error.strerror or error}') from None
+        for name in PAGES:
+            (self.path / name).unlink(missing_ok=True)
+        write_whole(self.path / TABLE, b"scene,folder\n")
+        self.note([])
+
+    def note(self, finished):
+        """Writes which scenes are finished, in words, for readers of a comparison that was broken off."""
+        there = f"finished: {', '.join(finished)}, each in a folder of its own" if finished else "none of them is finished"
+        write_whole(self.path / SUMMARY, bytes_of({"status": "stopped", "reason": "signal", "comparison": [], "message":
+                                                   f"the comparison of {', '.join(self.files)} has not ended ({there}); --resume goes on"}))
+
+    def leave(self):
+        """Removes the folder if no scene has left anything in it."""
+        if any((self.path / pathlib.Path(name).stem).exists() for name in self.files):
+            return
+        for name in (TABLE, SUMMARY):
+            (self.path / name).unlink(missing_ok=True)
+        if self.path.is_dir() and not any(self.path.iterdir()):
+            self.path.rmdir()
 
     def written(self, fits, origin):
-        """Lines for the screen; the files are there then. fits: {name of a parameter file: Fit}; origin: what summary.json has besides."""
-        rows = compared(fits)
-        open_ends = [row["scene"] for row in rows if fits[row["scene"]].status != "finished"]
+        """Lines for the screen; the files are there then. Scenes whose search did not end are left out of the table. fits: {name of a
+        parameter file: Fit}; origin: what summary.json has besides."""
+        rows = compared({name: found for name, found in fits.items() if found.status == "finished"})
+        open_ends = [name for name, found in fits.items() if found.status != "finished"]
+        message = f"the search did not end for {', '.join(open_ends)}: not in the comparison" if open_ends else ""
         summary = {"status": "failed" if open_ends else "finished", "reason": "no_convergence" if open_ends else "converged",
-                   "message": f"the search did not end for {', '.join(open_ends)}" if open_ends else "", "comparison": rows, **origin}
-        (self.path / "report.html").unlink(missing_ok=True)
+                   "message": message, "comparison": rows, **origin}
         text = io.StringIO()
-        csv.writer(text, lineterminator="\n").writerows([rows[0], *(row.values() for row in rows)])
+        csv.writer(text, lineterminator="\n").writerows([rows[0] if rows else ["scene"], *(row.values() for row in rows)])
         write_whole(self.path / TABLE, text.getvalue().encode())
         write_whole(self.path / SUMMARY, bytes_of(summary))
-        return [*table_of(rows), *filter(None, [drawn(self.path)]), f"Files in {self.path}/"]
+        return [*(table_of(rows) if rows else ()), *filter(None, [message, rows and drawn(self.path)]), f"Files in {self.path}/"]
+
+
+def require_comparable(models):
+    """Raises InputError unless all scenes are judged by the same numbers in the same way: only then are the likelihoods, and with
+    them the criteria, those of the same data. models: {name of a parameter file: Model}."""
+    (first, one), *others = models.items()
+    for name, other in others:
+        for entry in WEIGHED_BY:
+            here, there = (model.parameters[entry] for model in (one, other))
+            if here != there:
+                raise InputError(f'"{entry}" is {_text(here)} in "{first}", but {_text(there)} in "{name}"; the same is expected of all scenes that are compared, '
+                                 "as the data are weighed by it")
+        if one.data.kind != other.data.kind or any(not np.array_equal(getattr(one.data, key), getattr(other.data, key), equal_nan=True)
+                                                   for key in ("t", "values", "relative", "deviation")):
+            raise InputError(f'"{first}" and "{name}" do not fit the same data, which are expected of scenes that are compared (--data names those of all)')
+
+
+def _text(value):
+    return f"{value:g}" if isinstance(value, float) else value
 
 
 def compared(fits):
     """Scenes in the order in which the data prefer them (Akaike), a list of dicts: their folder, chi-square, the criteria of Akaike
     and Bayes, and by how much these are above the least."""
-    best = {key: min(found.information[key] for found in fits.values()) for key in ("aic", "bic")}
+    best = {key: min((found.information[key] for found in fits.values()), default=0.0) for key in ("aic", "bic")}
     return [{"scene": name, "folder": pathlib.Path(name).stem, "variables": len(found.variables), "chi_square": found.goodness.chi_square,
              "degrees_of_freedom": found.goodness.degrees_of_freedom, **found.information,
              **{f"{key}_less_least": found.information[key] - best[key] for key in best}}

@@ -2,15 +2,13 @@
 """What was measured, as a fit compares it with a run."""
 import dataclasses
 import math
-import pathlib
+import os
 
 import numpy as np
 
-from ..measured.samples import Samples, bytes_of, read_samples
-from ..measured.sheet import read_sheet
+from ..measured.samples import Samples, read_samples
 from ..needs import FileError, InputError
 
-PATHS = {"centre": ("centre", "center", "centre of mass", "center of mass"), "speed": ("speed", "velocity")}  # names of columns
 CLOSE = 0.02  # outermost markers are at the ends of the body, but for this part of its length
 
 
@@ -20,9 +18,10 @@ class Data:
 
     kind: "markers", the x of markers [length]; "strain" [1]; "centre", the x of the centre of mass [length]; or "speed", of
     that [length/time]. t: times of the run [time], increasing; places: on the body [length], of markers and strain, else empty;
-    values: array [time, place]. deviation: the standard deviation of a number, None if it is not known. has_origin: is x of the
+    values: array [time, place]. deviation: the standard deviation of a number, None if it is not known; relative: that of each number over
+    this one, [time, place], 1 where all have the same. has_origin: is x of the
     run known where the data count it from? place_deviation: of the places of markers [length]; 0: they are known, inf: they are
-    free. names: of the places.
+    free. names: of the places. notes: sentences on what a file has in another order.
     """
     kind: str
     t: np.ndarray
@@ -32,6 +31,11 @@ class Data:
     has_origin: bool = True
     place_deviation: float = 0.0
     names: list = dataclasses.field(default_factory=list)
+    notes: list = dataclasses.field(default_factory=list)
+    relative: np.ndarray = None
+
+    def __post_init__(self):
+        self.relative = np.ones(self.values.shape) if self.relative is None else self.relative
 
     @property
     def is_there(self):
@@ -63,22 +67,25 @@ class Data:
 def read_data(data, parameters, **reading):
     """The Data of a file or of Samples, as section Fit of a scene says.
 
-    data: a name, or Samples, whose quantity may be "centre" or "speed" too. parameters: all entries of the scene. reading: options
+    data: a name, or Samples. parameters: all entries of the scene. reading: options
     of measured.read_samples(). Raises InputError, also for a file that cannot be read, as for those of other entries.
     """
+    if not isinstance(data, (str, os.PathLike, Samples)):
+        raise InputError(f"the data are of the type {type(data).__name__}, but the name of a file or measured.Samples(quantity, s, t, values) is expected")
     try:
-        samples = data if isinstance(data, Samples) else _read(data, reading)
+        samples = data if isinstance(data, Samples) else read_samples(data, **reading)
     except FileError as error:
         raise InputError(str(error)) from None
     kind = {"x": "markers", "strain": "strain", "centre": "centre", "speed": "speed"}.get(samples.quantity)
     name = "the data" if isinstance(data, Samples) else f'"{data}"'
+    _require_sound(samples, name)
     if kind is None:
         raise InputError(f"{name} has samples of {samples.quantity}, but markers, strain, or columns t and centre or speed are expected")
     length, end = parameters["Body/Length"], parameters["Time/End time"]
     places, free = np.array(samples.s, dtype=float), 0.0
     if kind == "markers":
         places, free = _places_of_markers(samples, parameters, length, name)
-    elif kind in PATHS:
+    elif kind in ("centre", "speed"):
         places = np.empty(0)
     elif places[0] < 0 or places[-1] > length * (1 + 1e-9):
         raise InputError(f"{name} has strain from s = {places[0]:g} to {places[-1]:g}, but places from 0 to Body/Length = {length:g} are "
@@ -88,28 +95,43 @@ def read_data(data, parameters, **reading):
     if t[0] < -1e-9 * end or t[-1] > end * (1 + 1e-9):
         raise InputError(f"{name} has times from {t[0]:g} to {t[-1]:g} of the run, but from 0 to Time/End time = {end:g} are expected; see "
                          "Fit/First time and \"--unit-of-t\"")
-    deviation = parameters["Fit/Standard deviation"]
-    if 0 < free < math.inf and deviation == "automatic":
+    deviation, relative = _deviation_of(samples, parameters["Fit/Standard deviation"], name)
+    if 0 < free < math.inf and deviation is None:
         raise InputError('"Fit/Place deviation" is set, but not "Fit/Standard deviation", without which the two cannot be weighed; it is expected')
-    return Data(kind, np.clip(t, 0, end), np.clip(places, 0, length), samples.values, None if deviation == "automatic" else float(deviation),
-                kind not in ("markers", "centre") or parameters["Fit/Origin"] != "unknown", free, list(samples.names))
+    return Data(kind, np.clip(t, 0, end), np.clip(places, 0, length), samples.values, deviation,
+                kind not in ("markers", "centre") or parameters["Fit/Origin"] != "unknown", free, list(samples.names), list(samples.notes), relative)
 
 
-def _read(name, reading):
-    """Samples; of a path or a speed with one place."""
-    if not str(name).lower().endswith((".h5", ".hdf5")):
-        sheet = read_sheet(bytes_of(pathlib.Path(name)), str(name), reading.get("decimal", ""))
-        names = [one.lower() for one in sheet.names]
-        for kind, known in PATHS.items():
-            column = next((i for i, one in enumerate(names) if one in known), None)
-            if column is not None and len(names) > 1:
-                if "t" not in names and "time" not in names:
-                    raise InputError(f'"{name}" has the columns {", ".join(sheet.names)}, but t is expected beside {sheet.names[column]}')
-                t = sheet.times(names.index("t" if "t" in names else "time"))
-                if np.any(np.isnan(t)) or np.any(np.diff(t) <= 0):
-                    raise InputError(f'"{name}" has times that are missing or do not grow, but growing times are expected')
-                return Samples(kind, np.zeros(1), t, sheet.column(column)[:, None])
-    return read_samples(name, **reading)
+def _deviation_of(samples, wanted, name):
+    """That of all numbers and, [time, place], that of each over it; (None, None) if it is not known. wanted: Fit/Standard deviation."""
+    if samples.deviation is None:
+        return (None if wanted == "automatic" else float(wanted)), None
+    if wanted != "automatic":
+        raise InputError(f'"Fit/Standard deviation" is {wanted:g}, but {name} have a deviation for each number; one of the two is expected')
+    each, there = np.asarray(samples.deviation, dtype=float), ~np.isnan(samples.values)
+    if each.shape != samples.values.shape:
+        raise InputError(f"{name} have deviations of the shape {each.shape}, but {samples.values.shape}, that of the values, is expected")
+    wrong = there & ~((each > 0) & np.isfinite(each))
+    if np.any(wrong):
+        j, i = np.argwhere(wrong)[0]
+        raise InputError(f"{name} have the deviation {each[j, i]:g} at t = {samples.t[j]:g}, but a number above 0 is expected for each that was measured")
+    common = float(np.mean(each[there] ** -2.0) ** -0.5) if np.any(there) else 1.0
+    return common, np.where(there, each / common, 1.0)
+
+
+def _require_sound(samples, name):
+    """Raises InputError for Samples whose shapes, times or numbers cannot be those of data."""
+    t, values = np.asarray(samples.t, dtype=float), np.asarray(samples.values, dtype=float)
+    if t.ndim != 1 or values.shape != (len(t), len(samples.s)):
+        raise InputError(f"{name} have values of the shape {values.shape}, but {(np.size(t), len(samples.s))}, [time, place], is expected")
+    falls = np.flatnonzero(~(np.diff(t) > 0))
+    if not np.all(np.isfinite(t)) or len(falls):
+        where = f"{t[falls[0] + 1]:g} behind {t[falls[0]]:g}" if len(falls) else f"{t[~np.isfinite(t)][0]:g}"
+        raise InputError(f"{name} have the time {where}, but times that ascend are expected")
+    if np.any(np.isinf(values)):
+        j, i = np.argwhere(np.isinf(values))[0]
+        place = f"marker {samples.names[i] if samples.names else i + 1}, " if samples.quantity == "x" else f"s = {samples.s[i]:g}, " if values.shape[1] > 1 else ""
+        raise InputError(f"{name} have {values[j, i]:g} at {place}t = {t[j]:g}, but finite numbers, or NaN for a gap, are expected")
 
 
 def _places_of_markers(samples, parameters, length, name):

@@ -24,6 +24,7 @@ class Problem:
         self.model, self.data = model, data
         self.width = model.high - model.low
         self.scale = data.deviation or float(np.nanstd(data.values - np.nanmean(data.values, axis=0))) or 1.0
+        self.scales = self.scale * data.relative[data.is_there]  # [datum]
         self.n_rows = len(data.places) if 0 < data.place_deviation < math.inf else 0  # that hold places fast
         self.last = None  # scaled variables, values of the last run, and what the nuisance cannot change
         self.least = (math.inf, None, data.places)  # sum of squares that was seen, with its scaled variables and places
@@ -36,7 +37,7 @@ class Problem:
             if np.all(np.isfinite(values)):
                 matrix, rows = self.data.nuisance(stretch)
                 if matrix.shape[1]:
-                    basis, sizes, _ = np.linalg.svd(np.vstack([matrix / self.scale, rows]), full_matrices=False)
+                    basis, sizes, _ = np.linalg.svd(np.vstack([matrix / self.scales[:, None], rows]), full_matrices=False)
                     basis = basis[:, sizes > 1e-9 * sizes[0]]
             self.last = (np.array(z), values, basis)
         return self.last[1:]
@@ -47,7 +48,7 @@ class Problem:
 
     def scaled(self, values, basis):
         """Differences [time, place] as residuals, without what origin and places can take up; behind them those of the places."""
-        rest = np.concatenate([values[self.data.is_there] / self.scale, np.zeros(self.n_rows)])
+        rest = np.concatenate([values[self.data.is_there] / self.scales, np.zeros(self.n_rows)])
         return rest if basis is None else rest - basis @ (basis.T @ rest)
 
     def residuals(self, z):
@@ -101,7 +102,8 @@ class Problem:
         data, length = self.data, self.model.parameters["Body/Length"]
         values, stretch = self.model(self.real(z))
         matrix, _ = data.nuisance(stretch)
-        shifts = np.linalg.lstsq(matrix, (data.values - values)[data.is_there], rcond=1e-9)[0][-len(data.places):]
+        weights = 1 / data.relative[data.is_there]
+        shifts = np.linalg.lstsq(matrix * weights[:, None], (data.values - values)[data.is_there] * weights, rcond=1e-9)[0][-len(data.places):]
         before, data.places = data.places, np.clip(data.places + shifts, 0, length)
         data.places = np.maximum.accumulate(data.places + 1e-9 * length * np.arange(len(shifts)))  # in their order
         data.places = np.minimum(data.places, length * (1 - 1e-9 * np.arange(len(shifts))[::-1]))
@@ -131,7 +133,10 @@ def find(model, progress=lambda text: None, kept=None, workers=1):
     try:
         z, ended = best_of_starts(problem, kept, workers, progress)
         for refinement in range(MOST_REFINEMENTS + 1):
-            best = _looked_at(problem, z, ended)
+            if not ended:
+                problem.go_to_least()
+                return unfinished(problem, table_of_starts(problem, kept), is_stopped=False)
+            best = _looked_at(problem, z)
             if best.worst <= SHARE or refinement == MOST_REFINEMENTS or model.accuracy <= LEAST_ACCURACY:
                 break
             model.accuracy = max(model.accuracy * min(0.3, 0.3 * SHARE / best.worst), LEAST_ACCURACY)
@@ -141,10 +146,10 @@ def find(model, progress=lambda text: None, kept=None, workers=1):
         return described(problem, best, table_of_starts(problem, kept))
     except KeyboardInterrupt:
         starts = table_of_starts(problem, kept)
-        raise Interrupted(unfinished(problem, starts) if problem.go_to_least() else None) from None
+        raise Interrupted(unfinished(problem, starts, is_stopped=True) if problem.go_to_least() else None) from None
 
 
-def _looked_at(problem, z, ended):
+def _looked_at(problem, z):
     """Where a search has ended, with one more step."""
     data, jacobian = problem.data, problem.jacobian(z, both_sides=True)
     z = problem.improved(z, jacobian)
@@ -152,7 +157,7 @@ def _looked_at(problem, z, ended):
     freedom = int(data.is_there.sum()) - len(z) - data.n_constants
     deviation = 1.0 if data.deviation else max(math.sqrt(float(residual @ residual) / freedom), LEAST_NOISE)
     loose, members = undetermined_directions(jacobian / deviation)
-    return Best(z, jacobian, deviation, _numerical_error(problem, z, jacobian), loose, members, ended)
+    return Best(z, jacobian, deviation, _numerical_error(problem, z, jacobian), loose, members)
 
 
 def _numerical_error(problem, z, jacobian):

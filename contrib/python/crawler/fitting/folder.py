@@ -23,6 +23,33 @@ OWN = (*EARLY, INPUTS, "fitted.prm", "residuals.csv", "summary.json", "fit.png",
 FREE = ("Fit/Starts", "Fit/Data")  # entries that --resume does not compare; of data only the numbers count
 
 
+def require_usable(path, kind, marks, resume, overwrite):
+    """Raises InputError if a folder is not free, not that of a fit or comparison (kind), or not to be replaced. marks: its file that tells, and
+    others that are there before."""
+    if path.exists() and not path.is_dir():
+        raise InputError(f'"{path}" is a file, but a folder is expected')
+    names = {file.name for file in path.iterdir()} - {LOCK} if path.exists() else set()
+    is_own = marks[0] in names or names <= {*marks[1:], *(f"{name}.part" for name in marks)}
+    if resume and not is_own:
+        raise InputError(f'"{path}" has no {kind} that could be resumed; another folder is expected for --output, or --overwrite')
+    if overwrite and not is_own:
+        raise InputError(f'"{path}" is not the folder of a {kind}, so "--overwrite" replaces nothing in it; another folder is expected')
+    if names and not resume and not overwrite:
+        if is_own and not is_finished(path):
+            raise InputError(f'the output folder "{path}" has a {kind} that was broken off; --resume goes on with it (--overwrite begins '
+                             "anew, --output gives another folder)")
+        raise InputError(f'the output folder "{path}" is not empty; give another one with --output, or --overwrite to replace the '
+                         "results in it")
+
+
+def is_finished(path):
+    """Has what was done in a folder come to its end?"""
+    try:
+        return json.loads((path / "summary.json").read_text(encoding="utf-8"))["status"] != "stopped"
+    except (OSError, LookupError, TypeError, ValueError):
+        return False
+
+
 class Folder:
     """A folder in which a fit is done."""
 
@@ -33,30 +60,10 @@ class Folder:
 
     def require_usable(self):
         """Raises InputError if the folder is not free, not that of a fit, or not to be replaced."""
-        if self.path.exists() and not self.path.is_dir():
-            raise InputError(f'"{self.path}" is a file, but a folder is expected')
-        names = {file.name for file in self.path.iterdir()} - {LOCK} if self.path.exists() else set()
-        is_fit = INPUTS in names or names <= {*EARLY, *(f"{name}.part" for name in (*EARLY, INPUTS))}
         links = [name for name in (LOCK, "starts", *OWN) if (self.path / name).is_symlink()]
         if links:
             raise FileError(f'"{self.path / links[0]}" is a link, but one of the program\'s own is expected')
-        if self.resume and not is_fit:
-            raise InputError(f'"{self.path}" has no fit that could be resumed; another folder is expected for --output, or --overwrite')
-        if self.overwrite and not is_fit:
-            raise InputError(f'"{self.path}" is not the folder of a fit, so "--overwrite" replaces nothing in it; another folder is expected')
-        if names and not self.resume and not self.overwrite:
-            if is_fit and not self.is_finished():
-                raise InputError(f'the output folder "{self.path}" has a fit that was broken off; --resume goes on with it (--overwrite begins '
-                                 "anew, --output gives another folder)")
-            raise InputError(f'the output folder "{self.path}" is not empty; give another one with --output, or --overwrite to replace the '
-                             "results in it")
-
-    def is_finished(self):
-        """Has the fit that was done here come to its end?"""
-        try:
-            return json.loads((self.path / "summary.json").read_text(encoding="utf-8"))["status"] != "stopped"
-        except (OSError, LookupError, TypeError, ValueError):
-            return False
+        require_usable(self.path, "fit", (INPUTS, *EARLY), self.resume, self.overwrite)
 
     def begin(self, name, model):
         """Makes and locks the folder; the starts that are kept there. name: of the parameter file. Raises InputError if the
@@ -178,9 +185,9 @@ def _text(value):
 
 
 def _digest(data):
-    """Of all numbers that were measured, and where they are."""
+    """Of all numbers that were measured, where they are, and their deviations."""
     digest = hashlib.sha256(data.kind.encode())
-    for values in (data.t, data.places, data.values):
+    for values in (data.t, data.places, data.values, data.relative * (data.deviation or 0)):
         digest.update(np.ascontiguousarray(values, dtype=float).tobytes())
     return digest.hexdigest()
 

@@ -11,6 +11,7 @@ from ..needs import InputError
 from ..results import parameters_of
 
 STEP = 1e-4  # of differences, relative to a value
+LENGTH = "Body/Length"
 
 
 @dataclasses.dataclass
@@ -33,7 +34,22 @@ class Model:
         self.names = [one[0] for one in variables]
         require_enough(data, self.names)
         self.low, self.high, self.start = np.array([one[1:] for one in variables]).T
+        self._require_seen()
         self.accuracy, self.n_runs, self.problem, self.bound = None, 0, "", 0.0
+
+    def _require_seen(self):
+        """Raises InputError for variables that data cannot see, or with which a body ends before its data do."""
+        if "Time/End time" in self.names:
+            raise InputError('"Fit/Variables" has "Time/End time", but the data do not depend on it: all of them are measured before; another '
+                             "variable is expected")
+        if LENGTH in self.names and len(self.data.places):
+            j, last, is_marker = self.names.index(LENGTH), float(self.data.places[-1]), self.data.kind == "markers"
+            if self.low[j] < last:
+                what = "the outermost marker is" if is_marker else "there is strain"
+                advice = (' (with "Fit/Markers at" = first it is where the body of the scene ends: a list of places)' if self.parameters["Fit/Markers at"] == "first"
+                          else ' (or other places in "Fit/Markers at")') if is_marker else ""
+                raise InputError(f'"Fit/Variables" has "{LENGTH}" from {self.low[j]:g} to {self.high[j]:g}, but {what} at {last:g}, which is then beyond the '
+                                 f"body; a range that begins at {last:g} or more is expected{advice}")
 
     def overrides(self, x):
         """Entries with these values; a list as a whole."""
@@ -72,7 +88,7 @@ class Model:
             return fields["stretch"] - 1, None
         if data.kind == "speed":
             return _mean(fields["velocity"]), None
-        return _mean(fields["displacement"]) + self.parameters["Body/Length"] / 2, None
+        return _mean(fields["displacement"]) + (x[self.names.index(LENGTH)] if LENGTH in self.names else self.parameters[LENGTH]) / 2, None
 
     def jacobian(self, x, value=None):
         """Derivatives [time, place, variable]: differences on both sides, or, if value is the model at x, on one."""

@@ -10,9 +10,11 @@ from .uncertainty import LEVELS, Profile, correlation_in_time, covariance, curva
 
 BIASED = 0.2          # bias, of the deviation, that is said
 SHARE = 0.1           # largest numerical error, of the statistical one
-MOST_STEPS = 60       # of a search
+MOST_STEPS = 1000     # of a search, which takes some hundred along a curved valley
 NEAR = 1e-3           # to a limit, in ranges
 UNLIKELY = 1e-3       # probability of chi-square below which the scene does not fit
+HOPELESS = 1e-6       # the same, below which nothing is said of what the data tell of its variables
+OUTLYING = 1e-4       # probability of a residual as large as the largest
 MUCH = 100            # chi-square per degree of freedom that no noise has
 ALIKE = 5             # correlation of residuals in time, in its own deviations, that is not by chance
 
@@ -49,7 +51,6 @@ class Best:
     numerical: np.ndarray   # [variable], errors; NaN where they are not known
     loose: np.ndarray       # [direction, variable], what the data do not tell
     members: np.ndarray     # [direction, variable], which variables belong to it
-    ended: bool             # in order
 
     @property
     def involved(self):
@@ -68,8 +69,9 @@ class Best:
         return float(np.max(self.numerical[told] / np.maximum(self.spread[told], 1e-300), initial=0))
 
 
-def unfinished(problem, starts):
-    """The Fit of a search that was interrupted: the least sum of squares that was seen, without deviations."""
+def unfinished(problem, starts, is_stopped):
+    """The Fit of a search that was interrupted (is_stopped) or did not end: the least sum of squares that was seen, with values and
+    without deviations, as derivatives say nothing of a minimum that was not reached."""
     model, data = problem.model, problem.data
     squares, z, _ = problem.least
     values, grid = problem.real(z), np.full(data.values.shape, np.nan)
@@ -79,11 +81,14 @@ def unfinished(problem, starts):
                         "at_limit": ""}
                  for name, value, low, high in zip(model.names, values, model.low, model.high)}
     goodness = {"kind": data.kind, "n_data": int(data.is_there.sum()), "n_variables": len(z), "n_constants": data.n_constants}
-    found = {"status": "stopped", "reason": "signal", "message": f"stopped by a signal after {len(starts)} of "
-             f"{int(model.parameters['Fit/Starts'])} starts; --resume goes on", "variables": variables, "undetermined": [], "notes": [],
+    message = (f"stopped by a signal after {len(starts)} of {int(model.parameters['Fit/Starts'])} starts; --resume goes on" if is_stopped else
+               f"the search did not end within {MOST_STEPS} steps: the values are those so far, and not the best ones; a start that is nearer, "
+               "narrower ranges or fewer variables are expected")
+    found = {"status": "stopped" if is_stopped else "failed", "reason": "signal" if is_stopped else "no_convergence", "message": message,
+             "variables": variables, "undetermined": [], "notes": [*data.notes, *([] if is_stopped else [message])],
              "goodness": goodness, "residuals": math.sqrt(squares / goodness["n_data"]) * problem.scale, "accuracy": model.accuracy,
              "n_runs": model.n_runs, "starts": starts}
-    return Fit(found, data, data.values + grid * problem.scale, dict(one.split("=", 1) for one in model.overrides(values)), None)
+    return Fit(found, data, data.values + grid * problem.scale * data.relative, dict(one.split("=", 1) for one in model.overrides(values)), None)
 
 
 def described(problem, best, starts):
@@ -96,15 +101,23 @@ def described(problem, best, starts):
     n, k = goodness["n_data"], len(values) + data.n_constants + (0 if data.deviation else 1)
     likelihood = goodness["chi_square"] if data.deviation else n * math.log(max(float(residual @ residual), 1e-300) * problem.scale ** 2 / n)
     matrix = covariance(best.jacobian)
-    found = {"status": "finished" if best.ended else "failed", "reason": "converged" if best.ended else "no_convergence",
-             "message": "" if best.ended else f"the search did not end within {MOST_STEPS} steps", "variables": variables,
-             "undetermined": [in_words(*one, model.names, values, problem.width) for one in zip(best.loose, best.members)],
-             "notes": list(_notes(best, variables, goodness)),
+    found = {"status": "finished", "reason": "converged", "message": "", "variables": variables,
+             "undetermined": list(_untold(problem, best, variables, values)) if goodness["probability"] is None or goodness["probability"] >= HOPELESS else [],
+             "notes": list(_notes(best, variables, goodness, data)),
              "correlation": (matrix / np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))).tolist(), "goodness": goodness,
              "information": {"aic": likelihood + 2 * k, "bic": likelihood + k * math.log(n)},
              "accuracy": model.accuracy, "n_runs": model.n_runs, "starts": starts}
-    return Fit(found, data, data.values + grid * problem.scale, dict(one.split("=", 1) for one in model.overrides(values)),
+    return Fit(found, data, data.values + grid * problem.scale * data.relative, dict(one.split("=", 1) for one in model.overrides(values)),
                matrix * best.deviation ** 2 * np.outer(problem.width, problem.width))
+
+
+def _untold(problem, best, variables, values):
+    """Sentences on what the data do not tell."""
+    for direction, members in zip(best.loose, best.members):
+        yield in_words(direction, members, problem.model.names, values, problem.width)
+    for (name, one), is_involved in zip(variables.items(), best.involved):
+        if not one["determined"] and not is_involved:
+            yield f"the data do not tell {name}: its interval of 95 % reaches both limits of its range"
 
 
 def _variables(problem, best, values):
@@ -120,8 +133,10 @@ def _variables(problem, best, values):
                **{level: None for level in LEVELS}, "profile": [], "from": float(model.low[j]), "to": float(model.high[j]), "determined": is_told,
                "at_limit": "from" if at < NEAR else "to" if at > 1 - NEAR else ""}
         variables[name] = one
-        if is_told:
-            ends, curve = profile.interval(j, spread[j])
+        ends, curve = profile.interval(j, spread[j]) if is_told else (None, None)
+        if is_told and ends["interval_95"] == [None, None]:  # chi-square rises less within the range than its curvature says
+            one.update(value=None, determined=False)
+        elif is_told:
             one["deviation"] = float(spread[j] * width[j])
             one["numerical_error"] = float(best.numerical[j] * width[j]) if math.isfinite(best.numerical[j]) else None
             one["bias"] = float(bias[j] * width[j]) if math.isfinite(bias[j]) else None
@@ -136,28 +151,48 @@ def _goodness(problem, best, residual, grid):
     chi_square, freedom = float(residual @ residual) / best.deviation ** 2, n - len(best.z) - data.n_constants
     return {"kind": data.kind, "n_data": n, "n_variables": len(best.z), "n_constants": data.n_constants, "chi_square": chi_square,
             "degrees_of_freedom": freedom, "probability": probability(chi_square, freedom) if data.deviation else None,
-            "deviation_of_data": best.deviation * problem.scale, "deviation_is_given": data.deviation is not None,
+            "largest_residual": _largest(data, grid / best.deviation), "deviation_of_data": best.deviation * problem.scale, "deviation_is_given": data.deviation is not None,
             "correlation_in_time": correlation_in_time(grid)}
 
 
-def _notes(best, variables, goodness):
-    """Sentences on what is perhaps not meant."""
-    for name, one in variables.items():
-        if one["at_limit"] and one["determined"]:
-            yield f"{name} is at its limit, {one['value']:.6g}: the best value may lie beyond it"
-        if abs(one["bias"] or 0) > BIASED * (one["deviation"] or math.inf):
-            yield (f"of many such data the mean of {name} would be about {abs(one['bias']):.2g} too {'large' if one['bias'] > 0 else 'small'}, as the run "
-                   "is not linear in it; the interval allows for that")
+def _largest(data, grid):
+    """The largest of residuals [time, place] in deviations, the time of the run, and the name of the marker or s of the place."""
+    j, i = np.unravel_index(np.nanargmax(np.abs(grid)), grid.shape)
+    place = None if not len(data.places) else data.names[i] if data.kind == "markers" and len(data.names) > i else f"{data.places[i]:.6g}"
+    return {"deviations": float(grid[j, i]), "t": float(data.t[j]), "place": place}
+
+
+def _does_not_fit(goodness):
+    """Whether the scene does not fit the data at all, as a sentence with the worst of them; nothing if it may."""
     chi_square, freedom, p_value = (goodness[key] for key in ("chi_square", "degrees_of_freedom", "probability"))
     if p_value is not None and p_value < UNLIKELY:
         units = ' (units? see "--unit-of-s" and "--unit-of-t")' if chi_square > MUCH * freedom else ""
         yield (f"the scene does not fit the data: chi-square is {chi_square:.4g} with {freedom} degrees of freedom (probability {p_value:.1g}), so "
-               f"the deviations are too small; another scene, or another standard deviation, is expected{units}")
+               f"the deviations are too small; {_largest_in_words(goodness)}; another scene, or another standard deviation, is expected{units}")
+    elif goodness["n_data"] * probability(goodness["largest_residual"]["deviations"] ** 2, 1) < OUTLYING:
+        yield f"{_largest_in_words(goodness)}: more than noise gives; is it an outlier?"
+
+
+def _largest_in_words(goodness):
+    """The largest residual, where it is."""
+    one = goodness["largest_residual"]
+    place = {"markers": f"marker {one['place']}, ", "strain": f"s = {one['place']}, "}.get(goodness["kind"], "")
+    return f"the largest residual is {abs(one['deviations']):.3g} deviations, at {place}t = {one['t']:.6g} of the run"
+
+
+def _notes(best, variables, goodness, data):
+    """Sentences on what is perhaps not meant."""
+    yield from _does_not_fit(goodness)
+    yield from data.notes
+    for name, one in variables.items():
+        if one["at_limit"] and one["determined"]:
+            yield f"{name} is at the limit of its range, {one[one['at_limit']]:g}: the best value may lie beyond it"
+        if abs(one["bias"] or 0) > BIASED * (one["deviation"] or math.inf):
+            yield (f"of many such data the mean of {name} would be about {abs(one['bias']):.2g} too {'large' if one['bias'] > 0 else 'small'}, as the run "
+                   "is not linear in it; the interval allows for that")
     if goodness["correlation_in_time"] > ALIKE / math.sqrt(goodness["n_data"]):
         yield (f"residuals that are neighbours in time are alike (correlation {goodness['correlation_in_time']:.2g}): the scene does not describe "
                "all that the data have, or their errors are not independent, and the deviations are too small")
-    if not best.ended:
-        yield f"the search did not end within {MOST_STEPS} steps"
     if not best.worst <= SHARE:
         yield ("the numerical error is not known" if math.isnan(best.worst) else
                f"the numerical error is up to {best.worst:.2g} of the statistical one")

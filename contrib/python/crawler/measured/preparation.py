@@ -75,6 +75,9 @@ def prepare(samples, settings, period=None):
     settings = dataclasses.replace(settings, period=f"{period:.17g}" if period else str(settings.period or ""), markers_at=",".join(f"{float(s):.17g}" for s in
                                    settings.markers_at) if is_list else settings.markers_at)
     settings.require_sound()
+    if samples.quantity not in ("m", "strain", "x"):
+        raise InputError(f'the samples are the {"path" if samples.quantity == "centre" else samples.quantity} of the centre of mass, which "crawler fit" reads, '
+                         "but samples of m or strain, or markers, are expected for a table")
     if len(samples.s) < LEAST or len(samples.t) < LEAST:
         raise InputError(f'there are {len(samples.s)} different {"markers" if samples.quantity == "x" else "places s"} and {len(samples.t)} '
                          f"different times, but at least {LEAST} of each are expected for a table")

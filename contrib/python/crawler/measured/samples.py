@@ -10,6 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from ..needs import FileError, InputError
 from .formats import WITH_ANIMALS, Tracks, read_hdf5, tracks_of
+from .paths import factors_of_path, path_in
 from .sheet import read_sheet
 from .units import number_of, unit_factor, unit_of
 
@@ -29,15 +30,19 @@ FRAMES = ("frame", "timestamp", "slice", "slice n°")
 class Samples:
     """What was measured at all points of a grid; a gap is NaN.
 
-    quantity: "m" (active stress [force]), "strain" [1] or "x" (the places of markers [length], from tail to head);
-    s: places [length], or the numbers of the markers, increasing; t: times [time], increasing; values: array [time, place];
-    names: of the markers.
+    quantity: "m" (active stress [force]), "strain" [1], "x" (the places of markers [length], from tail to head), "centre" (the path of the
+    centre of mass [length]) or "speed" (of that [length/time]); s: places [length], or the numbers of the markers, increasing, one
+    number for centre and speed; t: times [time], increasing; values: array [time, place];
+    names: of the markers. notes: sentences on markers and times that the file has in another order. deviation: the standard deviation of
+    each value, an array [time, place], in the unit of the values; None if it is not known.
     """
     quantity: str
     s: np.ndarray
     t: np.ndarray
     values: np.ndarray
     names: list = dataclasses.field(default_factory=list)
+    notes: list = dataclasses.field(default_factory=list)
+    deviation: np.ndarray = None
 
 
 def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", unit_of_m="", shift_s="", shift_t="",
@@ -50,7 +55,7 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
     head: the marker at the head. confidence: markers that are less certain are gaps. decimal: "comma" or "point", where a
     comma may be both. words: a list, gets what was done, in sentences. Raises InputError and FileError.
     """
-    words = [] if words is None else words
+    words, notes = [] if words is None else words, []
     unit_of_s, unit_of_t, unit_of_m, shift_s, shift_t = (str(one) for one in (unit_of_s, unit_of_t, unit_of_m, shift_s, shift_t))
     if quantity and quantity not in QUANTITIES:
         raise InputError(f'"--quantity" is "{quantity}", but "m", "strain", "stretch" or "markers" is expected')
@@ -62,8 +67,12 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
         sheet = read_sheet(data, str(path), decimal)
         is_renamed = any(not part.strip().startswith("t=") for part in columns.split(",") if part)
         found = None if is_renamed or quantity not in ("", "markers") else tracks_of(sheet, animal)
+        if not found and not quantity and not columns and (path_found := path_in(sheet)):
+            return _samples_of_path(path_found, sheet, unit_of_s, unit_of_t, shift_t, words, {
+                "unit-of-m": unit_of_m, "shift-s": shift_s, "animal": animal, "head": head, "confidence": confidence})
         found, units = (found, _units_of(sheet, found)) if found else _generic(sheet, quantity, columns)
         words += sheet.words
+        notes += sheet.notes
     if animal and not (isinstance(found, Tracks) and found.format in WITH_ANIMALS):
         raise InputError(f'"--animal" is "{animal}", but "{path}" does not tell animals apart')
     factor_s, factor_t = (unit_factor(unit, wanted, option) if wanted else 1.0 for unit, wanted, option in
@@ -72,13 +81,15 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
         if unit_of_m or quantity not in ("", "markers"):
             raise InputError(f'"{path}" has tracks of markers, but {"--unit-of-m" if unit_of_m else "--quantity " + quantity} is for '
                              "samples of stress or strain")
-        samples = _along_body(found, head, confidence, str(path), words)
+        samples = _along_body(found, head, confidence, str(path), words, notes)
     else:
         s, t, values, column = found
         if head or confidence:
             raise InputError('"--head" and "--confidence" are for markers, which this file has not')
         samples = Samples("m" if column == "m" else "strain", s, t, values)
         _require_increasing(samples, str(path))
+    samples.notes = notes
+    words += notes
     words.append(f"{len(samples.s)} {'markers' if samples.quantity == 'x' else 'places'} x {len(samples.t)} times, "
                  f"{np.isnan(samples.values).sum()} gaps")
     samples.t = _converted(samples.t, "t", factor_t, shift_t, words)
@@ -97,6 +108,22 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
         raise InputError("a unit is negative, but only that of m may be")
     if isinstance(found, Tracks) and found.counts_frames and not unit_of_t:
         words.append('t counts frames; "--unit-of-t 1/30" turns those of a film of 30 frames a second into seconds')
+    return samples
+
+
+def _samples_of_path(found, sheet, unit_of_s, unit_of_t, shift_t, words, others):
+    """Samples of what path_in() has found. others: {option: value} that only samples along a body have."""
+    kind, t, values, deviation, unit, unit_t = found
+    for option, value in others.items():
+        if value:
+            raise InputError(f'"--{option}" is for samples along a body, but "{sheet.name}" has the {"path" if kind == "centre" else kind} of its centre of mass')
+    factor, factor_t = factors_of_path(kind, unit, unit_t, unit_of_s, unit_of_t)
+    words += [*sheet.words, f"{kind} at {len(t)} times, {np.isnan(values).sum()} gaps"]
+    samples = Samples(kind, np.zeros(1), _converted(t, "t", factor_t, shift_t, words), _converted(values, kind, factor, "", words),
+                      deviation=None if deviation is None else deviation * factor)
+    _require_possible(samples, sheet.name)
+    if factor < 0 or factor_t < 0:
+        raise InputError("a unit is negative, but only that of m may be")
     return samples
 
 
@@ -263,7 +290,7 @@ def _on_grid(sheet, s, t, values, lines, kind, names=None):
         if np.any(missing := np.isnan(axis)):
             raise InputError(f'row {lines[int(np.argmax(missing))]} of "{sheet.name}" has no {name}, but only what is measured may have '
                              "gaps")
-    (s, i), (t, j) = (_distinct(axis) for axis in (s, t))
+    in_file, (s, i), (t, j) = t, _distinct(s), _distinct(t)
     of = "markers" if kind == "marker" else "places s"
     if len(s) * len(t) > MOST_GAPS * len(values):
         raise InputError(f'"{sheet.name}" has {len(values)} samples at {len(s)} different {of} and {len(t)} different times, but most '
@@ -278,9 +305,27 @@ def _on_grid(sheet, s, t, values, lines, kind, names=None):
         more = len(set(lines[again])) - 1
         raise InputError(f'row {lines[second]} of "{sheet.name}" gives {kind} = {name}, t = {t[j[second]]:g} a second time, after row '
                          f'{before}{f", as {more} more rows do" if more else ""}')
+    by_place = np.argsort(i, kind="stable")  # the times of each place as the file has them
+    falls = (np.diff(j[by_place]) < 0) & (np.diff(i[by_place]) == 0)
+    note_fallen_times(in_file[by_place], falls, sheet.notes, lines[by_place])
     grid = np.full(len(s) * len(t), np.nan)
     grid[point] = values
     return s, t, grid.reshape(len(t), len(s))
+
+
+def note_fallen_times(t, falls, notes, lines=None):
+    """Adds a sentence to the notes if times, as the file has them, are smaller than the ones before them. falls: [time - 1], where;
+    lines: of the file."""
+    if not np.any(falls):
+        return
+    t_before, t_here = t[:-1][falls], t[1:][falls]
+    k = int(np.argmax(t_before - t_here))
+    n = len(set(t_here))
+    where = "" if lines is None or len(set(lines[:-1][falls]) & set(lines[1:][falls])) else f" in row {lines[1:][falls][k]}"
+    note = (f"times do not ascend in the file: t = {t_here[k]:g}{where} stands behind {t_before[k]:g}"
+            f"{f', and {n - 1} more times so' if n > 1 else ''}; they are put in order")
+    if note not in notes:
+        notes.append(note)
 
 
 def _distinct(values):
@@ -298,8 +343,9 @@ def _require_increasing(samples, name):
             raise InputError(f'"{axis}" of "{name}" does not increase, but increasing numbers are expected')
 
 
-def _along_body(tracks, head, confidence, name, words):
-    """Samples of markers from tail to head: places along the body, of which the head has the largest."""
+def _along_body(tracks, head, confidence, name, words, notes):
+    """Samples of markers from tail to head: places along the body, of which the head has the largest. notes: gets what is put in
+    another order."""
     x, y, names = tracks.x.copy(), tracks.y, list(tracks.names)
     if tracks.format not in ("wide", "long"):
         words.append(f"{tracks.format}: {len(names)} markers, {', '.join(names[:12])}{', ...' if len(names) > 12 else ''}")
@@ -318,6 +364,7 @@ def _along_body(tracks, head, confidence, name, words):
     if np.any(nowhere := np.all(np.isnan(x), axis=0)):
         raise InputError(f'the marker {names[int(np.argmax(nowhere))]} of "{name}" has no place at any time')
     order = np.argsort(tracks.t, kind="stable")
+    note_fallen_times(tracks.t, np.diff(tracks.t) < 0, notes)
     t = tracks.t[order]
     if np.any(np.diff(t) <= 0) or np.any(np.isnan(t)):
         raise InputError(f'"{name}" has the time {t[int(np.argmax(np.diff(t) <= 0))]:g} a second time, but different times are expected')
@@ -327,9 +374,9 @@ def _along_body(tracks, head, confidence, name, words):
         x, y = np.where(gaps, np.nan, x), np.where(gaps, np.nan, y[order])
         if (chain := _shorter_chain(x, y)) is not None:
             x, y, names = x[:, chain], y[:, chain], [names[i] for i in chain]
-            words.append(f"the markers put in order along the body: {', '.join(names)}")
+            notes.append(f"the markers put in order along the body: {', '.join(names)}")
         x = _arc_lengths(t, x, y, words)
-    x, names = _from_tail_to_head(x, names, head, words)
+    x, names = _from_tail_to_head(x, names, head, words, notes)
     return Samples("x", np.arange(1.0, len(names) + 1), t, x, names)
 
 
@@ -377,13 +424,13 @@ def _arc_lengths(t, x, y, words):
     return np.where(gaps, np.nan, arc + (np.nanmean(along, axis=1) - np.nanmean(arc, axis=1))[:, np.newaxis])
 
 
-def _from_tail_to_head(x, names, head, words):
+def _from_tail_to_head(x, names, head, words, notes):
     """The markers in the order of their places; with the head at the largest x."""
     together = ~np.any(np.isnan(x), axis=1)
     order = np.argsort(np.nanmean(x[together] if together.any() else x, axis=0), kind="stable")
     if not np.array_equal(order, np.arange(len(names))):
         turned = np.array_equal(order[::-1], np.arange(len(names)))
-        words.append("the last marker lies at the smallest x, so it is the first from the tail: the order is turned round" if turned
+        notes.append("the last marker lies at the smallest x, so it is the first from the tail: the order is turned round" if turned
                      else f"the markers put in order along the body: {', '.join(names[i] for i in order)}")
     x, names = x[:, order], [names[i] for i in order]
     if not head and names[0].lower() in HEADS or names[-1].lower() in TAILS:
@@ -393,6 +440,6 @@ def _from_tail_to_head(x, names, head, words):
         if names[0] != head:
             raise InputError(f'"--head" is "{head}", which lies between {names[0]} and {names[-1]}, but one of these two is expected')
         x, names = -x[:, ::-1], names[::-1]
-        words.append(f"the head {head} lies at the smallest x: x is turned round, so that it points from tail to head")
+        notes.append(f"the head {head} lies at the smallest x: x is turned round, so that it points from tail to head")
     words.append(f"the head is marker {names[-1]}" + ("" if head else f', as its x is the largest; "--head {names[0]}" would be the other'))
     return x, names

@@ -38,6 +38,7 @@ class Sheet:
     lines: list   # the number of each row in the file, from 1
     comma: str    # what a comma in a number is: "decimal", "thousands" or "" (none)
     words: list   # what was found, for the report
+    notes: list   # what stands in another order than it should
 
     @property
     def names(self):
@@ -202,7 +203,7 @@ def read_sheet(data, name, decimal=""):
     rows = [(number, cells_of(line, separator)) for number, line in lines]
     width = len(rows[-1][1])
     whole = [cells for _, cells in rows if len(cells) == width]
-    sheet = Sheet(name, [], [], [], meaning_of_commas(whole[1:] or whole, separator, name, decimal), [])
+    sheet = Sheet(name, [], [], [], meaning_of_commas(whole[1:] or whole, separator, name, decimal), [], [])
 
     # The columns of numbers are those of the last rows; samples begin where all of them have numbers.
     last = whole[max(-20, 1 - len(whole)):] if len(whole) > 1 else whole

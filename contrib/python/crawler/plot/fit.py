@@ -108,7 +108,7 @@ def main():
     """Command line."""
     options = parser(__doc__, "fit.png (of a comparison comparison.png)").parse_args()
     summary = read_summary(options.folder, "the output folder of crawler fit")
-    if "comparison" in summary:
+    if summary.get("comparison"):
         figure = comparison_of(options.folder, summary["comparison"])
         save(figure, options.output or options.folder / "comparison.png", dpi=110, few_colours=True)
         return

@@ -61,6 +61,8 @@ def data_of(folder, kind):
             "summary": summary_in(folder), "parameters": parameters_in(folder, effective, entries),
             "entries": own["numbers"], "units": units_of(entries), "reasons": reasons(), "table": None, "more_runs": []}
     if name == "comparison":
+        if not (data["summary"] or {}).get("comparison"):
+            raise InputError(f"{folder} has no scenes to compare: {(data['summary'] or {}).get('message')}")
         return {**data, "runs": [], "fits": fits_within(folder, data["summary"] or {})}
     if table and (folder / table).exists():
         data["table"] = table_in(folder / table, group) if group else data_of_fit(folder / table, data["summary"] or {})
