@@ -132,7 +132,7 @@ namespace crawler
     declarations.file("Data", data, "the name of a file")
       .means("What was measured: tracks of markers or samples of strain, in a file as "
              "crawler table reads it (doc/measured_data.md); or columns t and centre, the path of the centre of mass, "
-             "or t and speed. The name "
+             "or t and speed, perhaps with a column deviation. The name "
              "counts from the folder of this parameter file; crawler fit --data has another one.");
     declarations.text("Variables", variables, variables_syntax)
       .means("The numbers of the scene that are not known, with their ranges. The values in this file are the first "
@@ -154,9 +154,11 @@ namespace crawler
              "the times in the file are those "
              "of the run.");
     declarations.number("Standard deviation", deviation, positive(), "1")
-      .means("Of one number of the data, in its unit. Automatic: as the data scatter about the best fit; whether the "
-             "scene fits them at all can then "
-             "not be told.");
+      .means(
+        "Of one number of the data, in its unit. Automatic: that which the data have for each number, or else as they "
+        "scatter about the best fit; whether the "
+        "scene fits them at all can then "
+        "not be told.");
     declarations.whole_number("Starts", n_starts, 1, 100000)
       .means("Number of starts: the values in this file, and others at random in the ranges. The best of all is the "
              "result.");
