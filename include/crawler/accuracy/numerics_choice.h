@@ -28,7 +28,7 @@ namespace crawler
     double least_error = 0.;
     /// The active stress is not smooth along the body: finer meshes have errors that are not much smaller.
     bool is_rough = false;
-    /// Errors of a smooth active stress fall slowly with the cells all the same, as pilots measured: fronts of friction.
+    /// Errors of a smooth active stress fall slowly with the cells, as pilots measured: fronts of friction.
     bool is_steep = false;
     /// The user set cells or tolerances.
     bool is_users = false;
