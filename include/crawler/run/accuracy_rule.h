@@ -292,10 +292,8 @@ namespace crawler::accuracy_rule
   {
     /// Residual of the energy balance, relative: in units of Accuracy for each form, and at least.
     inline constexpr double of_accuracy = 10., of_accuracy_in_stretch_form = 300., least_residual = 1e-8;
-    /// The same where the user chose the numerics, and where the active stress jumps at places that move.
-    inline constexpr double residual_of_users = 0.1, residual_of_moving_jumps = 0.2;
-    /// Works of the stretch form that lack more than this, relative to the exchanged work, are not known.
-    inline constexpr double residual_of_known_works = 0.1;
+    /// Where the user chose the numerics; where jumps of the stress move; above which stretch-form works are unknown.
+    inline constexpr double residual_of_users = 0.1, residual_of_moving_jumps = 0.2, residual_of_known_works = 0.1;
     /// Net friction, relative to the absolute one.
     inline constexpr double net_friction = 1e-6;
   } // namespace identities
