@@ -124,7 +124,6 @@ namespace crawler
     }
     if (const auto error = error_bound(result, "stress_power"); error && !is_wanted)
       tolerance = std::max(tolerance, *error / result.energy_balance->exchanged_work);
-    std::string problem;
     if (!(result.energy_balance->residual() <= tolerance))
     {
       result.time.reason = "ledger_residual";

@@ -212,18 +212,13 @@ namespace crawler
     return rows_done(*rows, table, folder.log());
   }
 
-  std::vector<bool>
-  begin_or_resume(StudyFolder &folder,
-                  const PointTable &table,
-                  const ParameterFile &file,
-                  const SweepPoints &points,
-                  const std::string &command_line)
+  PlannedRows
+  planned_rows(const PointTable &table, const SweepPoints &points)
   {
-    const PlannedRows plan{points.design().n_points(),
-                           known_columns(table.columns, points.design()),
-                           sweep_inputs(points), // before a file is touched
-                           points.effective()};
-    return begin_or_resume(folder, table, file, plan, command_line);
+    return {points.design().n_points(),
+            known_columns(table.columns, points.design()),
+            sweep_inputs(points),
+            points.effective()};
   }
 
   std::vector<bool>

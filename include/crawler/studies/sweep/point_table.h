@@ -56,6 +56,10 @@ namespace crawler
     std::map<std::string, std::string> more = {}; ///< attributes that are kept with them
   };
 
+  /// Those of a sweep, whose table must outlive them.
+  PlannedRows
+  planned_rows(const PointTable &table, const SweepPoints &points);
+
   /// Makes the table without rows (one process).
   void
   create_table(const std::filesystem::path &folder,
@@ -71,13 +75,6 @@ namespace crawler
                   const ParameterFile &file,
                   const PlannedRows &plan,
                   const std::string &command_line);
-  std::vector<bool>
-  begin_or_resume(StudyFolder &folder,
-                  const PointTable &table,
-                  const ParameterFile &file,
-                  const SweepPoints &points,
-                  const std::string &command_line);
-
   /// What rank 0 finds with @p list, known to all ranks (collective).
   std::vector<bool>
   points_done(MPI_Comm communicator, const std::function<std::vector<bool>()> &list);
