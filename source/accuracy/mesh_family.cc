@@ -237,7 +237,8 @@ namespace crawler
         {
           const Level &before = levels_.back();
           const double change = std::abs(*value(result) - *value(before.result));
-          extrapolate(before.result);
+          if (!result.inversion || !sticks())
+            extrapolate(before.result);
           now.value   = *value(extrapolated_);
           now.work    = work_of(extrapolated_);
           now.change  = change;
@@ -271,6 +272,8 @@ namespace crawler
       {
         const double order = std::log2(before.change / now.change);
         has_order_         = order > least_order;
+        if (now.result.inversion && sticks())
+          return sticking_factor * std::max(now.change, before.change / credited);
         if (!(order > 0.2))
           return 5. * now.change;
         if (order < least_order)
@@ -315,11 +318,7 @@ namespace crawler
       extrapolate(const SimulationResult &coarse)
       {
         if (latest_.inversion)
-        {
           extrapolated_.inversion->t = (4. * latest_.inversion->t - coarse.inversion->t) / 3.;
-          extrapolated_.time.time    = (4. * latest_.time.time - coarse.time.time) / 3.;
-          extrapolated_.displacement = (4. * latest_.displacement - coarse.displacement) / 3.;
-        }
         else
         {
           const SimulationResult *const results[] = {&coarse, &latest_};
@@ -377,13 +376,9 @@ namespace crawler
         else if (latest_.inversion)
         {
           result = extrapolated_;
-          result.time.message =
-            fmt::format("the body inverted: its stretch reached 0 at s = {:.6g}, t = {:.9g}; the model "
-                        "ends there",
-                        result.inversion->s,
-                        result.inversion->t);
           if (std::isfinite(space_error_))
             result.inversion_error = std::max(space_error_, least_part * wanted()) + time_error_;
+          end_before_inversion(result);
           if (!(result.inversion_error.value_or(HUGE_VAL) <= believed * latest_.inversion->t))
           {
             result.time.status  = Status::failed;

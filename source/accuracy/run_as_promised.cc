@@ -126,20 +126,65 @@ namespace crawler
       return answer;
     }
 
+    /// The position form may fail shortly before an end inverts, where the stretch nearby is tiny; the stretch form does
+    /// not mind. Nothing if it gives no answer either.
+    std::optional<Answer>
+    answer_of_stretch_form(const RunParameters &parameters,
+                           const Scene &scene,
+                           const Simulation::Options &options,
+                           const KeepGoing &keep_going)
+    {
+      const DiscretizationParameters &own = parameters.discretization;
+      if (own.formulation != FormulationEntry::automatic || own.mesh != MeshKind::automatic || own.degree ||
+          parameters.time.engine != Engine::automatic || parameters.time.step_control != StepControl::adaptive ||
+          !reason_against_stretch_form(scene).empty())
+        return std::nullopt;
+      RunParameters other              = parameters;
+      other.discretization.formulation = FormulationEntry::stretch;
+      const auto choice                = choose_numerics(MPI_COMM_SELF, other, scene, keep_going);
+      if (!choice)
+        return std::nullopt;
+      Answer answer = answer_of_family(other, scene, *choice, options, keep_going);
+      if (answer.result.time.status == Status::failed)
+        return std::nullopt;
+      return answer;
+    }
+
     /// The answer with the files of one more run. Its output times make its steps a little different; the numbers are
-    /// those that the bounds are for.
+    /// those that the bounds are for. Where the body inverts they are those of the last state in the files.
     Answer
     with_files(Answer answer, const std::function<SimulationResult(const NumericsChoice &)> &simulate)
     {
       if (answer.result.time.status == Status::stopped)
         return answer;
-      const SimulationResult files = simulate(answer.choice);
+      SimulationResult files = simulate(answer.choice);
       if (files.time.status == Status::stopped)
         answer.result = files;
+      else if (files.inversion && answer.result.inversion)
+      {
+        files.inversion       = answer.result.inversion;
+        files.inverted_places = answer.result.inverted_places;
+        files.inversion_error = answer.result.inversion_error;
+        end_before_inversion(files);
+        answer.result = files;
+      }
       answer.result.output_seconds = files.output_seconds;
       return answer;
     }
   } // namespace
+
+  void
+  end_before_inversion(SimulationResult &result)
+  {
+    const double later  = std::max(result.time.time - result.inversion->t, 0.);
+    result.inversion->t = std::max(result.inversion->t, result.time.time);
+    if (result.inversion_error)
+      *result.inversion_error += later;
+    result.time.message = fmt::format("the body inverted: its stretch reached 0 at s = {:.6g}, t = {:.9g}; the model "
+                                      "ends there",
+                                      result.inversion->s,
+                                      result.inversion->t);
+  }
 
   Answer
   answer_in_memory(const RunParameters &parameters,
@@ -207,6 +252,9 @@ namespace crawler
         confirm_inversion(communicator, parameters, scene, choice, result, keep_going);
       const bool retries = std::isfinite(choice.promised_error) && !choice.is_measured &&
                            answer.refinements < most_refinements && is_for_finer_numerics(result.time);
+      if (!retries && !choice.is_users && is_for_finer_numerics(result.time) && size_of(communicator) == 1)
+        if (auto other = answer_of_stretch_form(parameters, scene, options, keep_going))
+          return writes ? with_files(std::move(*other), simulate) : *other;
       if (!retries && (!parameters.error_estimate || result.time.status != Status::finished))
         return answer;
       if (retries)

@@ -201,7 +201,7 @@ namespace crawler
       const StretchAt smallest = mesh_.assembler->stretch_range(run_->accepted.y).min;
       const Extreme before     = run_->recorder.smallest_before_last();
       const double rate        = t > before.t ? (before.value - smallest.value) / (t - before.t) : 0.;
-      const double left        = rate > 0. ? smallest.value / rate : 1.;
+      const double left        = rate > 0. ? std::max(smallest.value, 0.) / rate : 1.;
       // For a >= 0 the stretch reaches 0 at a bounded rate, so one that is not near 0 was not lost by the body.
       const bool near = left < (outcome.domain_error ? nearly_lost : end_reach);
       if (near || (outcome.domain_error && scene_.friction_exponent() < 0.))

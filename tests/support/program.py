@@ -26,11 +26,12 @@ class Checks:
         self.n, self.failures, self.skipped = 0, [], []
 
     def expect(self, condition, what):
-        """What is to be, in words; printed if it is not."""
+        """What is to be, in words; printed if it is not. Returns whether it is."""
         self.n += 1
         if not condition:
             self.failures.append(what)
             print(f"FAILED {what}", flush=True)
+        return bool(condition)
 
     def skip(self, what):
         """What this machine cannot check, and why; the last line counts it."""

@@ -150,11 +150,12 @@ def entries_of(effective):
 
 
 def parameters_of(effective):
-    """The values in a parameters.prm by their full names: numbers where they are numbers."""
+    """The values in a parameters.prm by their full names: numbers where they are numbers, whole ones as int. A scene as
+    crawler.run() takes it."""
     values = {name: entry["value"] for name, entry in entries_of(effective).items()}
     for name, text in values.items():
         with contextlib.suppress(ValueError):
-            values[name] = float(text)
+            values[name] = int(text) if text.lstrip("+-").isdecimal() else float(text)
     return values
 
 

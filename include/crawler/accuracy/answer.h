@@ -14,6 +14,11 @@ namespace crawler
     double estimate_seconds  = 0.; ///< that the errors took
   };
 
+  /// A body that several runs say has inverted at that time has not done so before the last state that is shown: what
+  /// the time is later for that adds to its error. The message says when and where.
+  void
+  end_before_inversion(SimulationResult &result);
+
   constexpr unsigned int most_refinements = 3;
 
   /// The reason of a run whose displacement is known, but not as accurately as wanted.

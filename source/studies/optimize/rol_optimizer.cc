@@ -155,13 +155,14 @@ namespace crawler
       return list;
     }
 
-    /// The largest violation of a limit.
+    /// The largest violation of a limit, or distance from one whose multiplier pulls: |t - mu|/rho is both (Birgin and
+    /// Martinez, Practical Augmented Lagrangian Methods, 2014, section 4.1).
     double
-    violation(const GaitProblem &problem, const List &c)
+    distance_from_complementarity(const List &t, const List &mu, const double rho)
     {
       double largest = 0.;
-      for (std::size_t i = 0; i < c.size(); ++i)
-        largest = std::max({largest, c[i] - problem.upper()[i], problem.lower()[i] - c[i]});
+      for (std::size_t i = 0; i < t.size(); ++i)
+        largest = std::max(largest, std::abs(t[i] - mu[i]) / rho);
       return largest;
     }
   } // namespace
@@ -197,9 +198,9 @@ namespace crawler
       const bool is_good = (end == ROL::EXITSTATUS_CONVERGED || end == ROL::EXITSTATUS_STEPTOL) && impossible.empty();
       if (!impossible.empty())
         impossible = "better gaits are impossible: " + impossible;
-      const List c     = problem.at(*unknowns->getVector(), false).constraints;
-      const double now = violation(problem, c);
-      lagrangian->mu   = lagrangian->forces(c);
+      const List t     = lagrangian->forces(problem.at(*unknowns->getVector(), false).constraints);
+      const double now = distance_from_complementarity(t, lagrangian->mu, lagrangian->rho);
+      lagrangian->mu   = t;
       if (is_good && inner <= tolerance && now <= tolerance)
         return {*unknowns->getVector(), true, "", i, lagrangian->mu};
       if (!has_limits && !is_good)

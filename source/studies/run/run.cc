@@ -321,20 +321,11 @@ namespace crawler
                                              .cycles = cycle_wish(parameters, input.scene, output.has_snapshots()),
                                              .gait   = Simulation::GaitWish::any};
     const auto simulate                   = [&](const NumericsChoice &choice) {
-      if (choice.is_of_several_runs())
-        build(choice);
-      else if (chosen->is_of_several_runs()) // whose answer is one of the other form
-      {
-        build(choice);
-        log.line(describe(choice.numerics, input));
-        log.line("  (" + choice.explanation + ")");
-      }
-      else if (++n_runs > 1)
+      if (++n_runs > 1)
       {
         log.line((latest.status == Status::failed ? latest.reason + ": " + latest.message
                                                                     : "The error is larger than Accuracy asks for") +
-                 ": once more, finer.");
-        build(choice);
+                 ": once more, " + (choice.is_family ? "in the stretch form." : "finer."));
         if (writes)
           on_first_rank(computing, [&]() {
             if (journal.was_written()) // older states need the files that are removed
@@ -345,8 +336,14 @@ namespace crawler
             remove_fields(folder);
             return "";
           });
-        log.line(describe(choice.numerics, input));
       }
+      const bool is_of_other_form = chosen->is_of_several_runs() && !choice.is_of_several_runs();
+      if (n_runs > 1 || choice.is_of_several_runs() || is_of_other_form)
+        build(choice);
+      if (!choice.is_of_several_runs() && (n_runs > 1 || is_of_other_form))
+        log.line(describe(choice.numerics, input));
+      if (is_of_other_form)
+        log.line("  (" + choice.explanation + ")");
       other_runs.reset();
       SimulationResult run = simulation->run(pictures, run_options, create_observers(), keep_going);
       other_runs.emplace(log, "other runs measure the error");
