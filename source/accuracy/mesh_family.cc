@@ -57,7 +57,7 @@ namespace crawler
             return end();
           keep(latest_);
         }
-        if (latest_.inversion && std::isfinite(space_error_) && !has_order_ && sticks())
+        if (latest_.inversion && std::isfinite(space_error_) && sticks())
           check_inversion();
         return end();
       }
@@ -81,7 +81,7 @@ namespace crawler
       most_cells_now() const
       {
         if (latest_.inversion && std::isfinite(space_error_))
-          return sticks() ? most_cells_if_it_sticks : most_cells_if_inverted;
+          return most_cells_if_inverted;
         return accuracy_ < accurate ? most_cells_if_accurate : most_cells;
       }
 
@@ -271,7 +271,6 @@ namespace crawler
       error_of(const Level &before, const Level &now)
       {
         const double order = std::log2(before.change / now.change);
-        has_order_         = order > least_order;
         if (now.result.inversion && sticks())
           return sticking_factor * std::max(now.change, before.change / credited);
         if (!(order > 0.2))
@@ -407,7 +406,6 @@ namespace crawler
       NumberErrors time_errors_;
       double size_ = 0., time_error_ = 0., space_error_ = HUGE_VAL;
       unsigned int n_runs_ = 0, n_corrections_ = 0;
-      bool has_order_ = false; ///< observed between the last meshes
     };
   } // namespace
 

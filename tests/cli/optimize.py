@@ -108,6 +108,21 @@ def test_simulations(place):
     expect(0.83 < best["gait"]["stride_efficiency"] < 0.87 and best["gait"]["efficiency"] < 0.2, f"{best['gait']}")
 
 
+def test_pulling_limits(place):
+    """A limit of strain that pulls is reached, from a start with a twentieth of the objective; and kept between steps."""
+    limit = 0.1
+    done = run("optimize_robot", place / "pulling", "Active stress/Generator=travelling wave", f"Optimize/Largest strain={limit}",
+               "Body/Anchoring exponent=2", "Body/Elastic modulus=1", "Time/End time=1",
+               f"Active stress/Travelling wave/Amplitude={0.1 if LONG else 0.05}", "Active stress/Travelling wave/Wave number=0.5",
+               "Optimize/Variables=Active stress/Travelling wave/Amplitude : 0.01 to 0.4")
+    optimum = optima(place / "pulling")[0] if done.returncode == 0 else {"has_converged": False}
+    expect(optimum["has_converged"], f"pulling: {done.stderr}")
+    call([CRAWLER, "run", place / "pulling" / "optimum.prm", "--output", place / "pulling-dense", "--set",
+          "Output/Number of snapshots=2000"])
+    largest = max(float(row["max stretch [1]"]) for row in csv_rows(place / "pulling-dense" / "statistics.csv")) - 1
+    expect(limit * (1 - 2e-3) < largest <= limit * (1 + 2e-5), f"pulling: strain {largest}")
+
+
 def test_cases(place):
     """Cases that differ in words, numbers and lists, with starts and variables of their own."""
     # The best of each is better with more segments, and for a = 1 it is the mirror image of a wave.
@@ -329,7 +344,7 @@ def main():
     """All tests in a folder of their own."""
     with tempfile.TemporaryDirectory() as name:
         place = pathlib.Path(name)
-        for test in tests_of_part((test_merits, test_theorem, test_simulations, test_cases, test_neighbours, test_starts,
+        for test in tests_of_part((test_merits, test_theorem, test_simulations, test_pulling_limits, test_cases, test_neighbours, test_starts,
                                    test_gradients, test_uneven, test_obstacles, test_bad_input), (test_stops,)):
             test(place)
     checks.end()

@@ -123,6 +123,8 @@ def check_results():
            again.parameters == result.parameters, "a pickled result is another one")
     expect(repr(result).startswith("<crawler.Result: finished at t = 1, displacement 0.0"), f"{result!r}")
     expect(crawler.run(WAVE, elastic_modulus=2, fields=False).parameters[K] == 2., "a keyword has no effect")
+    again = crawler.run(crawler.run(WAVE, fields=False).parameters, fields=False)
+    expect(again.displacement == crawler.run(WAVE, fields=False).displacement, f"parameters of a result as a scene: {again!r}")
     run = crawler.run(WAVE, set={"Active stress/Generator": "travelling wave", "Output/Sensitivities": K}, fields=False)
     local = run.local_sensitivities
     whole = np.sum((local.elastic_modulus[1:] + local.elastic_modulus[:-1]) / 2 * np.diff(local.s))

@@ -317,6 +317,47 @@ TEST(HardAnswers, FrontsOfSteepFriction)
     }
 }
 
+/// For -1 < a < 0 the last of a stretch is fed by what flows to it, and its time converges with order 1/2 to 1: 208 to
+/// 3328 cells have t = 0.046804, 0.046631, 0.046609, 0.046580, 0.046565.
+TEST(HardAnswers, TimesOfSlowInversions)
+{
+  for (const char *accuracy : {"1e-2", "1e-3", "4e-5", "1e-6"})
+  {
+    const SimulationResult result = answer_to({{"Body/Elastic modulus", "1.4089567553162061"},
+                                               {"Body/Anchoring exponent", "1.1564781665068784"},
+                                               {"Active stress/Generator", "travelling wave"},
+                                               {"Active stress/Travelling wave/Amplitude", "1.4916126528567062"},
+                                               {"Active stress/Travelling wave/Wave number", "1"},
+                                               {"Active stress/Travelling wave/Frequency", "1"},
+                                               {"Accuracy", accuracy}});
+    ASSERT_EQ(result.time.status, Status::inverted) << accuracy;
+    ASSERT_TRUE(result.inversion_error);
+    EXPECT_NEAR(result.inversion->t, 0.046553, *result.inversion_error) << accuracy;
+    EXPECT_LE(*result.inversion_error, 0.01) << accuracy;
+    EXPECT_LE(result.time.time, result.inversion->t) << accuracy;
+  }
+}
+
+/// Shortly before an end inverts the stretch beside it is tiny, and the position form fails; the body inverts all the
+/// same, when m(0, t) = k.
+TEST(HardAnswers, EndsOfSteepFrictionInvert)
+{
+  for (const char *accuracy : {"1e-2", "1e-4"})
+  {
+    const double k = 1.065687391169341, amplitude = 1.3692980755928033;
+    const SimulationResult result = answer_to({{"Body/Elastic modulus", test::text(k)},
+                                               {"Body/Anchoring exponent", "3.7742919342516785"},
+                                               {"Active stress/Generator", "travelling wave"},
+                                               {"Active stress/Travelling wave/Amplitude", test::text(amplitude)},
+                                               {"Active stress/Travelling wave/Wave number", "1"},
+                                               {"Active stress/Travelling wave/Frequency", "1"},
+                                               {"Accuracy", accuracy}});
+    ASSERT_EQ(result.time.reason, "inverted_at_end") << accuracy << ": " << result.time.message;
+    EXPECT_NEAR(result.inversion->t, std::asin(k / amplitude) / (2. * M_PI), 1e-9);
+    EXPECT_LE(result.time.time, result.inversion->t);
+  }
+}
+
 /// Kinks that move through cells and steps, where the velocity changes its sign, have errors that two runs may share.
 TEST(HardAnswers, FrictionThatSwitchesItsDirection)
 {

@@ -140,8 +140,8 @@ namespace crawler::accuracy_rule
   {
     /// Cells of the finest mesh, and for a smaller Accuracy than accurate.
     inline constexpr unsigned int most_cells = 3200, most_cells_if_accurate = 6400;
-    /// But of bodies that invert: more do not help where the time of that converges slowly, -1 < a < 0.
-    inline constexpr unsigned int most_cells_if_inverted = 1600, most_cells_if_it_sticks = 1600;
+    /// But of bodies that invert.
+    inline constexpr unsigned int most_cells_if_inverted = 1600;
     inline constexpr double accurate = 2e-6;
     /// Cells times steps that the next mesh may take, about a second for each 2e6, and how many times as many as the
     /// last one it does.

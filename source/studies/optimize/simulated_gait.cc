@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/adjoint/run_gradient.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/output/observer.h>
+#include <crawler/run/simulation.h>
 #include <crawler/studies/core/answer_differences.h>
 #include <crawler/studies/optimize/simulated_gait.h>
 
@@ -57,12 +59,56 @@ namespace crawler
     return "simulations, with derivatives by the adjoint";
   }
 
+  namespace
+  {
+    /// The extreme stretches of the states that it sees.
+    class ExtremesOfPictures : public Observer
+    {
+    public:
+      ExtremesOfPictures(double &smallest, double &largest)
+        : smallest_(smallest)
+        , largest_(largest)
+      {
+      }
+
+      void
+      observe(const Snapshot &snapshot) override
+      {
+        smallest_ = std::min(smallest_, snapshot.stretch.min.value);
+        largest_  = std::max(largest_, snapshot.stretch.max.value);
+      }
+
+    private:
+      double &smallest_, &largest_;
+    };
+  } // namespace
+
+  /// Steps see extremes at their stages; a thousand pictures of each stride show what is between.
   std::pair<double, double>
   SimulatedGait::extreme_strains(const std::vector<double> &x)
   {
+    constexpr double pictures_of_stride = 1000., most_pictures = 20000.;
     evaluate(x, /*with_gradients=*/false);
-    const SimulationResult &result = latest_.front().computed.result;
-    return {result.min_stretch.value - 1., result.max_stretch.value - 1.};
+    const Task &task               = latest_.front();
+    const SimulationResult &result = task.computed.result;
+    const NumericsChoice &choice   = task.computed.choice;
+    double smallest = result.min_stretch.value, largest = result.max_stretch.value;
+    if (result.model != Model::kinematic && !choice.has_fronts)
+    {
+      const Scene &scene   = *task.scene;
+      const double strides = scene.end_time / scene.active_stress->period().value_or(scene.end_time);
+      const auto n         = static_cast<std::size_t>(std::min(pictures_of_stride * std::max(strides, 1.), most_pictures));
+      std::vector<double> times;
+      for (std::size_t i = 0; i <= n; ++i)
+        times.push_back(scene.end_time * static_cast<double>(i) / static_cast<double>(n));
+      std::vector<std::unique_ptr<Observer>> observers;
+      observers.push_back(std::make_unique<ExtremesOfPictures>(smallest, largest));
+      Simulation(MPI_COMM_SELF, scene, task.parameters.time, choice.numerics)
+        .run(PictureTimes({}, times, scene.end_time), {.energy_balance = false}, observers, [&]() { return !interrupted_(); });
+      if (interrupted_())
+        throw Interrupted();
+    }
+    return {smallest - 1., largest - 1.};
   }
 
   std::vector<Task>
