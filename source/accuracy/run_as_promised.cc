@@ -78,7 +78,8 @@ namespace crawler
     bool
     is_for_finer_numerics(const TimeOutcome &outcome)
     {
-      constexpr const char *reasons[] = {"newton_diverged", "linear_failed", "rejection_limit", "under_resolved"};
+      constexpr const char *reasons[] = {
+        "newton_diverged", "linear_failed", "rejection_limit", "step_underflow", "under_resolved"};
       return outcome.status == Status::failed && std::ranges::find(reasons, outcome.reason) != std::end(reasons);
     }
 

@@ -97,14 +97,16 @@ namespace crawler
     {
       const Scene &scene   = *task.scene;
       const double strides = scene.end_time / scene.active_stress->period().value_or(scene.end_time);
-      const auto n         = static_cast<std::size_t>(std::min(pictures_of_stride * std::max(strides, 1.), most_pictures));
+      const auto n = static_cast<std::size_t>(std::min(pictures_of_stride * std::max(strides, 1.), most_pictures));
       std::vector<double> times;
       for (std::size_t i = 0; i <= n; ++i)
         times.push_back(scene.end_time * static_cast<double>(i) / static_cast<double>(n));
       std::vector<std::unique_ptr<Observer>> observers;
       observers.push_back(std::make_unique<ExtremesOfPictures>(smallest, largest));
       Simulation(MPI_COMM_SELF, scene, task.parameters.time, choice.numerics)
-        .run(PictureTimes({}, times, scene.end_time), {.energy_balance = false}, observers, [&]() { return !interrupted_(); });
+        .run(PictureTimes({}, times, scene.end_time), {.energy_balance = false}, observers, [&]() {
+          return !interrupted_();
+        });
       if (interrupted_())
         throw Interrupted();
     }
