@@ -57,7 +57,7 @@ namespace crawler
             return end();
           keep(latest_);
         }
-        if (latest_.inversion && std::isfinite(space_error_) && sticks())
+        if (latest_.inversion && std::isfinite(space_error_) && sticks() && (!has_order_ || inverts_slowly()))
           check_inversion();
         return end();
       }
@@ -68,6 +68,12 @@ namespace crawler
       {
         const double a = scene_.friction_exponent();
         return a > -1. && a < 0.;
+      }
+
+      bool
+      inverts_slowly() const
+      {
+        return latest_.inversion && sticks() && scene_.friction_exponent() > least_slow_exponent;
       }
 
       bool
@@ -237,7 +243,7 @@ namespace crawler
         {
           const Level &before = levels_.back();
           const double change = std::abs(*value(result) - *value(before.result));
-          if (!result.inversion || !sticks())
+          if (!inverts_slowly())
             extrapolate(before.result);
           now.value   = *value(extrapolated_);
           now.work    = work_of(extrapolated_);
@@ -271,7 +277,8 @@ namespace crawler
       error_of(const Level &before, const Level &now)
       {
         const double order = std::log2(before.change / now.change);
-        if (now.result.inversion && sticks())
+        has_order_         = order > least_order;
+        if (inverts_slowly())
           return sticking_factor * std::max(now.change, before.change / credited);
         if (!(order > 0.2))
           return 5. * now.change;
@@ -406,6 +413,7 @@ namespace crawler
       NumberErrors time_errors_;
       double size_ = 0., time_error_ = 0., space_error_ = HUGE_VAL;
       unsigned int n_runs_ = 0, n_corrections_ = 0;
+      bool has_order_ = false; ///< observed between the last meshes
     };
   } // namespace
 

@@ -127,8 +127,8 @@ namespace crawler
       return answer;
     }
 
-    /// The position form may fail shortly before an end inverts, where the stretch nearby is tiny; the stretch form does
-    /// not mind. Nothing if it gives no answer either.
+    /// The position form may fail shortly before an end inverts, where the stretch nearby is tiny; the stretch form
+    /// does not mind. Nothing if it gives no answer either.
     std::optional<Answer>
     answer_of_stretch_form(const RunParameters &parameters,
                            const Scene &scene,

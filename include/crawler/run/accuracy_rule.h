@@ -142,7 +142,7 @@ namespace crawler::accuracy_rule
     inline constexpr unsigned int most_cells = 3200, most_cells_if_accurate = 6400;
     /// But of bodies that invert.
     inline constexpr unsigned int most_cells_if_inverted = 1600;
-    inline constexpr double accurate = 2e-6;
+    inline constexpr double accurate                     = 2e-6;
     /// Cells times steps that the next mesh may take, about a second for each 2e6, and how many times as many as the
     /// last one it does.
     inline constexpr double most_work = 2.5e7, most_work_if_accurate = 5e7, more_work = 5.;
@@ -165,9 +165,9 @@ namespace crawler::accuracy_rule
     /// Extrapolations that settle at least so fast are believed to go on so; and what settles faster than fourth order
     /// does it by chance.
     inline constexpr double fast = 5., credited = 4., fastest = 16.;
-    /// The time of an inversion that flows to the last feed, -1 < a < 0, converges with order 1/2 to 1: its error is at
-    /// most so many times its last change.
-    inline constexpr double sticking_factor = 3.;
+    /// The time of an inversion that flows to the last feed converges with order 1/2 to 1 for a between this and 0: its
+    /// error is at most so many times its last change.
+    inline constexpr double least_slow_exponent = -0.5, sticking_factor = 3.;
     /// That is believed where the order is as near to 2 as this.
     inline constexpr double clean = 0.25;
   } // namespace family
