@@ -324,7 +324,12 @@ namespace crawler
       extrapolate(const SimulationResult &coarse)
       {
         if (latest_.inversion)
+        {
           extrapolated_.inversion->t = (4. * latest_.inversion->t - coarse.inversion->t) / 3.;
+          extrapolated_.time.time =
+            std::min((4. * latest_.time.time - coarse.time.time) / 3., extrapolated_.inversion->t);
+          extrapolated_.displacement = (4. * latest_.displacement - coarse.displacement) / 3.;
+        }
         else
         {
           const SimulationResult *const results[] = {&coarse, &latest_};
