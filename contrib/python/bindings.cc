@@ -162,8 +162,15 @@ namespace crawler
         Form form(input.file);
         auto notes = input.notes;
         std::vector<std::tuple<std::string, double, double, double>> variables;
-        for (const Variable &one : read_variables(form, "Fit/Variables"))
-          variables.emplace_back(one.path, one.from, one.to, one.start);
+        try
+        {
+          for (const Variable &one : read_variables(form, "Fit/Variables"))
+            variables.emplace_back(one.path, one.from, one.to, one.start);
+        }
+        catch (const InputError &error)
+        {
+          throw input.file.with_place(error);
+        }
         return std::tuple(input.effective, notes, variables);
       });
     }
