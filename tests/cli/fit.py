@@ -190,6 +190,9 @@ def refuses():
         ended = crawler("fit", *arguments, *more)
         check(ended.returncode == code and phrase in ended.stderr and ended.stderr.count("\n") == 1,
               f"{arguments}: {ended.returncode}, {ended.stderr}")
+    for variables, code, phrase in (("Body/Elastic modulus : 0.3 to 4", 0, "Fit: 1 unknown, from"), ("Body/Friction profile[1] : 0.3 to 4", 2, "numbers at places")):
+        ended = crawler("check", "fit_worm.prm", "--set", f"Fit/Variables={variables}")
+        check(ended.returncode == code and phrase in ended.stdout + ended.stderr, f"check of {variables}: {ended.stdout}{ended.stderr}")
     check(pathlib.Path("output-fit_worm/summary.json").read_bytes() == before and pathlib.Path("other/kept.txt").exists()
           and not pathlib.Path("new").exists(), "a refusal changes something")
 

@@ -135,4 +135,18 @@ namespace crawler
     }
     return variables;
   }
+
+  std::vector<Variable>
+  read_variables(const ParameterFile &file, const std::string &entry)
+  {
+    Form form(file);
+    try
+    {
+      return read_variables(form, entry);
+    }
+    catch (const InputError &error)
+    {
+      throw file.with_place(error);
+    }
+  }
 } // namespace crawler
