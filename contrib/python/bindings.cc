@@ -159,10 +159,9 @@ namespace crawler
     {
       return without_lock([&](const std::function<bool()> &) {
         const Input input = read_input(source.file(), /*command=*/"fit");
-        Form form(input.file);
-        auto notes = input.notes;
+        auto notes        = input.notes;
         std::vector<std::tuple<std::string, double, double, double>> variables;
-        for (const Variable &one : read_variables(form, "Fit/Variables"))
+        for (const Variable &one : read_variables(input.file, "Fit/Variables"))
           variables.emplace_back(one.path, one.from, one.to, one.start);
         return std::tuple(input.effective, notes, variables);
       });

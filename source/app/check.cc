@@ -7,6 +7,7 @@
 #include <crawler/studies/core/log.h>
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/progress.h>
+#include <crawler/studies/core/variables.h>
 #include <crawler/studies/optimize/optimize.h>
 #include <crawler/studies/run/run.h>
 #include <crawler/studies/sweep/sweep.h>
@@ -22,7 +23,11 @@ namespace crawler
     ParameterFile file = read_file(communicator, options.file, options.overrides);
     if (check_optimize(communicator, file, log) || check_sweep(communicator, file, log))
       return ExitCode::finished;
-    const Input input       = read_input(std::move(file), /*command=*/"check");
+    const Input input = read_input(std::move(file), /*command=*/"check");
+    if (const FitParameters &fit = input.parameters.fit; !trimmed(fit.variables).empty())
+      log.line(fmt::format("Fit: {} unknown, from {}.",
+                           read_variables(input.file, "Fit/Variables").size(),
+                           fit.data.empty() ? "the file that --data names" : fit.data));
     const ModelChoice model = choose_model(input);
     if (!model.needs_mesh())
       return check_reduced_model(input, model, log);

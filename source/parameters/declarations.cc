@@ -3,22 +3,20 @@
 #include <crawler/base/nearest_name.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/parameters/entry_store.h>
+#include <crawler/parameters/listed_numbers.h>
 #include <crawler/parameters/slips.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <sstream>
 
 namespace crawler
 {
   namespace
   {
-    const std::string automatic         = "automatic";
-    constexpr unsigned int longest_list = 10000; ///< that a place in brackets makes
+    const std::string automatic = "automatic";
 
     std::optional<unsigned int>
     to_count(const std::string &text)
@@ -27,19 +25,6 @@ namespace crawler
           !std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c); }))
         return std::nullopt;
       return static_cast<unsigned int>(std::stoul(text));
-    }
-
-    std::optional<std::vector<double>>
-    to_numbers(const std::string &text)
-    {
-      std::vector<double> values;
-      std::istringstream in(text + ",");
-      for (std::string item; std::getline(in, item, ',');)
-        if (const auto number = to_number(trimmed(item)))
-          values.push_back(*number);
-        else
-          return std::nullopt;
-      return values;
     }
 
     /// What is perhaps wrong with a number: "0,4" or "10 cm".
@@ -66,6 +51,17 @@ namespace crawler
       return near.empty() || *near.begin() == ".." ? file : near.string();
     }
 
+    /// The names of a list with semicolons, each of them changed.
+    std::string
+    each_name(const std::string &list, const std::function<std::string(const std::string &)> &changed)
+    {
+      std::string result;
+      std::istringstream in(list);
+      for (std::string name; std::getline(in, name, ';');)
+        result += (result.empty() ? "" : "; ") + (trimmed(name).empty() ? "" : changed(trimmed(name)));
+      return result;
+    }
+
     std::string
     path_text(const std::vector<std::string> &words)
     {
@@ -77,26 +73,6 @@ namespace crawler
     section_of(const std::vector<std::string> &words)
     {
       return fmt::format("{}", fmt::join(words.begin(), words.end() - 1, "/"));
-    }
-
-    /// The place, from 1 on, that the last word of a path names in a list; it is taken away. Nothing if it names none.
-    std::optional<std::size_t>
-    take_place(std::vector<std::string> &words)
-    {
-      std::string &last       = words.back();
-      const std::size_t start = last.find('[');
-      if (start == std::string::npos || !last.ends_with(']'))
-        return std::nullopt;
-      const auto place = to_count(last.substr(start + 1, last.size() - start - 2));
-      if (!place || *place < 1 || *place > longest_list)
-        throw InputError(
-          fmt::format("\"{}\" should name a number of a list, but a whole number from 1 to {} is expected "
-                      "in the brackets",
-                      path_text(words),
-                      longest_list),
-          path_text(words));
-      last = trimmed(last.substr(0, start));
-      return place;
     }
 
     template <typename Value>
@@ -336,6 +312,29 @@ namespace crawler
   }
 
   Declarations::Entry
+  Declarations::constants(const std::string &name, std::string &value, const std::vector<std::string> &formulas)
+  {
+    Entry result             = text(name, value, "a list name=number, name=number");
+    result.info_.values.kind = EntryKind::constants;
+    for (const std::string &formula : formulas)
+      result.info_.values.words.push_back(path_of(formula));
+    return result;
+  }
+
+  Declarations::Entry
+  Declarations::profile(const std::string &name, std::string &value)
+  {
+    Entry result =
+      file(name,
+           value,
+           "a formula of s, a list of numbers, or a CSV file (a name that ends in .csv) with the header s,value",
+           "1",
+           ".csv");
+    result.info_.values.kind = EntryKind::profile;
+    return result;
+  }
+
+  Declarations::Entry
   Declarations::file(const std::string &name,
                      std::string &value,
                      const std::string &expected,
@@ -350,15 +349,31 @@ namespace crawler
     return result;
   }
 
+  Declarations::Entry
+  Declarations::files(const std::string &name, std::string &value, const std::string &expected)
+  {
+    Entry result            = entry(name, value, expected, "", {}, [](const std::string &text) {
+      return std::optional(each_name(text, seen_from_here));
+    });
+    result.info_.names_file = result.info_.names_several = true;
+    return result;
+  }
+
   void
   Declarations::set(const std::string &path, const std::string &value, const std::filesystem::path &folder)
   {
     std::vector<std::string> words = split_path(path);
-    const auto place               = take_place(words);
+    const auto key                 = take_key(words.back());
     const EntryInfo &entry         = find(words);
-    if (place)
+    if (key)
     {
-      set(entry.path, with_number(entry, *place, value));
+      const auto number = to_number(trimmed(value));
+      if (!number)
+        throw InputError(
+          fmt::format(
+            "\"{}[{}]\" is \"{}\", but a number is expected{}", entry.path, *key, value, number_hint(trimmed(value))),
+          entry.path);
+      set(entry.path, with_listed_number(entry, this->value(entry.path), *key, *number));
       return;
     }
     const std::string text = with_absolute_name(path, value, folder);
@@ -374,37 +389,6 @@ namespace crawler
                      entry.path);
   }
 
-  /// Of the list @p entry, in which a @p place is named.
-  std::vector<double>
-  Declarations::numbers_of(const EntryInfo &entry, const std::size_t place) const
-  {
-    if (entry.values.kind != EntryKind::numbers)
-      throw InputError(
-        fmt::format("\"{0}[{1}]\" names a number of a list, but \"{0}\" is {2}", entry.path, place, entry.expected),
-        entry.path);
-    const std::string text = value(entry.path);
-    return text.empty() ? std::vector<double>() : *to_numbers(text);
-  }
-
-  /// The list @p entry with another number at a @p place.
-  std::string
-  Declarations::with_number(const EntryInfo &entry, const std::size_t place, const std::string &value) const
-  {
-    std::vector<double> numbers = numbers_of(entry, place);
-    const auto number           = to_number(trimmed(value));
-    if (!number)
-      throw InputError(
-        fmt::format(
-          "\"{}[{}]\" is \"{}\", but a number is expected{}", entry.path, place, value, number_hint(trimmed(value))),
-        entry.path);
-    numbers.resize(std::max(numbers.size(), place));
-    numbers[place - 1] = *number;
-    std::vector<std::string> texts;
-    for (const double one : numbers)
-      texts.push_back(to_text(one));
-    return fmt::format("{}", fmt::join(texts, ", "));
-  }
-
   std::string
   Declarations::with_absolute_name(const std::string &path,
                                    const std::string &value,
@@ -416,14 +400,17 @@ namespace crawler
       return text;
     if (const std::string sign = home_sign(text); !sign.empty())
       throw InputError(fmt::format("\"{}\": {}", entry.path, sign), entry.path);
-    return std::filesystem::absolute(folder / text).lexically_normal().string();
+    const auto absolute = [&](const std::string &name) {
+      return std::filesystem::absolute(folder / name).lexically_normal().string();
+    };
+    return entry.names_several ? each_name(text, absolute) : absolute(text);
   }
 
   const EntryInfo &
   Declarations::info(const std::string &path) const
   {
     std::vector<std::string> words = split_path(path);
-    take_place(words);
+    take_key(words.back());
     return find(words);
   }
 
@@ -431,12 +418,10 @@ namespace crawler
   Declarations::value(const std::string &path) const
   {
     std::vector<std::string> words = split_path(path);
-    const auto place               = take_place(words);
+    const auto key                 = take_key(words.back());
     const EntryInfo &entry         = find(words);
-    if (!place)
-      return value(static_cast<unsigned int>(&entry - entries_.data()));
-    const auto numbers = numbers_of(entry, *place);
-    return *place <= numbers.size() ? to_text(numbers[*place - 1]) : "0";
+    const std::string text         = value(static_cast<unsigned int>(&entry - entries_.data()));
+    return key ? to_text(listed_number(entry, text, *key)) : text;
   }
 
   const EntryInfo &
@@ -517,15 +502,6 @@ namespace crawler
     store_->print_prm(out);
   }
 
-  std::string
-  trimmed(const std::string &text)
-  {
-    const auto first = text.find_first_not_of(" \t\r\n");
-    if (first == std::string::npos)
-      return "";
-    return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-  }
-
   std::vector<std::string>
   split_path(const std::string &path)
   {
@@ -545,21 +521,4 @@ namespace crawler
     return path_text(split_path(path));
   }
 
-  std::optional<double>
-  to_number(const std::string &text)
-  {
-    if (text.empty() || text.find_first_not_of("0123456789.+-eE") != std::string::npos)
-      return std::nullopt;
-    char *end          = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    if (end != text.c_str() + text.size() || !std::isfinite(value))
-      return std::nullopt;
-    return value;
-  }
-
-  std::string
-  to_text(const double value)
-  {
-    return fmt::format("{}", value);
-  }
 } // namespace crawler

@@ -22,6 +22,12 @@ namespace crawler
       return slash == std::string::npos ? "" : path.substr(0, slash);
     }
 
+    bool
+    is_text(const EntryKind kind)
+    {
+      return kind == EntryKind::text || kind == EntryKind::constants || kind == EntryKind::profile;
+    }
+
     /// A value as JSON has it.
     Json
     typed(const std::string &text, const EntryKind kind)
@@ -30,7 +36,7 @@ namespace crawler
         return text == "true";
       if (kind == EntryKind::numbers)
         return Json::parse("[" + text + "]");
-      const auto number = kind == EntryKind::text || kind == EntryKind::choice ? std::nullopt : to_number(text);
+      const auto number = is_text(kind) || kind == EntryKind::choice ? std::nullopt : to_number(text);
       return number ? Json::parse(text) : Json(text);
     }
 
@@ -43,7 +49,7 @@ namespace crawler
         return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", values.may_be_empty ? 0 : 1}};
       if (values.kind == EntryKind::flag)
         return {{"type", "boolean"}};
-      if (values.kind == EntryKind::text)
+      if (is_text(values.kind))
         return {{"type", "string"}};
       Json schema        = {{"type", values.kind == EntryKind::number ? "number" : "integer"}};
       const Range &range = values.range;

@@ -17,15 +17,18 @@ namespace crawler
       .means("Anchoring exponent p: friction per reference length is gamma times velocity times stretch^(1-p). Where p "
              "> 1 a contracted part grips (earthworm), where p < 1 a stretched part grips (snail); at p = 1 no wave "
              "moves the body.");
-    const std::string expected = "a formula of s, or a CSV file (a name that ends in .csv) with the header s,value";
-    declarations.file("Elastic modulus profile", elastic_modulus_profile, expected, "1", ".csv")
-      .means("Factor of the elastic modulus along the body; s is the material coordinate, L the body length.");
-    declarations.file("Friction profile", friction_profile, expected, "1", ".csv")
+    declarations.profile("Elastic modulus profile", elastic_modulus_profile)
+      .means("Factor of the elastic modulus along the body; s is the material coordinate, L the body length. The "
+             "numbers of a list are at places that are equally spaced from s = 0 to L.");
+    declarations.profile("Friction profile", friction_profile)
       .means("Factor of the friction coefficient along the body, for example of a belly with scales.");
-    declarations.file("Initial stretch", initial_stretch, expected, "1", ".csv")
+    declarations.profile("Initial stretch", initial_stretch)
       .means("Stretch of the body at t = 0; its centre of mass starts where that of the unstretched body would.");
+    declarations.constants("Constants", constants, {"Elastic modulus profile", "Friction profile", "Initial stretch"})
+      .means("Constants that the formulas of this section may use.");
     declarations.choice("Profile interpolation", profile_interpolation, {"cubic", "linear"})
-      .means("Between the rows of the CSV files of this section; beyond the first and the last row their values hold.");
+      .means("Between the numbers of the lists and the rows of the CSV files of this section; beyond the first and the "
+             "last row their values hold. Cubic: a spline of the logarithms, which gives positive values.");
     declarations.leave();
   }
 
@@ -33,7 +36,8 @@ namespace crawler
   read_profiles(const Body &body, const double end_time)
   {
     const auto read = [&](const std::string &name, const std::string &quantity, const std::string &text) {
-      const ProfileInput input{quantity, "s", text, body.profile_interpolation, "hold", "Body/" + name};
+      const ProfileInput input{
+        quantity, "s", text, body.profile_interpolation, "hold", "Body/" + name, body.constants, "Body/Constants"};
       auto profile = read_profile(input, body.length, end_time);
       if (profile)
         require_positive(*profile, 0., body.length, input);

@@ -181,7 +181,8 @@ namespace crawler
     declarations.choice("Friction law", friction_law, names).means(documentation + ".");
     declarations.text("Expression", expression, "a formula of w", "1")
       .means("For the law expression: friction divided by gamma, as a function of the stretch w; positive.");
-    declarations.text("Constants", constants, "a list name=number, name=number").means("Constants that it may use.");
+    declarations.constants("Constants", constants, {"Expression", "Profile"})
+      .means("Constants that this formula and that of the Profile may use.");
     declarations.number("Backward ratio", backward_ratio, between(0.1, 10), "1")
       .means("Resistance to backward motion (v < 0) over that to forward motion, r; in between the friction has the "
              "factor (1+r)/2 + (1-r)/2 tanh(v/v_s).");
@@ -215,8 +216,14 @@ namespace crawler
   Ground
   create_ground(const GroundParameters &parameters, const Body &body, const double end_time)
   {
-    const ProfileInput input{
-      "profile of the ground", "x", parameters.profile, parameters.interpolation, parameters.outside, "Ground/Profile"};
+    const ProfileInput input{"profile of the ground",
+                             "x",
+                             parameters.profile,
+                             parameters.interpolation,
+                             parameters.outside,
+                             "Ground/Profile",
+                             parameters.constants,
+                             "Ground/Constants"};
     Ground ground{read_profile(input, body.length, end_time), {}};
     if (ground.profile)
       require_positive(*ground.profile, 0., body.length, input);

@@ -3,7 +3,7 @@
 #include <crawler/base/cubic_spline.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/formula/formula_gradient.h>
-#include <crawler/parameters/declarations.h>
+#include <crawler/parameters/plain_text.h>
 #include <crawler/scene/active_stress/formula_input.h>
 #include <crawler/scene/breaks.h>
 #include <crawler/scene/jump_bracket.h>
@@ -94,7 +94,7 @@ namespace crawler
       std::vector<double> breaks_;
     };
 
-    /// Linear or cubic interpolation of samples.
+    /// Linear interpolation of samples, or a cubic spline of their logarithms.
     class TableProfile : public Profile
     {
     public:
@@ -105,8 +105,10 @@ namespace crawler
       {
         if (cubic)
         {
-          spline_     = std::make_unique<CubicSpline>(x_);
-          curvatures_ = spline_->curvatures(y_);
+          spline_ = std::make_unique<CubicSpline>(x_);
+          for (const double value : y_)
+            logarithms_.push_back(std::log(value));
+          curvatures_ = spline_->curvatures(logarithms_);
         }
       }
 
@@ -142,9 +144,10 @@ namespace crawler
         }
         if (spline_)
         {
-          const auto p = spline_->place(x);
-          return {p.a * y_[p.i] + p.b * y_[p.i + 1] + p.c * curvatures_[p.i] + p.d * curvatures_[p.i + 1],
-                  p.da * y_[p.i] + p.db * y_[p.i + 1] + p.dc * curvatures_[p.i] + p.dd * curvatures_[p.i + 1]};
+          const auto p    = spline_->place(x);
+          const double *y = logarithms_.data() + p.i, *curvature = curvatures_.data() + p.i;
+          const double value = std::exp(p.a * y[0] + p.b * y[1] + p.c * curvature[0] + p.d * curvature[1]);
+          return {value, value * (p.da * y[0] + p.db * y[1] + p.dc * curvature[0] + p.dd * curvature[1])};
         }
         const auto right   = static_cast<std::size_t>(std::upper_bound(x_.begin(), x_.end() - 1, x) - x_.begin());
         const double slope = (y_[right] - y_[right - 1]) / (x_[right] - x_[right - 1]);
@@ -154,7 +157,7 @@ namespace crawler
       const std::vector<double> x_, y_;
       const bool hold_;
       std::unique_ptr<CubicSpline> spline_;
-      std::vector<double> curvatures_;
+      std::vector<double> logarithms_, curvatures_; ///< if there is a spline
     };
 
     class ScaledProfile : public Profile
@@ -194,6 +197,23 @@ namespace crawler
       mutable std::vector<double> scaled_;
     };
 
+    /// Of at least as many samples as the interpolation needs; @p what they are, for messages.
+    std::shared_ptr<const Profile>
+    table_profile(std::vector<double> x, std::vector<double> y, const char *what, const ProfileInput &input)
+    {
+      const bool cubic        = input.interpolation == "cubic";
+      const std::size_t least = cubic ? 4 : 2;
+      if (x.size() < least)
+        throw InputError(fmt::format("\"{}\" has {} {}, but at least {} are expected for {} interpolation",
+                                     input.text,
+                                     x.size(),
+                                     what,
+                                     least,
+                                     input.interpolation),
+                         input.entry);
+      return std::make_shared<TableProfile>(std::move(x), std::move(y), cubic, input.outside == "hold");
+    }
+
     std::shared_ptr<const Profile>
     read_table(const ProfileInput &input)
     {
@@ -221,16 +241,23 @@ namespace crawler
                                        x[i - 1]),
                            input.entry);
       }
-      const bool cubic        = input.interpolation == "cubic";
-      const std::size_t least = cubic ? 4 : 2;
-      if (x.size() < least)
-        throw InputError(fmt::format("\"{}\" has {} rows of numbers, but at least {} are expected for {} interpolation",
-                                     input.text,
-                                     x.size(),
-                                     least,
-                                     input.interpolation),
-                         input.entry);
-      return std::make_shared<TableProfile>(std::move(x), std::move(y), cubic, input.outside == "hold");
+      return table_profile(std::move(x), std::move(y), "rows of numbers", input);
+    }
+
+    /// Values at places that are equally spaced from tail to head.
+    std::shared_ptr<const Profile>
+    list_profile(const std::vector<double> &values, const double length, const ProfileInput &input)
+    {
+      std::vector<double> places;
+      for (std::size_t i = 0; i < values.size(); ++i)
+      {
+        if (!(values[i] > 0.))
+          throw InputError(
+            fmt::format("number {} of \"{}\" is {:g}, but a positive number is expected", i + 1, input.text, values[i]),
+            input.entry);
+        places.push_back(length * static_cast<double>(i) / static_cast<double>(values.size() - 1));
+      }
+      return table_profile(std::move(places), values, "numbers", input);
     }
   } // namespace
 
@@ -259,8 +286,13 @@ namespace crawler
       return nullptr;
     if (text.ends_with(".csv"))
       return read_table(input);
+    if (input.variable == "s" && text.find(',') != std::string::npos)
+      if (const auto values = to_numbers(text))
+        return list_profile(*values, length, input);
     return std::make_shared<FormulaProfile>(
-      read_formula({input.quantity, text, "", input.entry, input.entry, {input.variable}}, length, end_time),
+      read_formula({input.quantity, text, input.constants, input.entry, input.constants_entry, {input.variable}},
+                   length,
+                   end_time),
       input.variable == "s" ? length : 0.);
   }
 

@@ -41,19 +41,20 @@ def printed(*arguments):
 
 def templates(folder):
     """Each template is short and has comments, is in order, and runs."""
+    for name in ("samples", "tracks"):
+        (folder / f"{name}.csv").write_text(printed("init", name))
     names = re.search(r"TEMPLATE TEXT REQUIRED\s+(.*)", printed("init", "--help"))[1].split(", ")
-    check({"robot", "earthworm", "snail", "larva", "table", "samples", "sweep", "optimize"} == set(names),
+    check({"robot", "earthworm", "snail", "larva", "table", "samples", "sweep", "optimize", "fit", "tracks"} == set(names),
           "the help names all templates")
-    (folder / "samples.csv").write_text(printed("init", "samples"))
     for name in names:
         text = printed("init", name)
-        if name == "samples":
+        if name in ("samples", "tracks"):
             continue
         check(10 <= len(text.splitlines()) <= 24 and "# " in text and "Expect" not in text, f"{name} is short")
         (folder / f"{name}.prm").write_text(text)
         done = crawler("check", f"{name}.prm", folder=folder)
         check(done.returncode == 0 and "is in order" in done.stdout, f"{name} is in order {done.stderr}")
-        command = name if name in ("sweep", "optimize") else "run"
+        command = name if name in ("sweep", "optimize", "fit") else "run"
         quick = ["--set", "Output/Number of snapshots=2"] if command == "run" else []
         done = crawler(command, f"{name}.prm", *quick, folder=folder)
         check(done.returncode == 0 and (folder / f"output-{name}" / "summary.json").exists(),

@@ -63,6 +63,38 @@ def compares_only_what_is_weighed_alike():
               and ended.stderr.count("\n") == 1 and not pathlib.Path("weighed").exists(), f"{entry} = {value} in one of two: {ended.stderr}")
 
 
+def fits_two_kinds_together():
+    """Tracks and the path of the centre of mass, each with its deviation: screen, files, picture and page, what is resumed and compared."""
+    ended = crawler("run", "fit_worm.prm", "--output", "truth", *(word for entry, value in TRUTH.items() for word in ("--set", f"{entry}={value}")))
+    with open("truth/statistics.csv", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    kept = [(float(row["time [time]"]), 7 + 1.5 + float(row["displacement [length]"])) for row in rows[::max(1, len(rows) // 50)]]  # tracks count from 7
+    pathlib.Path("centre.csv").write_text("t,centre\n" + "".join(f"{t!r},{x + 1e-3 * (-1) ** i!r}\n" for i, (t, x) in enumerate(kept)), encoding="utf-8")
+    words = ("fit", "fit_worm.prm", "--data", "fit_worm.csv", "--data", "centre.csv", "--set", "Fit/Standard deviation=0.01, 0.001", "--output", "two")
+    ended = crawler(*words)
+    check(ended.returncode == 0 and "of markers: 540 data" in ended.stdout and f"of centre: {len(kept)} data" in ended.stdout, f"two kinds: {ended.stdout}{ended.stderr}")
+    summary = json.loads(pathlib.Path("two/summary.json").read_text(encoding="utf-8"))
+    check([one["kind"] for one in summary["goodness"]["series"]] == ["markers", "centre"] and summary["goodness"]["n_data"] == 540 + len(kept)
+          and [pathlib.Path(name).name for name in summary["measured"]["files"]] == ["fit_worm.csv", "centre.csv"], f"two kinds: {summary['goodness']}")
+    for name, value in TRUTH.items():
+        check(abs(summary["variables"][name]["value"] - value) < 4 * summary["variables"][name]["deviation"], f"two kinds: {name} = {summary['variables'][name]['value']}")
+    with open("two/residuals.csv", encoding="utf-8") as file:
+        check({row["kind"] for row in csv.DictReader(file)} == {"markers", "centre"}, "residuals.csv of two kinds")
+    again = crawler("fit", "two/fitted.prm", "--set", "Fit/Standard deviation=0.01, 0.001", "--output", "two again")
+    check(again.returncode == 0 and "of centre" in again.stdout and crawler("report", "two").returncode == 0, f"the scene that was written: {again.stderr}")
+    both = crawler(*words[:2], "three.prm", *words[2:-1], "both kinds")
+    check(both.returncode == 0 and crawler("report", "both kinds").returncode == 0, f"a comparison with two kinds: {both.stderr}")
+    lines = pathlib.Path("centre.csv").read_text(encoding="utf-8").splitlines(keepends=True)
+    pathlib.Path("fewer.csv").write_text("".join(lines[:-1]), encoding="utf-8")
+    for more, phrase in ((("--data", "fit_worm.csv", "--data", "centre.csv"), "2 of them are expected, separated by commas"),
+                         (("--data", "fit_worm.csv", "--data", "centre.csv", "--set", "Fit/Standard deviation=0.01, automatic"), 'deviation of "centre.csv" is not known'),
+                         (("--data", "fit_worm.csv", "centre.csv"), '"--data" is expected before each'),
+                         (("--set", "Fit/Data=centre.csv; fit_worm.csv; centre.csv"), "both have the path of the centre of mass"),
+                         ((*words[2:4], "--resume"), "deviation was"), ((*words[2:5], "fewer.csv", *words[6:-2], "--resume"), "other data")):
+        ended = crawler("fit", "fit_worm.prm", *more, "--output", "two" if "--resume" in more else "refused")
+        check(ended.returncode == 2 and phrase in ended.stderr and ended.stderr.count("\n") == 1, f"{more}: {ended.returncode}, {ended.stderr}")
+
+
 def resumes():
     """A fit that is stopped or killed leaves what it has found, and goes on to the result of an undisturbed one, as does one on
     several processes; nothing else is gone on with."""
@@ -158,6 +190,9 @@ def refuses():
         ended = crawler("fit", *arguments, *more)
         check(ended.returncode == code and phrase in ended.stderr and ended.stderr.count("\n") == 1,
               f"{arguments}: {ended.returncode}, {ended.stderr}")
+    for variables, code, phrase in (("Body/Elastic modulus : 0.3 to 4", 0, "Fit: 1 unknown, from"), ("Body/Friction profile[1] : 0.3 to 4", 2, "numbers at places")):
+        ended = crawler("check", "fit_worm.prm", "--set", f"Fit/Variables={variables}")
+        check(ended.returncode == code and phrase in ended.stdout + ended.stderr, f"check of {variables}: {ended.stdout}{ended.stderr}")
     check(pathlib.Path("output-fit_worm/summary.json").read_bytes() == before and pathlib.Path("other/kept.txt").exists()
           and not pathlib.Path("new").exists(), "a refusal changes something")
 
@@ -212,6 +247,7 @@ def main():
     check(ended.returncode == 0 and 'section "Fit" has no effect with "crawler run"' in ended.stdout, f"a run does not note section Fit: {ended.stdout}")
     resumes()
     resumes_a_comparison()
+    fits_two_kinds_together()
 
 
 if __name__ == "__main__":

@@ -142,6 +142,7 @@ def test_content(program):
     entries = {one["entry"]: one for one in data["run"]["parameters"]["entries"]}
     check(entries["Accuracy"]["value"] == "1e-3" and P not in entries and entries["Ground/Profile"]["default"] == "1",
           "entries that differ from their defaults")
+    data["fit"]["table"], = data["fit"]["tables"]
     for name, file, columns in (("sweep", "results.csv", (P, CHI, "displacement", "errors.stress_power", "status", "reason")),
                                 ("checked", "results.csv", (CHI, P, "outcome", "displacement")),
                                 ("tradeoff", "tradeoff.csv", ("error", "seconds", "entries")),
@@ -283,6 +284,7 @@ def test_in_browser(browser, folder):
             check(browser.ask("document.documentElement.scrollWidth") <= width, f"{way}: nothing is cut off")
             check(browser.ask(BLANK) == 0 and browser.ask("document.querySelectorAll('.chart').length") > 0, f"{way}: no blank picture")
             check((browser.ask(BRIGHTNESS) < 60) == dark, f"{way}: colours")
+            check(browser.ask("[...document.querySelectorAll('.stacks')].every(one => one.scrollWidth <= one.parentElement.clientWidth)"), f"{way}: tables of fits are whole")
             check(browser.ask(CRAMPED) == 0, f"{way}: titles of axes have room")
         check(browser.ask("window.broken") is None and browser.ask("document.querySelectorAll('img, h1 b').length") == 0,
               f"{name}: texts stay texts")

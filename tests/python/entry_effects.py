@@ -99,6 +99,7 @@ PAIRS = [
                 BODY + "Initial stretch": "1+0.1*sin(pi*s)", GROUND + "Profile": "1+0.1*x",
                 GROUND + "Friction law": "Newtonian", M + "Generator": "travelling wave"}),
     (PROFILED, {BODY + "Profile interpolation": "linear"}),
+    ({**BY_SPEED, BODY + "Friction profile": "1+g*s", BODY + "Constants": "g = 0.1"}, {BODY + "Constants": "g = 0.2"}),
     (BY_SPEED, {"Units/Length": "mm", "Units/Time": "s", "Units/Force": "mN"}),
     (ON_GROUND, {GROUND + "Profile interpolation": "linear", GROUND + "Outside": "error"}),
     ({**BY_SPEED, GROUND + "Friction law": "expression", GROUND + "Expression": "w^a", GROUND + "Constants": "a = -1"},

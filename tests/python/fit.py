@@ -51,7 +51,8 @@ def path(scene, noise=NOISE, kind="centre"):
 def fit(scene, data, *names, **settings):
     """The Fit of variables with these names, from a start beside the truth."""
     start = {**scene, **{name: scene.get(name, 1) * 1.1 for name in names}}
-    where = {"Fit/Markers at": ", ".join(f"{s:.17g}" for s in S)} if data.quantity == "x" else {}
+    kinds = [one.quantity for one in (data if isinstance(data, list) else [data])]
+    where = {"Fit/Markers at": ", ".join(f"{s:.17g}" for s in S)} if "x" in kinds else {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return crawler.fit(start, data, {name: RANGES[name] for name in names}, set={**where, **settings.pop("set", {})}, **settings)
@@ -130,7 +131,7 @@ class Values(unittest.TestCase):
         found = fit(STRESS, tracks(STRESS), P, K, AMPLITUDE)
         n = found.goodness.degrees_of_freedom
         self.assertEqual(n, T.size * S.size - 4)
-        self.assertAlmostEqual(found.goodness.deviation_of_data / NOISE, 1, delta=4 / np.sqrt(2 * n))
+        self.assertAlmostEqual(found.goodness.series[0]["deviation"] / NOISE, 1, delta=4 / np.sqrt(2 * n))
 
     def test_interval_ends_where_chi_square_says(self):
         """With the variable held at an end and the others free, chi-square is larger by 1, and by 1.96 squared."""
@@ -177,6 +178,30 @@ class Values(unittest.TestCase):
         for one, truth in zip(found.variables.values(), coefficients):
             self.assertLess(abs(one["value"] - truth), 4 * one["deviation"])
 
+    def test_profiles_and_constants_of_formulas(self):
+        """Friction or stiffness as a few numbers along the body, in both interpolations, and the constants of a friction law and of a
+        profile; the derivatives are those of runs."""
+        friction, stiffness, flat = BODY + "Friction profile", BODY + "Elastic modulus profile", [1, 1, 1, 1]
+        law = {**STRESS, "Ground/Friction law": "expression", "Ground/Expression": "b*w^a + 0.1"}
+        for scene, entry, truth, start, names, limits in (
+                (STRESS, friction, [0.5, 1.2, 2, 0.8], flat, "1234", (0.1, 8)),
+                ({**STRESS, BODY + "Profile interpolation": "linear"}, stiffness, [1.2, 2.5, 1, 2], flat, "1234", (0.3, 8)),
+                ({**STRESS, friction: "1 + g*(s/L)^n"}, BODY + "Constants", "g = 1.5, n = 2", "g = 0.7, n = 1.5", "gn", (0.1, 6)),
+                (law, "Ground/Constants", "a = -1.5, b = 1.5", "a = -1, b = 1", "ab", (-4, 4))):
+            values = truth if isinstance(truth, list) else [float(one.split("=")[1]) for one in truth.split(",")]
+            variables = {f"{entry}[{name}]": limits if name != "b" else (0, 4) for name in names}
+            with self.subTest(entry=entry):
+                found = crawler.fit({**scene, entry: start}, tracks({**scene, entry: truth}), variables, standard_deviation=NOISE, markers_at=S)
+                self.assertEqual((found.status, found.undetermined, found.notes), ("finished", [], []))
+                for one, value in zip(found.variables.values(), values):
+                    self.assertLess(abs(one["value"] - value), 4 * one["deviation"])
+                first, step = next(iter(variables)), 1e-3
+                exact = crawler.gradient({**scene, entry: truth}, first)
+                sides = [crawler.run({**scene, entry: truth}, set={first: values[0] + side}, accuracy=1e-10, fields=False).displacement for side in (step, -step)]
+                self.assertAlmostEqual(exact.derivatives[0] / ((sides[0] - sides[1]) / (2 * step)), 1, delta=1e-3)
+        again = crawler.run({**law, "Ground/Constants": "a = 1, b = 1"}, set=found.settings, fields=False)
+        self.assertEqual(again.parameters["Ground/Constants"], ", ".join(f"{name} = {one['value']!r}" for name, one in zip("ab", found.variables.values())))
+
     def test_places_of_the_first_frame(self):
         """Also of a body that has strain in the first frame, where markers are not where they are at rest."""
         for scene in (STRESS, STRAIN):
@@ -184,6 +209,41 @@ class Values(unittest.TestCase):
             self.assertEqual(found.goodness.n_constants, 8)
             self.assertLess(abs(found.variables[P]["value"] - 2), 4 * found.variables[P]["deviation"])
             self.assertGreater(found.goodness.probability, 1e-3)
+
+
+class Together(unittest.TestCase):
+    """Several kinds of data in one fit."""
+
+    def test_information_adds_up(self):
+        """Of independent data the inverse squares of the deviations of one variable do, and so does chi-square at one value."""
+        strain = Samples("strain", S, T, fields(STRESS).stretch - 1 + NOISE * np.random.default_rng(3).standard_normal((41, 7)))
+        kinds, noise = [tracks(STRESS, origin=0), strain, path(STRESS), path(STRESS, 0.02, "speed")], [NOISE, NOISE, NOISE, 0.02]
+        alone = [fit(STRESS, one, P, standard_deviation=deviation, origin="tail") for one, deviation in zip(kinds, noise)]
+        both = fit(STRESS, kinds, P, standard_deviation=noise, origin="tail")
+        self.assertAlmostEqual(both.variables[P]["deviation"] ** -2 / sum(one.variables[P]["deviation"] ** -2 for one in alone), 1, delta=0.05)
+        self.assertLess(abs(both.variables[P]["value"] - 2), 4 * both.variables[P]["deviation"])
+        self.assertEqual([one["kind"] for one in both.goodness.series], ["markers", "strain", "centre", "speed"])
+        self.assertAlmostEqual(sum(one["chi_square"] for one in both.goodness.series), both.goodness.chi_square, delta=1e-6)
+        self.assertEqual(([one.shape for one in both.residuals], both.goodness.n_data), ([(41, 7), (41, 7), (41, 1), (41, 1)], 656))
+        for residuals, deviation, one in zip(both.residuals, noise, both.goodness.series):
+            self.assertAlmostEqual(np.sum(residuals ** 2) / deviation ** 2, one["chi_square"], delta=1e-6 * one["chi_square"])
+        one, two = (fit(STRESS, kinds, P, standard_deviation=noise, origin="tail", workers=n, starts=2) for n in (1, 2))
+        self.assertEqual(one, two)
+
+    def test_one_origin_and_clock_for_all(self):
+        """The path counts from where the tracks do, and begins later; places of markers stay free."""
+        centre, data = path(STRESS), tracks(STRESS)
+        centre.values, centre.t, data.t = centre.values[10:] + 3, centre.t[10:] + 5, data.t + 5
+        found = crawler.fit({**STRESS, P: 1.8}, [data, centre], {P: RANGES[P]}, standard_deviation=[NOISE, NOISE], first_time=0)
+        self.assertEqual(found.goodness.n_constants, 8)
+        self.assertGreater(found.goodness.probability, 1e-3)
+        self.assertLess(abs(found.variables[P]["value"] - 2), 4 * found.variables[P]["deviation"])
+
+    def test_names_the_kind_of_the_largest_residual(self):
+        speed = path(STRESS, 0.02, "speed")
+        speed.values[20] += 0.3
+        found = fit(STRESS, [tracks(STRESS), speed], P, standard_deviation=[NOISE, 0.02])
+        self.assertIn("at the speed, t = 1 of the run", found.notes[0])
 
 
 class Valley(unittest.TestCase):
@@ -345,12 +405,20 @@ class Refusals(unittest.TestCase):
                 ('"Body/Length" from 1.5 to 4, but the outermost marker is at 2', {"variables": {BODY + "Length": (1.5, 4)}, "markers_at": S}),
                 ("a list of places", {"variables": {BODY + "Length": (1.9, 4)}}), ("data do not depend", {"variables": {"Time/End time": (2, 4)}}),
                 ("of the type ndarray, but the name of a file or measured.Samples", {"data": np.zeros((41, 7))}),
-                ("of the type tuple", {"data": (T, np.zeros(41))}), ("measured.read_samples(NAME, unit_of_t=...)", {"unit_of_t": "1/30"}),
+                ("of the type ndarray", {"data": (T, np.zeros(41))}), ("measured.read_samples(NAME, unit_of_t=...)", {"unit_of_t": "1/30"}),
                 ("the time 1.95 behind 2", {"data": Samples("centre", np.zeros(1), T[::-1], np.zeros((41, 1)))}),
                 ("the data have inf at t = 0", {"data": Samples("centre", np.zeros(1), T, np.full((41, 1), np.inf))}),
                 ("the deviation 0 at t = 0", {"data": Samples("centre", np.zeros(1), T, np.zeros((41, 1)), deviation=np.zeros((41, 1)))}),
                 ("one of the two", {"data": Samples("centre", np.zeros(1), T, np.zeros((41, 1)), deviation=np.ones((41, 1))), "standard_deviation": 1}),
+                ("the standard deviation of number 2 of the data is not known", {"data": [tracks(STRAIN), path(STRESS)], "standard_deviation": [NOISE, "automatic"]}),
+                ("2 of them are expected", {"data": [tracks(STRAIN), path(STRESS)], "standard_deviation": NOISE}),
+                ('has "-1" for number 2', {"data": [tracks(STRAIN), path(STRESS)], "standard_deviation": [NOISE, -1]}),
+                ("both have tracks of markers", {"data": [tracks(STRAIN), tracks(STRAIN)]}),
                 ("shape (41,)", {"data": Samples("centre", np.zeros(1), T, np.zeros(41))}),
+                ("[1] to [4] are", {"scene": {**STRAIN, BODY + "Friction profile": "1, 1, 1, 1"}, "variables": {BODY + "Friction profile[5]": (0.1, 2)}}),
+                ("numbers at places", {"variables": {BODY + "Friction profile[1]": (0.1, 2)}}),
+                ('"rate" is expected', {"scene": {**STRAIN, BODY + "Friction profile": "1+rate*s", BODY + "Constants": "rate=1"}, "variables": {BODY + "Constants[rat]": (0.1, 2)}}),
+                ("is 0 at s = 1", {"scene": {**STRAIN, BODY + "Friction profile": "2+rate*s", BODY + "Constants": "rate=1"}, "variables": {BODY + "Constants[rate]": (-2, 2)}}),
                 ("cannot be run", {"scene": inverted, "variables": {AMPLITUDE: (4, 6)}})):
             with self.subTest(sentence=sentence):
                 self.refused(sentence, **more)

@@ -212,7 +212,7 @@ def fit(scene, data=None, variables=None, *, set=None, workers=1, verbose=False,
     """Numbers of a scene, with their uncertainty, from what was measured, as `crawler fit` finds them (doc/fit.md): a Fit.
 
     data: the name of a file, or measured.Samples, as measured.read_samples(name, unit_of_t="1/30") gives for a file in other units;
-    None: that of the scene (Fit/Data). variables: {entry: (from, to), ...};
+    of several kinds a list, with standard_deviation=[0.01, 0.02] for each; None: that of the scene (Fit/Data). variables: {entry: (from, to), ...};
     None: Fit/Variables. starts=8, standard_deviation=0.01, ... are entries of section Fit. workers: so many processes share the
     starts; the result does not depend on it. Fit.variables has, for each, value, deviation, intervals and numerical error;
     Fit.undetermined what the data cannot tell. Raises InputError, FileError, and RuntimeError where the fit fails.

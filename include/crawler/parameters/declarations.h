@@ -3,6 +3,7 @@
 
 #include <crawler/base/words.h>
 #include <crawler/parameters/entry_info.h>
+#include <crawler/parameters/plain_text.h>
 
 #include <filesystem>
 #include <functional>
@@ -86,6 +87,12 @@ namespace crawler
     flag(const std::string &name, bool &value);
     Entry
     text(const std::string &name, std::string &value, const std::string &expected, const std::string &unit = "");
+    /// Constants that the @p formulas of this section may use.
+    Entry
+    constants(const std::string &name, std::string &value, const std::vector<std::string> &formulas);
+    /// A factor along the body: a formula of s, its values at equally spaced places, or the name of a CSV file.
+    Entry
+    profile(const std::string &name, std::string &value);
     /// A text that is the name of a file, or may be one if its ending is @p ending.
     Entry
     file(const std::string &name,
@@ -93,9 +100,12 @@ namespace crawler
          const std::string &expected,
          const std::string &unit   = "",
          const std::string &ending = "");
+    /// The names of files, separated by semicolons.
+    Entry
+    files(const std::string &name, std::string &value, const std::string &expected);
 
-    /// Sets the entry with the full name @p path, or one number of a list, "Section/Entry[2]" (the numbers before it
-    /// that are not there become 0). Throws InputError (naming the entry, what was found and what was expected, with
+    /// Sets the entry with the full name @p path, or one of the numbers that it is made of (listed_numbers.h), as
+    /// "Section/Entry[2]". Throws InputError (naming the entry, what was found and what was expected, with
     /// the nearest names) if there is no such entry or the value does not fit. The name of a file counts from @p
     /// folder; it is kept, and printed, as an absolute one.
     void
@@ -105,12 +115,11 @@ namespace crawler
     std::string
     with_absolute_name(const std::string &path, const std::string &value, const std::filesystem::path &folder) const;
 
-    /// The present value of the entry @p path, or of a number of a list; "0" if the list is shorter. Throws InputError
-    /// as set() does.
+    /// The present value of the entry @p path, or of one of its numbers. Throws InputError as set() does.
     std::string
     value(const std::string &path) const;
 
-    /// The entry itself; of a number of a list, the list.
+    /// The entry itself; of one of its numbers, that of all.
     const EntryInfo &
     info(const std::string &path) const;
 
@@ -150,10 +159,6 @@ namespace crawler
     /// Throws InputError with the nearest names if there is no such entry.
     const EntryInfo &
     find(const std::vector<std::string> &path) const;
-    std::vector<double>
-    numbers_of(const EntryInfo &entry, std::size_t place) const;
-    std::string
-    with_number(const EntryInfo &entry, std::size_t place, const std::string &value) const;
     [[noreturn]] void
     refuse_name(const std::vector<std::string> &path) const;
 
@@ -174,16 +179,4 @@ namespace crawler
   /// The one spelling of a path, by which entries are compared: without blanks around its words.
   std::string
   normal_path(const std::string &path);
-
-  /// Text without blanks at both ends.
-  std::string
-  trimmed(const std::string &text);
-
-  /// A finite number if the whole text is one (a decimal or scientific literal), else nothing.
-  std::optional<double>
-  to_number(const std::string &text);
-
-  /// The shortest text from which to_number() gives back exactly @p value.
-  std::string
-  to_text(double value);
 } // namespace crawler

@@ -33,7 +33,9 @@ namespace crawler
     text,
     number,
     whole_number,
-    numbers, ///< a list; "Section/Entry[2]" is the second of them
+    numbers,   ///< a list; "Section/Entry[2]" is the second of them
+    constants, ///< of formulas, name=number, ...; "Section/Entry[a]" is the number of a
+    profile,   ///< a formula, a list as above, or the name of a file
     choice,
     flag
   };
@@ -43,7 +45,7 @@ namespace crawler
   {
     EntryKind kind                 = EntryKind::text;
     Range range                    = {};    ///< of a number
-    std::vector<std::string> words = {};    ///< of a choice
+    std::vector<std::string> words = {};    ///< of a choice; of constants, the entries with formulas that may use them
     bool may_be_automatic          = false; ///< the word "automatic" as well
     bool may_be_empty              = false; ///< of a list
   };
@@ -57,6 +59,7 @@ namespace crawler
     std::string unit;     ///< empty for words and counts
     std::string documentation;
     bool names_file         = false; ///< its value is, or may be, the name of a file that is read
+    bool names_several      = false; ///< files, separated by semicolons
     std::string file_ending = "";    ///< without it a value is not the name of a file
     EntryValues values      = {};
   };

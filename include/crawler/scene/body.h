@@ -17,10 +17,11 @@ namespace crawler
     double friction_coefficient = 1.; ///< gamma [force time/length^2]
     double anchoring_exponent   = 2.; ///< p [1]
 
-    // What a body that is not plain has besides: formulas of s or CSV files (profile.h).
+    // What a body that is not plain has besides: formulas of s, lists or CSV files (profile.h).
     std::string elastic_modulus_profile = "1";
     std::string friction_profile        = "1";
     std::string initial_stretch         = "1";
+    std::string constants               = ""; ///< of the formulas
     std::string profile_interpolation   = "cubic";
 
     /// a = 1 - p, the exponent of the stretch in the friction per reference length [1].

@@ -47,20 +47,22 @@ namespace crawler
   std::vector<double>
   profile_at(const std::shared_ptr<const Profile> &profile, const std::vector<double> &places);
 
-  /// A profile as the user writes it: a formula, or the name of a CSV file with two columns.
+  /// A profile as the user writes it: a formula, the name of a CSV file with two columns, or, along the body, a list of
+  /// its values at equally spaced places.
   struct ProfileInput
   {
     std::string quantity;                ///< what it gives, for messages
     std::string variable;                ///< s or x; also the first word of the file's header, "value" being the second
     std::string text;                    ///< ends in .csv: a file
-    std::string interpolation = "cubic"; ///< or linear, of a file
+    std::string interpolation = "cubic"; ///< or linear, of a list or a file
     std::string outside       = "hold";  ///< or error, of a file
     std::string entry;                   ///< full name of the entry
+    std::string constants = "", constants_entry = ""; ///< of a formula
   };
 
   /**
-   * Null if the profile is the number 1. Throws InputError if the formula or the file has an error, with its position
-   * or the number of its row.
+   * Null if the profile is the number 1. Throws InputError if the formula, the list or the file has an error, with its
+   * position or the number of its row.
    */
   std::shared_ptr<const Profile>
   read_profile(const ProfileInput &input, double length, double end_time);

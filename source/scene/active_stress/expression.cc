@@ -30,8 +30,7 @@ namespace crawler
       .means("The active stress m(s,t): s is the material coordinate, t the time; pi, L (body length) and T (end time) "
              "are known, and sin, cos, tan, sinh, cosh, tanh, exp, log, sqrt, abs, sign, min, max, pow, mod, floor, "
              "ceil, erf, erfc, ^, comparisons and a ? b : c.");
-    declarations.text("Constants", constants, "a list name=number, name=number")
-      .means("Constants that the formula may use.");
+    declarations.constants("Constants", constants, {"Active stress"}).means("Constants that the formula may use.");
     declarations.leave();
   }
 

@@ -43,7 +43,7 @@ namespace crawler
     declarations.text("Shape formula", shape_formula, "a formula of x", "length/time")
       .means("The velocity wave V as a formula of x, continuous, like that of Active stress/Expression; it need not "
              "repeat after the length of the body. Used if Shape is expression.");
-    declarations.text("Shape constants", shape_constants, "a list name=number, name=number")
+    declarations.constants("Shape constants", shape_constants, {"Shape formula"})
       .means("Constants that the formula may use.");
     declarations.file("Shape file", shape_file, "the name of a CSV file")
       .means(

@@ -155,7 +155,7 @@ namespace crawler
              "starts from rest, so there e(s,0) must be 0.");
     declarations.text("Strain", strain, "a formula of s and t", "1")
       .means("The strain e(s,t) as a formula like that of Active stress/Expression. Used if given by expression.");
-    declarations.text("Constants", constants, "a list name=number, name=number")
+    declarations.constants("Constants", constants, {"Strain"})
       .means("Constants that the formula may use. Used if given by expression.");
     declarations.number("Mean strain", mean_strain, any_number(), "1")
       .means("Mean of the wave: e = mean + amplitude sin(2 pi n (s + c t)/L + phase). Used, as the following entries, "

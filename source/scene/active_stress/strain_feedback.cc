@@ -51,8 +51,7 @@ namespace crawler
       .means(
         "The active stress: s is the material coordinate, t the time, w the stretch, w_t its rate, w_near the stretch "
         "at s + Distance (or at the end of the body) and w_delayed that at t - Delay; functions as in Expression.");
-    declarations.text("Constants", constants, "a list name=number, name=number")
-      .means("Constants that the formula may use.");
+    declarations.constants("Constants", constants, {"Active stress"}).means("Constants that the formula may use.");
     declarations.number("Distance", distance, any_number(), "length")
       .means("From s to the place whose stretch is w_near; positive towards s = L.");
     declarations

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/nearest_name.h>
 #include <crawler/lanes/lane_tables.h>
+#include <crawler/parameters/listed_numbers.h>
 #include <crawler/run/cycle_stop.h>
 #include <crawler/studies/core/entry_notes.h>
 #include <crawler/studies/core/entry_rules.h>
@@ -108,32 +109,32 @@ namespace crawler
       return notes;
     }
 
-    /// Constants that are not in their formula, while others of the list are.
+    /// Constants that are in no formula, while others of the list are.
     std::vector<std::string>
-    unused_constants(const ParameterFile &file, const Declarations &declarations, const VariedEntries &varied)
+    notes_on_constants(const ParameterFile &file, const Declarations &declarations, const VariedEntries &varied)
     {
       std::vector<std::string> notes;
-      for (const ConstantsOfFormula &constants : constants_of_formulas(declarations))
+      for (const EntryInfo &entry : declarations.entries())
       {
-        const Assignment *const assignment = file.assignment_of(constants.path);
-        const bool may_vary = varied.may_be_all || std::ranges::any_of(varied.paths, [&](const std::string &one) {
-                                return one == constants.path || one == constants.formula_path;
-                              });
-        if (assignment == nullptr || may_vary)
+        const Assignment *const assignment = file.assignment_of(entry.path);
+        const auto &formulas               = entry.values.words;
+        if (entry.values.kind != EntryKind::constants || assignment == nullptr || varied.may_be_all ||
+            std::ranges::any_of(varied.paths, [&](const std::string &one) {
+              return one == entry.path || std::ranges::find(formulas, one) != formulas.end();
+            }))
           continue;
-        const std::string formula = declarations.value(constants.formula_path);
-        std::vector<std::string> unused;
-        std::ranges::copy_if(constants.names, std::back_inserter(unused), [&](const std::string &name) {
-          return !uses_name(formula, name);
-        });
-        if (!unused.empty() && unused.size() < constants.names.size())
-          notes.push_back(fmt::format("Note: {}: {} of \"{}\" {} no effect with \"{} = {}\"",
-                                      assignment->place,
-                                      quoted_list(unused),
-                                      constants.path,
-                                      unused.size() == 1 ? "has" : "have",
-                                      constants.formula_path,
-                                      formula));
+        const auto unused = unused_constants(declarations, entry);
+        if (unused.empty() || unused.size() == listed_numbers(entry, declarations.value(entry.path)).size())
+          continue;
+        std::vector<std::string> values;
+        for (const std::string &path : formulas)
+          values.push_back(fmt::format("\"{} = {}\"", path, declarations.value(path)));
+        notes.push_back(fmt::format("Note: {}: {} of \"{}\" {} no effect with {}",
+                                    assignment->place,
+                                    quoted_list(unused),
+                                    entry.path,
+                                    unused.size() == 1 ? "has" : "have",
+                                    fmt::join(values, " and ")));
       }
       return notes;
     }
@@ -156,7 +157,8 @@ namespace crawler
         const EntryValues &values = declarations.info(assignment.path).values;
         const std::string &text   = assignment.value;
         const auto comma          = text.find(',');
-        if (values.kind != EntryKind::numbers || values.may_be_empty || comma == std::string::npos ||
+        const bool is_list        = values.kind == EntryKind::numbers || values.kind == EntryKind::profile;
+        if (!is_list || values.may_be_empty || comma == std::string::npos ||
             file.assignment_of(assignment.path) != &assignment)
           continue;
         const std::size_t start = text.starts_with("-") ? 1 : 0;
@@ -182,7 +184,7 @@ namespace crawler
                    const ChosenValues &chosen)
   {
     auto notes = idle_entries(file, declarations, command, varied, chosen);
-    std::ranges::copy(unused_constants(file, declarations, varied), std::back_inserter(notes));
+    std::ranges::copy(notes_on_constants(file, declarations, varied), std::back_inserter(notes));
     std::ranges::copy(decimal_commas(file, declarations), std::back_inserter(notes));
     return notes;
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/parameters/listed_numbers.h>
 #include <crawler/scene/active_stress_library.h>
 #include <crawler/studies/core/entry_rules.h>
 
@@ -6,7 +7,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <sstream>
 
 namespace crawler
 {
@@ -37,6 +37,19 @@ namespace crawler
     is_csv(const std::string &value)
     {
       return value.ends_with(".csv");
+    }
+    bool
+    is_csv_or_list(const std::string &value)
+    {
+      return is_csv(value) || to_numbers(value).value_or(std::vector<double>()).size() > 1;
+    }
+    /// Is one of these constants in a formula?
+    auto
+    uses_one_of(const std::vector<ListedNumber> &constants)
+    {
+      return [constants](const std::string &formula) {
+        return std::ranges::any_of(constants, [&](const ListedNumber &one) { return uses_name(formula, one.key); });
+      };
     }
     /// Is the variable @p name in the formula?
     auto
@@ -117,12 +130,14 @@ namespace crawler
     void
     add_rules_of_constants(const Declarations &declarations, std::vector<EntryRule> &rules)
     {
-      for (const auto &[path, formula, names] : constants_of_formulas(declarations))
+      for (const EntryInfo &entry : declarations.entries())
       {
-        const auto is_one_used = [names = names](const std::string &text) {
-          return std::ranges::any_of(names, [&](const std::string &name) { return uses_name(text, name); });
-        };
-        rules.push_back({{path}, {{formula, is_one_used}, {path, any_of({""})}}});
+        if (entry.values.kind != EntryKind::constants)
+          continue;
+        EntryRule rule{{entry.path}, {{entry.path, any_of({""})}}};
+        for (const std::string &formula : entry.values.words)
+          rule.choosers.push_back({formula, uses_one_of(listed_numbers(entry, declarations.value(entry.path)))});
+        rules.push_back(std::move(rule));
       }
     }
 
@@ -219,24 +234,15 @@ namespace crawler
     return false;
   }
 
-  std::vector<ConstantsOfFormula>
-  constants_of_formulas(const Declarations &declarations)
+  std::vector<std::string>
+  unused_constants(const Declarations &declarations, const EntryInfo &constants)
   {
-    std::vector<ConstantsOfFormula> all;
-    std::string before;
-    for (const EntryInfo &entry : declarations.entries())
-    {
-      if (entry.expected.starts_with("a list name=number"))
-      {
-        all.push_back({entry.path, before, {}});
-        std::istringstream list(declarations.value(entry.path));
-        for (std::string item; std::getline(list, item, ',');)
-          if (const std::string name = trimmed(item.substr(0, item.find('='))); !name.empty())
-            all.back().names.push_back(name);
-      }
-      before = entry.path;
-    }
-    return all;
+    std::vector<std::string> unused;
+    for (const ListedNumber &one : listed_numbers(constants, declarations.value(constants.path)))
+      if (std::ranges::none_of(constants.values.words,
+                               [&](const std::string &path) { return uses_name(declarations.value(path), one.key); }))
+        unused.push_back(one.key);
+    return unused;
   }
 
   const EntryRule *
@@ -266,12 +272,16 @@ namespace crawler
           entry.path.substr(0, entry.path.size() - generator.size() + 1), /*has_sum=*/false, rules);
     rules.push_back({{body + "Anchoring exponent"}, {{ground + "Friction law", any_of({"power"})}}});
     rules.push_back({{body + "Profile interpolation"},
-                     {{body + "Elastic modulus profile", is_csv},
-                      {body + "Friction profile", is_csv},
-                      {body + "Initial stretch", is_csv}}});
+                     {{body + "Elastic modulus profile", is_csv_or_list},
+                      {body + "Friction profile", is_csv_or_list},
+                      {body + "Initial stretch", is_csv_or_list}}});
     rules.push_back({{ground + "Profile interpolation", ground + "Outside"}, {{ground + "Profile", is_csv}}});
-    rules.push_back(
-      {{ground + "Expression", ground + "Constants"}, {{ground + "Friction law", any_of({"expression"})}}});
+    const std::string constants = ground + "Constants";
+    rules.push_back({{ground + "Expression"}, {{ground + "Friction law", any_of({"expression"})}}});
+    rules.push_back({{constants},
+                     {{ground + "Friction law", any_of({"expression"})},
+                      {ground + "Profile",
+                       uses_one_of(listed_numbers(declarations.info(constants), declarations.value(constants)))}}});
     rules.push_back({{ground + "Switching velocity"}, {{ground + "Backward ratio", is_not(1.)}}});
     add_rules_of_constants(declarations, rules);
     add_rules_of_numerics(rules);

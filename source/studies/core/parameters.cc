@@ -6,8 +6,11 @@
 
 namespace crawler
 {
-  const std::string sweep_syntax     = "\"Section/Entry : VALUES\", several of them separated by semicolons";
-  const std::string variables_syntax = "\"Section/Entry : FROM to TO\", several of them separated by semicolons";
+  const std::string sweep_syntax          = "\"Section/Entry : VALUES\", several of them separated by semicolons";
+  const std::string variables_in_brackets = "Of a list, Section/Entry[2] is the second number, [1-5] are the first "
+                                            "five, each a variable, and [*] are all; of the "
+                                            "constants of a formula, Section/Constants[a] is a.";
+  const std::string variables_syntax      = "\"Section/Entry : FROM to TO\", several of them separated by semicolons";
 
   void
   SweepParameters::add_parameters(Declarations &declarations)
@@ -91,8 +94,8 @@ namespace crawler
     declarations.choice("Direction", direction, {"forward", "backward"})
       .means("Where the body should go: forward is towards growing s.");
     declarations.text("Variables", variables, variables_syntax)
-      .means("The numbers of the scene that vary, with their ranges. The values in this file are the start. Of a list, "
-             "Section/Entry[2] is the second number, [1-5] are the first five, each a variable, and [*] are all.");
+      .means("The numbers of the scene that vary, with their ranges. The values in this file are the start. " +
+             variables_in_brackets);
     declarations.number("Work", work, positive(), "energy")
       .means("Largest work of the active stress over the duration. Automatic: no limit.");
     declarations.number("Positive work", positive_work, positive(), "energy")
@@ -129,15 +132,15 @@ namespace crawler
   FitParameters::add_parameters(Declarations &declarations)
   {
     declarations.enter("Fit");
-    declarations.file("Data", data, "the name of a file")
+    declarations.files("Data", data, "the name of a file, or of several, separated by semicolons")
       .means("What was measured: tracks of markers or samples of strain, in a file as "
              "crawler table reads it (doc/measured_data.md); or columns t and centre, the path of the centre of mass, "
-             "or t and speed, perhaps with a column deviation. The name "
+             "or t and speed, perhaps with a column deviation. Several files have data of different kinds. A name "
              "counts from the folder of this parameter file; crawler fit --data has another one.");
     declarations.text("Variables", variables, variables_syntax)
       .means("The numbers of the scene that are not known, with their ranges. The values in this file are the first "
-             "start. Of a list, "
-             "Section/Entry[2] is the second number, [1-5] are the first five, each a variable, and [*] are all.");
+             "start. " +
+             variables_in_brackets);
     declarations.text("Markers at", markers_at, "\"first\" or a list of numbers", "length")
       .means("Where on the body the markers are, from tail to head, as the body is without strain. First: where they "
              "are in the first frame, "
@@ -153,7 +156,11 @@ namespace crawler
       .means("When in the run the first of the data was measured; the times in the file count from there. Automatic: "
              "the times in the file are those "
              "of the run.");
-    declarations.number("Standard deviation", deviation, positive(), "1")
+    declarations
+      .text("Standard deviation",
+            deviation,
+            "a positive number or the word \"automatic\", for several files one for each, separated by commas",
+            "1")
       .means(
         "Of one number of the data, in its unit. Automatic: that which the data have for each number, or else as they "
         "scatter about the best fit; whether the "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/base/nearest_name.h>
+#include <crawler/parameters/listed_numbers.h>
 #include <crawler/studies/core/entry_rules.h>
 #include <crawler/studies/core/scene_numbers.h>
 
@@ -24,12 +25,15 @@ namespace crawler
         continue;
       const std::string value = declarations_.value(i);
       std::vector<std::string> paths;
-      if (to_number(value)) // also a list of one
+      if (to_number(value) && entry.values.kind != EntryKind::profile) // also a list of one
         paths.push_back(entry.path);
-      else if (entry.values.kind == EntryKind::numbers && !value.empty())
-        for (std::ptrdiff_t n = 0; n <= std::ranges::count(value, ','); ++n)
-          paths.push_back(fmt::format("{}[{}]", entry.path, n + 1));
+      else
+        for (const ListedNumber &one : listed_numbers(entry, value))
+          paths.push_back(fmt::format("{}[{}]", entry.path, one.key));
       all_.insert(all_.end(), paths.begin(), paths.end());
+      if (entry.values.kind == EntryKind::constants)
+        for (const std::string &name : unused_constants(declarations_, entry))
+          std::erase(paths, fmt::format("{}[{}]", entry.path, name));
       if (rule_against(rules, entry.path, [&](const Chooser &chooser) {
             return chooser.is_command() || chooser.fits(declarations_.value(chooser.path));
           }) == nullptr)
@@ -50,6 +54,15 @@ namespace crawler
       return path.ends_with(']') && declarations_.info(path).values.kind == EntryKind::numbers &&
              (std::ranges::find(list, entry) != list.end() || std::ranges::find(list, entry + "[1]") != list.end());
     };
+    if (path.ends_with(']'))
+      try
+      {
+        declarations_.value(path);
+      }
+      catch (const InputError &error)
+      {
+        throw InputError(fmt::format("\"{}\": {}", own, error.what()), own);
+      }
     if (!is_in(all_))
     {
       for (const EntryInfo &entry : declarations_.entries())
@@ -77,7 +90,6 @@ namespace crawler
                                    word,
                                    path),
                        own);
-    declarations_.value(path); // throws if it names no place
     return path;
   }
 } // namespace crawler

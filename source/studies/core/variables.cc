@@ -2,6 +2,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/parameters/axis.h>
 #include <crawler/parameters/declarations.h>
+#include <crawler/parameters/listed_numbers.h>
 #include <crawler/studies/core/scene_numbers.h>
 #include <crawler/studies/core/variables.h>
 
@@ -28,7 +29,7 @@ namespace crawler
       }
     };
 
-    /// "List[2-4]" and "List[*]" are several numbers of a list.
+    /// "List[2-4]" and "List[*]" are several numbers of a list, "Constants[*]" all constants.
     std::vector<std::string>
     expanded(const std::string &name, const Declarations &declarations, const Refusal &refuse)
     {
@@ -38,12 +39,10 @@ namespace crawler
       const std::string list = trimmed(name.substr(0, bracket));
       const std::string what = trimmed(name.substr(bracket + 1, name.size() - bracket - 2));
       const auto dash        = what.find('-');
-      double first = 1., last = 0.;
+      std::vector<std::string> names;
       if (what == "*")
-      {
-        const std::string values = declarations.value(list);
-        last                     = values.empty() ? 0. : 1. + static_cast<double>(std::ranges::count(values, ','));
-      }
+        for (const ListedNumber &one : listed_numbers(declarations.info(list), declarations.value(list)))
+          names.push_back(fmt::format("{}[{}]", list, one.key));
       else if (dash == std::string::npos)
         return {name};
       else
@@ -53,14 +52,14 @@ namespace crawler
         if (!from || !to || !(1. <= *from && *from <= *to && *to <= most) || *from != std::floor(*from) ||
             *to != std::floor(*to))
           refuse("found \"{}\", but two whole numbers from 1 to {} are expected in the brackets, as [1-5]", name, most);
-        first = *from;
-        last  = *to;
+        for (double i = *from; i <= *to; ++i)
+          names.push_back(fmt::format("{}[{:.0f}]", list, i));
       }
-      std::vector<std::string> names;
-      for (double i = first; i <= last; ++i)
-        names.push_back(fmt::format("{}[{:.0f}]", list, i));
       if (names.empty())
-        refuse("\"{}\" is empty, so \"{}\" is no number; the list with its numbers, or [1-5], is expected", list, name);
+        refuse("\"{0}\" is \"{2}\", so \"{1}\" is no number; a list with its numbers is expected there",
+               list,
+               name,
+               declarations.value(list));
       return names;
     }
 
@@ -119,10 +118,13 @@ namespace crawler
                  text);
         if (std::ranges::find(variables, path, &Variable::path) != variables.end())
           refuse("\"{}\" is there twice, but once is expected", path);
+        const EntryKind kind = form.declarations.info(path).values.kind;
         for (const double end : {from, to})
           try
           {
-            form.parameters_with(path, end);
+            const Parameters parameters = form.parameters_with(path, end);
+            if (kind == EntryKind::profile || kind == EntryKind::constants) // the formula says what they may be
+              parameters.create_scene();
           }
           catch (const InputError &error)
           {
@@ -132,5 +134,19 @@ namespace crawler
       }
     }
     return variables;
+  }
+
+  std::vector<Variable>
+  read_variables(const ParameterFile &file, const std::string &entry)
+  {
+    Form form(file);
+    try
+    {
+      return read_variables(form, entry);
+    }
+    catch (const InputError &error)
+    {
+      throw file.with_place(error);
+    }
   }
 } // namespace crawler

@@ -32,17 +32,23 @@ namespace
   };
 
   std::string
-  error_of(Example &example, const std::string &path, const std::string &value)
+  refusal(const auto &action)
   {
     try
     {
-      example.declarations.set(path, value);
+      action();
     }
     catch (const InputError &error)
     {
       return error.what();
     }
     return "";
+  }
+
+  std::string
+  error_of(Example &example, const std::string &path, const std::string &value)
+  {
+    return refusal([&]() { example.declarations.set(path, value); });
   }
 } // namespace
 
@@ -80,6 +86,34 @@ TEST(Declarations, NamesTheNearestEntry)
   EXPECT_NE(error_of(example, "Body/Lenght", "1").find("\"Length\""), std::string::npos);
   EXPECT_NE(error_of(example, "Boddy/Length", "1").find("\"Body\""), std::string::npos);
   EXPECT_NE(error_of(example, "Length", "1").find("\"Body/Length\""), std::string::npos);
+}
+
+/// In brackets behind the name: places of a list, constants by their names.
+TEST(Declarations, NumbersOfAnEntryHaveNames)
+{
+  std::string constants = "a = 1, rate=-2e-3", profile = "1, 2", formula = "1+s";
+  std::vector<double> list = {1.};
+  Declarations declarations;
+  declarations.enter("X");
+  declarations.constants("Constants", constants, {"Formula"}).means("C.");
+  declarations.profile("Profile", profile).means("P.");
+  declarations.profile("Formula", formula).means("F.");
+  declarations.numbers("List", list, "1").means("L.");
+  declarations.leave();
+  EXPECT_EQ(declarations.value("X/Constants[rate]"), "-0.002");
+  declarations.set("X/Constants[ rate ]", "0.5");
+  EXPECT_EQ(constants, "a = 1, rate = 0.5");
+  declarations.set("X/Profile[2]", "3");
+  EXPECT_EQ(profile, "1, 3");
+  declarations.set("X/List[3]", "4");
+  EXPECT_EQ(list, (std::vector<double>{1., 0., 4.}));
+  EXPECT_EQ(declarations.info("X/Constants").values.words, (std::vector<std::string>{"X/Formula"}));
+  for (const auto &[path, part] : {std::pair("X/Constants[rat]", "the nearest name is \"rate\""),
+                                   std::pair("X/Constants[1]", "\"a\" or \"rate\" is expected"),
+                                   std::pair("X/Profile[3]", "has 2 of them, so [1] to [2] are expected"),
+                                   std::pair("X/Formula[1]", "is \"1+s\"; numbers at places"),
+                                   std::pair("X/List[0]", "a whole number from 1 to 10000")})
+    EXPECT_NE(refusal([&]() { declarations.value(path); }).find(part), std::string::npos) << path;
 }
 
 TEST(Declarations, PrintsAllEntries)

@@ -97,8 +97,8 @@ TEST(FormulaGradient, MatchesDifferences)
 
 TEST_F(ProfileFile, InterpolatesAndHolds)
 {
-  // A cubic polynomial is reproduced by the spline, with its slope.
-  const auto cubic_of = [](const double x) { return 2. + x - 0.5 * x * x + 0.3 * x * x * x; };
+  // The exponential of a cubic polynomial is reproduced by the spline of logarithms, with its slope.
+  const auto cubic_of = [](const double x) { return std::exp(0.5 + x - 0.5 * x * x + 0.3 * x * x * x); };
   std::string rows    = "x,value\n";
   for (const double x : {0., 0.3, 0.5, 1.1, 2.})
     rows += to_text(x) + "," + to_text(cubic_of(x)) + "\r\n";
@@ -107,8 +107,8 @@ TEST_F(ProfileFile, InterpolatesAndHolds)
   {
     double f = 0., slope = 0.;
     cubic->values_and_slopes({&x, 1}, {&f, 1}, {&slope, 1});
-    EXPECT_NEAR(f, cubic_of(x), 1e-13);
-    EXPECT_NEAR(slope, 1. - x + 0.9 * x * x, 1e-12);
+    EXPECT_NEAR(f, cubic_of(x), 2e-13);
+    EXPECT_NEAR(slope, (1. - x + 0.9 * x * x) * f, 1e-12);
   }
   const auto linear = table("x,value\n0,1\n\n1,3\n", "linear");
   EXPECT_DOUBLE_EQ(linear->value(0.25), 1.5);
@@ -122,6 +122,21 @@ TEST_F(ProfileFile, InterpolatesAndHolds)
   scaled->values_and_slopes({&x, 1}, {&f, 1}, {&slope, 1});
   EXPECT_DOUBLE_EQ(f, 1.5);
   EXPECT_DOUBLE_EQ(slope, 20.);
+}
+
+/// A list has its values at places that are equally spaced along the body; steep ones do not become negative between.
+TEST_F(ProfileFile, AListIsATableOverTheBody)
+{
+  for (const char *interpolation : {"cubic", "linear"})
+  {
+    const auto of_list = read_profile({"profile", "s", "2, 0.001, 0.001, 3", interpolation, "hold", "Body/X"}, 1.5, 1.);
+    const auto of_file = table("x,value\n0,2\n0.5,0.001\n1,0.001\n1.5,3\n", interpolation);
+    for (double s = 0.; s <= 1.5; s += 0.01)
+    {
+      EXPECT_NEAR(of_list->value(s), of_file->value(s), 1e-14);
+      EXPECT_GT(of_list->value(s), 0.);
+    }
+  }
 }
 
 TEST_F(ProfileFile, BadFilesAreNamedWithTheirRow)
@@ -146,6 +161,11 @@ TEST(GeneralInput, IsCheckedInOneSentence)
   expect_message(
     {{"Body/Friction profile", "1/(s-0.5)^0"}, {"Body/Initial stretch", "s"}}, "Body/Initial stretch", "at s = 0");
   expect_message({{"Ground/Profile", "1+t"}}, "Ground/Profile", "position 3");
+  expect_message({{"Ground/Profile", "1, 1, 1, 1"}}, "Ground/Profile", "several, separated by a comma");
+  expect_message({{"Body/Friction profile", "1, 2, 3"}}, "Body/Friction profile", "at least 4 are expected");
+  expect_message({{"Body/Friction profile", "1, 2, 0, 1"}}, "Body/Friction profile", "number 3 of");
+  expect_message({{"Body/Friction profile", "1+g*s"}}, "Body/Friction profile", "\"Body/Constants\", as g=1");
+  expect_message({{"Body/Friction profile", "1+g*s"}, {"Body/Constants", "g"}}, "Body/Constants", "name=number");
   expect_message(
     {{"Ground/Friction law", "expression"}, {"Ground/Expression", "w-1"}}, "Ground/Expression", "positive");
   expect_message(

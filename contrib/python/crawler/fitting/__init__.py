@@ -13,7 +13,7 @@ __all__ = ["Data", "Fit", "Interrupted", "Model", "find", "prepared", "read_data
 
 def prepared(scene, settings, data=None, **reading):
     """The Model of a scene (a file, its text or a dict) with its data, and notes on it. settings: ["Body/Length=2", ...]; data: a
-    name, Samples, or None, which stands for Fit/Data; reading: options of measured.read_samples(). Raises InputError, FileError."""
+    name, Samples, a list of them, or None, which stands for Fit/Data; reading: options of measured.read_samples(). Raises InputError, FileError."""
     scene = Scene(scene, settings)
     effective, notes, variables = _compiled().variables_of_fit(scene())
     parameters = parameters_of(effective)

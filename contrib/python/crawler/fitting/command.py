@@ -25,7 +25,7 @@ def command_line():
     """The options."""
     parser = Parser(prog="crawler fit", description=DESCRIPTION, allow_abbrev=False)
     parser.add_argument("files", metavar="FILE", nargs="+", help="parameter file with a section Fit")
-    parser.add_argument("--data", metavar="FILE", help="what was measured (default: Fit/Data)")
+    parser.add_argument("--data", action="append", metavar="FILE", help="what was measured (repeatable, of data of several kinds; default: Fit/Data)")
     parser.add_argument("--set", action="append", default=[], metavar="ENTRY=VALUE", help="sets an entry (repeatable)")
     parser.add_argument("--output", metavar="DIR", help="output folder (default: output-NAME for NAME.prm; of several "
                         "files output-comparison, with a folder NAME for each)")
@@ -55,8 +55,10 @@ def lines_of(found):
     if found.status != "finished":
         return
     fits = (f"chi-square {goodness.chi_square:.5g} with {goodness.degrees_of_freedom} degrees of freedom (probability {goodness.probability:.2g})"
-            if goodness.deviation_is_given else f"standard deviation of a datum {goodness.deviation_of_data:.3g}, from the residuals")
+            if goodness.deviation_is_given else f"standard deviation of a datum {goodness.series[0]['deviation']:.3g}, from the residuals")
     yield f"data: {goodness.n_data}, variables: {len(found.variables)}, besides for origin and places: {goodness.n_constants}; {fits}"
+    for one in goodness.series if len(goodness.series) > 1 else ():
+        yield f"of {one['kind']}: {one['n_data']} data, chi-square {one['chi_square']:.5g}"
     is_open = len(found.starts) == 1 and (goodness.probability or 0) < GOOD
     alone = ["1 start: the minimum may be local (Fit/Starts)"] if is_open else []
     for sentence in [*found.notes, *found.undetermined, *alone]:
@@ -65,8 +67,8 @@ def lines_of(found):
 
 def origin_of(model, options, start):
     """What every summary.json has: which data, how long it took since start (time.monotonic()) [s], versions, command."""
-    measured = options.data if options.data is not None else model.parameters["Fit/Data"]
-    return {"measured": {"file": os.path.abspath(measured), "reading": reading_of(options)}, "seconds": time.monotonic() - start,
+    measured = options.data if options.data is not None else map(str.strip, model.parameters["Fit/Data"].split(";"))
+    return {"measured": {"files": [os.path.abspath(name) for name in measured], "reading": reading_of(options)}, "seconds": time.monotonic() - start,
             "versions": _compiled().versions,
             "command_line": shlex.join(["crawler", *(word for word in sys.argv[1:] if word not in ("--resume", "--overwrite", "--quiet"))])}
 
@@ -131,6 +133,8 @@ def require_sense(options):
     for name in options.files:
         if (other := stems.setdefault(pathlib.Path(name).stem, name)) is not name:
             raise InputError(f'"{other}" and "{name}" have the same name, but names of their own are expected, as their folders have them')
+        if pathlib.Path(name).suffix in (".csv", ".h5", ".hdf5", ".txt"):
+            raise InputError(f'"{name}" stands where parameter files are expected; "--data" is expected before each file of data')
     for setting in options.set:
         if "=" not in setting:
             raise InputError(f'"--set" is "{setting}", but "Section/Entry=value" is expected')
@@ -177,7 +181,7 @@ def fitted(models, folders, comparison, options, say):
 def main():
     """Fits, writes and tells."""
     start = time.monotonic()
-    options = command_line().parse_args(sys.argv[2:])
+    options = command_line().parse_intermixed_args(sys.argv[2:])
     say = Screen(options.quiet)
     require_sense(options)
     comparison = Comparison(path_of(options.files[0], options).parent, options) if len(options.files) > 1 else None

@@ -72,8 +72,10 @@ def require_comparable(models):
             if here != there:
                 raise InputError(f'"{entry}" is {_text(here)} in "{first}", but {_text(there)} in "{name}"; the same is expected of all scenes that are compared, '
                                  "as the data are weighed by it")
-        if one.data.kind != other.data.kind or any(not np.array_equal(getattr(one.data, key), getattr(other.data, key), equal_nan=True)
-                                                   for key in ("t", "values", "relative", "deviation")):
+        series = [(here, there) for here in one.data.series for there in other.data.series if here.kind == there.kind]
+        if not len(series) == len(one.data.series) == len(other.data.series) or any(
+                not np.array_equal(getattr(here, key), getattr(there, key), equal_nan=key != "deviation")
+                for here, there in series for key in ("t", "values", "relative", "deviation")):
             raise InputError(f'"{first}" and "{name}" do not fit the same data, which are expected of scenes that are compared (--data names those of all)')
 
 

@@ -10,26 +10,25 @@ from ..measured.samples import Samples, read_samples
 from ..needs import FileError, InputError
 
 CLOSE = 0.02  # outermost markers are at the ends of the body, but for this part of its length
+KINDS = {"x": "markers", "strain": "strain", "centre": "centre", "speed": "speed"}  # by the quantity of Samples
+COUNTED = ("markers", "centre")  # from an origin
+WORDS = {"markers": "tracks of markers", "strain": "samples of strain", "centre": "the path of the centre of mass", "speed": "its speed"}
 
 
 @dataclasses.dataclass
-class Data:
-    """Numbers over time, and perhaps places; a gap is NaN.
+class Series:
+    """Numbers of one kind over time, and perhaps places; a gap is NaN.
 
     kind: "markers", the x of markers [length]; "strain" [1]; "centre", the x of the centre of mass [length]; or "speed", of
     that [length/time]. t: times of the run [time], increasing; places: on the body [length], of markers and strain, else empty;
     values: array [time, place]. deviation: the standard deviation of a number, None if it is not known; relative: that of each number over
-    this one, [time, place], 1 where all have the same. has_origin: is x of the
-    run known where the data count it from? place_deviation: of the places of markers [length]; 0: they are known, inf: they are
-    free. names: of the places. notes: sentences on what a file has in another order.
+    this one, [time, place], 1 where all have the same. names: of the places. notes: sentences on what a file has in another order.
     """
     kind: str
     t: np.ndarray
     places: np.ndarray
     values: np.ndarray
     deviation: float = None
-    has_origin: bool = True
-    place_deviation: float = 0.0
     names: list = dataclasses.field(default_factory=list)
     notes: list = dataclasses.field(default_factory=list)
     relative: np.ndarray = None
@@ -42,6 +41,46 @@ class Data:
         """[time, place]: was something measured?"""
         return ~np.isnan(self.values)
 
+
+class Data:
+    """What was measured, a Series for each kind, and what is free besides the variables. All numbers one behind the other are [datum]."""
+
+    def __init__(self, series, has_origin=True, place_deviation=0.0):
+        """has_origin: is x of the run known where the data count it from? place_deviation: of the places of markers [length]; 0: they are
+        known, inf: they are free."""
+        self.series, self.has_origin, self.place_deviation = series, has_origin, place_deviation
+        self.n = int(sum(one.is_there.sum() for one in series))
+        self.values, self.relative = (self.flat([getattr(one, name) for one in series]) for name in ("values", "relative"))
+        self.notes = [note for one in series for note in one.notes]
+
+    def flat(self, arrays):
+        """[datum] of an array [time, place] for each series."""
+        return np.concatenate([np.broadcast_to(array, one.values.shape)[one.is_there] for one, array in zip(self.series, arrays)])
+
+    def grids(self, numbers):
+        """An array [time, place] for each series, of numbers [datum]; gaps are NaN."""
+        parts = np.split(numbers, np.cumsum([one.is_there.sum() for one in self.series])[:-1])
+        grids = [np.full(one.values.shape, np.nan) for one in self.series]
+        for grid, one, part in zip(grids, self.series, parts):
+            grid[one.is_there] = part
+        return grids
+
+    @property
+    def is_weighed(self):
+        """Is the deviation of each number known?"""
+        return all(one.deviation for one in self.series)
+
+    @property
+    def places(self):
+        """Of the markers; empty if there are none."""
+        return next((one.places for one in self.series if one.kind == "markers"), np.empty(0))
+
+    @places.setter
+    def places(self, places):
+        for one in self.series:
+            if one.kind == "markers":
+                one.places = places
+
     @property
     def n_constants(self):
         """How many numbers are free besides the variables: the origin, and places."""
@@ -49,65 +88,123 @@ class Data:
 
     def nuisance(self, stretch):
         """How data [datum] change with the origin and the place of each marker, columns; and the rows that hold places fast.
-        A marker at s + d instead of s is at x + w d."""
+        A marker at s + d instead of s is at x + w d, stretch being w [time, marker]."""
         columns = []
         if not self.has_origin:
-            columns.append(np.ones(self.values.shape))
+            columns.append(self.flat([float(one.kind in COUNTED) for one in self.series]))
         if self.place_deviation > 0:
             for i in range(len(self.places)):
-                one = np.zeros(self.values.shape)
-                one[:, i] = stretch[:, i]
-                columns.append(one)
-        matrix = np.array([one[self.is_there] for one in columns]).T.reshape(int(self.is_there.sum()), len(columns))
+                here = np.arange(len(self.places)) == i
+                columns.append(self.flat([stretch * here if one.kind == "markers" else 0.0 for one in self.series]))
+        matrix = np.array(columns).T.reshape(self.n, len(columns))
         if not 0 < self.place_deviation < math.inf:
             return matrix, np.zeros((0, len(columns)))
         return matrix, np.eye(len(self.places), len(columns), k=len(columns) - len(self.places)) / self.place_deviation
 
 
 def read_data(data, parameters, **reading):
-    """The Data of a file or of Samples, as section Fit of a scene says.
+    """The Data of files or of Samples, as section Fit of a scene says.
 
-    data: a name, or Samples. parameters: all entries of the scene. reading: options
-    of measured.read_samples(). Raises InputError, also for a file that cannot be read, as for those of other entries.
+    data: a name, or Samples; of several kinds of data a list of them, or names separated by semicolons. parameters: all entries of the
+    scene. reading: options of measured.read_samples(). Raises InputError, also for a file that cannot be read, as for those of other
+    entries.
     """
-    if not isinstance(data, (str, os.PathLike, Samples)):
-        raise InputError(f"the data are of the type {type(data).__name__}, but the name of a file or measured.Samples(quantity, s, t, values) is expected")
+    parts = [one.strip() for one in data.split(";")] if isinstance(data, str) else list(data) if isinstance(data, (list, tuple)) else [data]
+    read, kinds = [], {}
+    for number, part in enumerate(parts, 1):
+        if not isinstance(part, (str, os.PathLike, Samples)):
+            raise InputError(f"the data are of the type {type(part).__name__}, but the name of a file or measured.Samples(quantity, s, t, values) is expected")
+        samples = part if isinstance(part, Samples) else _read_file(part, reading, len(parts) > 1)
+        name = f'"{part}"' if not isinstance(part, Samples) else "the data" if len(parts) == 1 else f"number {number} of the data"
+        _require_sound(samples, name)
+        kind = KINDS.get(samples.quantity)
+        if kind is None:
+            raise InputError(f"{name} has samples of {samples.quantity}, but markers, strain, or columns t and centre or speed are expected")
+        if (other := kinds.setdefault(kind, name)) is not name:
+            raise InputError(f"{other} and {name} both have {WORDS[kind]}, but data of different kinds are expected")
+        read.append((samples, kind, name))
+    shift, deviations = _shift_of(read, parameters["Fit/First time"]), _deviations_of(read, str(parameters["Fit/Standard deviation"]))
+    free, series = 0.0, []
+    for (samples, kind, name), (deviation, relative) in zip(read, deviations):
+        places, of_places = _places_of(samples, kind, parameters, name)
+        free = max(free, of_places)
+        if 0 < of_places < math.inf and deviation is None:
+            raise InputError('"Fit/Place deviation" is set, but not "Fit/Standard deviation", without which the two cannot be weighed; it is expected')
+        series.append(Series(kind, _times_of_run(samples.t + shift, parameters["Time/End time"], name), places, samples.values, deviation,
+                             list(samples.names), list(samples.notes), relative))
+    return Data(series, not any(one.kind in COUNTED for one in series) or parameters["Fit/Origin"] != "unknown", free)
+
+
+def _read_file(name, reading, is_one_of_several):
+    """Its Samples. Where there are other files, options for markers do not disturb a path. Raises InputError."""
     try:
-        samples = data if isinstance(data, Samples) else read_samples(data, **reading)
+        return read_samples(name, **reading)
     except FileError as error:
         raise InputError(str(error)) from None
-    kind = {"x": "markers", "strain": "strain", "centre": "centre", "speed": "speed"}.get(samples.quantity)
-    name = "the data" if isinstance(data, Samples) else f'"{data}"'
-    _require_sound(samples, name)
-    if kind is None:
-        raise InputError(f"{name} has samples of {samples.quantity}, but markers, strain, or columns t and centre or speed are expected")
-    length, end = parameters["Body/Length"], parameters["Time/End time"]
-    places, free = np.array(samples.s, dtype=float), 0.0
-    if kind == "markers":
-        places, free = _places_of_markers(samples, parameters, length, name)
-    elif kind in ("centre", "speed"):
-        places = np.empty(0)
-    elif places[0] < 0 or places[-1] > length * (1 + 1e-9):
-        raise InputError(f"{name} has strain from s = {places[0]:g} to {places[-1]:g}, but places from 0 to Body/Length = {length:g} are "
-                         "expected; see \"--unit-of-s\" and \"--shift-s\"")
-    first = parameters["Fit/First time"]
-    t = samples.t if first == "automatic" else samples.t - samples.t[0] + float(first)
+    except InputError:
+        common = {option: value for option, value in reading.items() if option in ("unit_of_s", "unit_of_t", "shift_t")}
+        if is_one_of_several and common != reading and (samples := read_samples(name, **common)).quantity in ("centre", "speed"):
+            return samples
+        raise
+
+
+def _shift_of(read, first):
+    """What makes times of the run of those in the data; all of them have one clock."""
+    return 0.0 if first == "automatic" else float(first) - min(samples.t[0] for samples, _, _ in read)
+
+
+def _times_of_run(t, end, name):
+    """Raises InputError for times beyond the run."""
     if t[0] < -1e-9 * end or t[-1] > end * (1 + 1e-9):
         raise InputError(f"{name} has times from {t[0]:g} to {t[-1]:g} of the run, but from 0 to Time/End time = {end:g} are expected; see "
                          "Fit/First time and \"--unit-of-t\"")
-    deviation, relative = _deviation_of(samples, parameters["Fit/Standard deviation"], name)
-    if 0 < free < math.inf and deviation is None:
-        raise InputError('"Fit/Place deviation" is set, but not "Fit/Standard deviation", without which the two cannot be weighed; it is expected')
-    return Data(kind, np.clip(t, 0, end), np.clip(places, 0, length), samples.values, deviation,
-                kind not in ("markers", "centre") or parameters["Fit/Origin"] != "unknown", free, list(samples.names), list(samples.notes), relative)
+    return np.clip(t, 0, end)
+
+
+def _places_of(samples, kind, parameters, name):
+    """Where on the body samples are, and, of markers, the standard deviation of that [length]. Raises InputError."""
+    length = parameters["Body/Length"]
+    if kind == "markers":
+        places, free = _places_of_markers(samples, parameters, length, name)
+        return np.clip(places, 0, length), free
+    if kind != "strain":
+        return np.empty(0), 0.0
+    places = np.array(samples.s, dtype=float)
+    if places[0] < 0 or places[-1] > length * (1 + 1e-9):
+        raise InputError(f"{name} has strain from s = {places[0]:g} to {places[-1]:g}, but places from 0 to Body/Length = {length:g} are "
+                         "expected; see \"--unit-of-s\" and \"--shift-s\"")
+    return np.clip(places, 0, length), 0.0
+
+
+def _deviations_of(read, text):
+    """(That of all numbers, that of each over it) for each of the data, (None, None) if it is not known. text: of the entry, with a number or
+    "automatic" for each. Raises InputError, also where several kinds of data cannot be weighed."""
+    words, names = [word.strip() for word in text.split(",")], [name for _, _, name in read]
+    if words == ["automatic"]:
+        words *= len(read)
+    if len(words) != len(read):
+        raise InputError(f'"Fit/Standard deviation" is {text}, but {f"{len(read)} of them are" if len(read) > 1 else "one is"} expected, '
+                         f'separated by commas, for {", ".join(names)}')
+    deviations = [_deviation_of(samples, word, name) for (samples, _, name), word in zip(read, words)]
+    unknown = [name for name, (deviation, _) in zip(names, deviations) if deviation is None]
+    if unknown and len(read) > 1:
+        raise InputError(f"the standard deviation of {unknown[0]} is not known, without which it cannot be weighed against {next(one for one in names if one != unknown[0])}; "
+                         'a column "deviation" there, or "Fit/Standard deviation" with a number for each, is expected')
+    return deviations
 
 
 def _deviation_of(samples, wanted, name):
-    """That of all numbers and, [time, place], that of each over it; (None, None) if it is not known. wanted: Fit/Standard deviation."""
+    """That of all numbers and, [time, place], that of each over it; (None, None) if it is not known. wanted: a number or "automatic"."""
+    try:
+        given = None if wanted == "automatic" else float(wanted)
+    except ValueError:
+        given = math.nan
+    if given is not None and not 0 < given < math.inf:
+        raise InputError(f'"Fit/Standard deviation" has "{wanted}" for {name}, but a positive number or the word "automatic" is expected')
     if samples.deviation is None:
-        return (None if wanted == "automatic" else float(wanted)), None
-    if wanted != "automatic":
-        raise InputError(f'"Fit/Standard deviation" is {wanted:g}, but {name} have a deviation for each number; one of the two is expected')
+        return given, None
+    if given is not None:
+        raise InputError(f'"Fit/Standard deviation" is {given:g}, but {name} have a deviation for each number; one of the two is expected')
     each, there = np.asarray(samples.deviation, dtype=float), ~np.isnan(samples.values)
     if each.shape != samples.values.shape:
         raise InputError(f"{name} have deviations of the shape {each.shape}, but {samples.values.shape}, that of the values, is expected")

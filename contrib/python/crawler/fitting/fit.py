@@ -23,14 +23,15 @@ class Problem:
     def __init__(self, model, data):
         self.model, self.data = model, data
         self.width = model.high - model.low
-        self.scale = data.deviation or float(np.nanstd(data.values - np.nanmean(data.values, axis=0))) or 1.0
-        self.scales = self.scale * data.relative[data.is_there]  # [datum]
+        units = [one.deviation or float(np.nanstd(one.values - np.nanmean(one.values, axis=0))) or 1.0 for one in data.series]
+        self.scales = data.relative * data.flat(units)  # [datum]
+        self.scale = units[0] if len(units) == 1 else 1.0  # of residuals that are told: several kinds in deviations
         self.n_rows = len(data.places) if 0 < data.place_deviation < math.inf else 0  # that hold places fast
         self.last = None  # scaled variables, values of the last run, and what the nuisance cannot change
         self.least = (math.inf, None, data.places)  # sum of squares that was seen, with its scaled variables and places
 
     def run(self, z):
-        """What the scene says [time, place], and an orthonormal basis of what origin and places change."""
+        """What the scene says [datum], and an orthonormal basis of what origin and places change."""
         if self.last is None or not np.array_equal(self.last[0], z):
             values, stretch = self.model(self.real(z))
             basis = None
@@ -47,8 +48,8 @@ class Problem:
         return np.clip(self.model.low + np.asarray(z) * self.width, self.model.low, self.model.high)
 
     def scaled(self, values, basis):
-        """Differences [time, place] as residuals, without what origin and places can take up; behind them those of the places."""
-        rest = np.concatenate([values[self.data.is_there] / self.scales, np.zeros(self.n_rows)])
+        """Differences [datum] as residuals, without what origin and places can take up; behind them those of the places."""
+        rest = np.concatenate([values / self.scales, np.zeros(self.n_rows)])
         return rest if basis is None else rest - basis @ (basis.T @ rest)
 
     def residuals(self, z):
@@ -83,7 +84,7 @@ class Problem:
             if not np.all(np.isfinite(self.residuals(z))):
                 return math.inf, z, False
             found = least_squares(self.residuals, np.clip(z, 1e-9, 1 - 1e-9), self.jacobian, bounds=(0, 1), x_scale="jac",
-                                  ftol=CHANGE / self.data.is_there.sum(), xtol=1e-8, gtol=1e-12, max_nfev=MOST_STEPS)
+                                  ftol=CHANGE / self.data.n, xtol=1e-8, gtol=1e-12, max_nfev=MOST_STEPS)
             z = found.x
             if self.data.place_deviation < math.inf or not self.move_places(z):
                 break
@@ -102,8 +103,7 @@ class Problem:
         data, length = self.data, self.model.parameters["Body/Length"]
         values, stretch = self.model(self.real(z))
         matrix, _ = data.nuisance(stretch)
-        weights = 1 / data.relative[data.is_there]
-        shifts = np.linalg.lstsq(matrix * weights[:, None], (data.values - values)[data.is_there] * weights, rcond=1e-9)[0][-len(data.places):]
+        shifts = np.linalg.lstsq(matrix / self.scales[:, None], (data.values - values) / self.scales, rcond=1e-9)[0][-len(data.places):]
         before, data.places = data.places, np.clip(data.places + shifts, 0, length)
         data.places = np.maximum.accumulate(data.places + 1e-9 * length * np.arange(len(shifts)))  # in their order
         data.places = np.minimum(data.places, length * (1 - 1e-9 * np.arange(len(shifts))[::-1]))
@@ -154,8 +154,8 @@ def _looked_at(problem, z):
     data, jacobian = problem.data, problem.jacobian(z, both_sides=True)
     z = problem.improved(z, jacobian)
     residual = problem.residuals(z)
-    freedom = int(data.is_there.sum()) - len(z) - data.n_constants
-    deviation = 1.0 if data.deviation else max(math.sqrt(float(residual @ residual) / freedom), LEAST_NOISE)
+    freedom = data.n - len(z) - data.n_constants
+    deviation = 1.0 if data.is_weighed else max(math.sqrt(float(residual @ residual) / freedom), LEAST_NOISE)
     loose, members = undetermined_directions(jacobian / deviation)
     return Best(z, jacobian, deviation, _numerical_error(problem, z, jacobian), loose, members)
 
@@ -166,8 +166,8 @@ def _numerical_error(problem, z, jacobian):
     model, data = problem.model, problem.data
     problem.last = None  # so that the bound is that of this run
     values, basis = problem.run(z)
-    drift = model.bound / data.t[-1] if data.t[-1] > 0 else 0.0
-    drift = {"speed": drift * np.ones(values.shape), "strain": np.zeros(values.shape)}.get(data.kind, drift * data.t[:, None] + 0 * values)
+    rate = model.bound / max(one.t[-1] for one in data.series) if any(one.t[-1] > 0 for one in data.series) else 0.0
+    drift = data.flat([{"speed": rate, "strain": 0.0}.get(one.kind, rate * one.t[:, None]) for one in data.series])
     finer, _ = model(problem.real(z), model.accuracy / 30)
     if not np.all(np.isfinite(finer)):
         return np.full(len(z), math.nan)

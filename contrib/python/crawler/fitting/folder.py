@@ -130,14 +130,14 @@ class Folder:
     def write(self, found, settings, name):
         """The files of a fit. settings: ["Body/Length=2", ...], of the parameter file name."""
         again = " ".join(["crawler fit fitted.prm", *words_of(found["measured"]["reading"])])
-        entries = {**dict(one.split("=", 1) for one in settings), **found.settings, "Fit/Data": found["measured"]["file"]}
+        entries = {**dict(one.split("=", 1) for one in settings), **found.settings, "Fit/Data": "; ".join(found["measured"]["files"])}
         text = f"# The scene with the values that a fit found; the fit again: {again}\ninclude {os.path.abspath(name)}\n{to_prm(entries)}"
         write_whole(self.path / "fitted.prm", text.encode())
-        data, rows = found.data, ["t,place,data,model,residual"]
-        places = data.places if len(data.places) else np.full(1, np.nan)
-        for i, t in enumerate(data.t):
-            rows += [f"{t:.12g},{places[j]:.12g},{data.values[i, j]:.12g},{found.model[i, j]:.12g},{found.residuals[i, j]:.6g}"
-                     for j in range(data.values.shape[1]) if data.is_there[i, j]]
+        rows = ["kind,t,place,data,model,residual"]
+        for one, model, residuals in zip(found.data.series, *(of if isinstance(of, list) else [of] for of in (found.model, found.residuals))):
+            places = one.places if len(one.places) else np.full(1, np.nan)
+            rows += [f"{one.kind},{one.t[i]:.12g},{places[j]:.12g},{one.values[i, j]:.12g},{model[i, j]:.12g},{residuals[i, j]:.6g}"
+                     for i, j in np.argwhere(one.is_there)]
         write_whole(self.path / "residuals.csv", ("\n".join(rows) + "\n").encode())
         self.write_summary(found)
 
@@ -186,9 +186,11 @@ def _text(value):
 
 def _digest(data):
     """Of all numbers that were measured, where they are, and their deviations."""
-    digest = hashlib.sha256(data.kind.encode())
-    for values in (data.t, data.places, data.values, data.relative * (data.deviation or 0)):
-        digest.update(np.ascontiguousarray(values, dtype=float).tobytes())
+    digest = hashlib.sha256()
+    for one in data.series:
+        digest.update(one.kind.encode())
+        for values in (one.t, one.places, one.values, one.relative * (one.deviation or 0)):
+            digest.update(np.ascontiguousarray(values, dtype=float).tobytes())
     return digest.hexdigest()
 
 

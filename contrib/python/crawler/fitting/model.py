@@ -2,7 +2,6 @@
 """The numbers that a run gives where there are data, and their derivatives."""
 import dataclasses
 import json
-import re
 
 import numpy as np
 
@@ -12,6 +11,8 @@ from ..results import parameters_of
 
 STEP = 1e-4  # of differences, relative to a value
 LENGTH = "Body/Length"
+POINTS = 201  # on the body, of means over it
+FIELDS = {"markers": ("displacement", "stretch"), "strain": ("stretch",), "centre": ("displacement",), "speed": ("velocity",)}
 
 
 @dataclasses.dataclass
@@ -42,8 +43,8 @@ class Model:
         if "Time/End time" in self.names:
             raise InputError('"Fit/Variables" has "Time/End time", but the data do not depend on it: all of them are measured before; another '
                              "variable is expected")
-        if LENGTH in self.names and len(self.data.places):
-            j, last, is_marker = self.names.index(LENGTH), float(self.data.places[-1]), self.data.kind == "markers"
+        for one in self.data.series if LENGTH in self.names else ():
+            j, last, is_marker = self.names.index(LENGTH), float(one.places[-1]) if len(one.places) else 0.0, one.kind == "markers"
             if self.low[j] < last:
                 what = "the outermost marker is" if is_marker else "there is strain"
                 advice = (' (with "Fit/Markers at" = first it is where the body of the scene ends: a list of places)' if self.parameters["Fit/Markers at"] == "first"
@@ -52,46 +53,49 @@ class Model:
                                  f"body; a range that begins at {last:g} or more is expected{advice}")
 
     def overrides(self, x):
-        """Entries with these values; a list as a whole."""
-        lists, others = {}, []
-        for name, value in zip(self.names, x):
-            match = re.fullmatch(r"(.*)\[(\d+)\]", name)
-            if match:
-                whole = lists.setdefault(match[1], str(self.parameters[match[1]]).split(","))
-                whole += ["0"] * (int(match[2]) - len(whole))  # as the program fills up a list
-                whole[int(match[2]) - 1] = repr(float(value))
-            else:
-                others.append(f"{name}={float(value)!r}")
-        return [*others, *(f"{name}={', '.join(map(str.strip, whole))}" for name, whole in lists.items())]
+        """Entries with these values."""
+        return [f"{name}={float(value)!r}" for name, value in zip(self.names, x)]
 
     def _answer(self, x, accuracy, times, places):
         self.n_runs += 1
         settings = [*self.overrides(x), "Output/Number of snapshots=0", "Output/Statistics=false", "Output/Sensitivities=",
                     f"Accuracy={accuracy!r}"]
-        return _compiled().run(self.scene(settings), times, places)
+        try:
+            return _compiled().run(self.scene(settings), times.tolist(), places.tolist())
+        except InputError as error:  # a formula that is no friction with these constants, say
+            self.problem = str(error)
+            return None
 
     def __call__(self, x, accuracy=None):
-        """The numbers [time, place], and the stretch there if places are free; NaN if the run does not finish, for which problem
+        """The numbers [datum], and the stretch [time, marker] if there are markers; NaN if the run does not finish, for which problem
         has the reason."""
-        data = self.data
-        places = None if not len(data.places) else data.places.tolist()
-        answer = self._answer(np.clip(x, self.low, self.high), accuracy or self.accuracy, data.t.tolist(), places)
+        x, series = np.clip(x, self.low, self.high), self.data.series
+        length = x[self.names.index(LENGTH)] if LENGTH in self.names else self.parameters[LENGTH]
+        whole = np.linspace(0, length, POINTS) if any(one.kind in ("centre", "speed") for one in series) else []
+        times, places = np.unique(np.concatenate([one.t for one in series])), np.unique(np.concatenate([whole, *(one.places for one in series)]))
+        answer = self._answer(x, accuracy or self.accuracy, times, places)
+        if answer is None:
+            return np.full(self.data.n, np.nan), None
         summary = json.loads(answer["summary"])
         if summary["status"] != "finished" or "fields" not in answer:
             self.problem = f"{summary['reason']}: {summary['message']}"
-            return np.full(data.values.shape, np.nan), None
+            return np.full(self.data.n, np.nan), None
         self.bound = (summary.get("displacement_error") or {}).get("total") or 0.0
-        fields = answer["fields"]
-        if data.kind == "markers":
-            return fields["displacement"] + data.places, fields["stretch"]
-        if data.kind == "strain":
-            return fields["stretch"] - 1, None
-        if data.kind == "speed":
-            return _mean(fields["velocity"]), None
-        return _mean(fields["displacement"]) + (x[self.names.index(LENGTH)] if LENGTH in self.names else self.parameters[LENGTH]) / 2, None
+        values, stretch = [], None
+        for one in series:
+            where = np.ix_(np.searchsorted(times, one.t), np.searchsorted(places, one.places if len(one.places) else whole))
+            field = {name: answer["fields"][name][where] for name in FIELDS[one.kind]}
+            if one.kind == "markers":
+                stretch = field["stretch"]
+                values.append(field["displacement"] + one.places)
+            elif one.kind == "strain":
+                values.append(field["stretch"] - 1)
+            else:
+                values.append(_mean(field["velocity"]) if one.kind == "speed" else _mean(field["displacement"]) + length / 2)
+        return self.data.flat(values), stretch
 
     def jacobian(self, x, value=None):
-        """Derivatives [time, place, variable]: differences on both sides, or, if value is the model at x, on one."""
+        """Derivatives [datum, variable]: differences on both sides, or, if value is the model at x, on one."""
         columns = []
         for j, at in enumerate(x):
             step = min(STEP * max(abs(at), 1e-2 * (self.high[j] - self.low[j])), 0.25 * (self.high[j] - self.low[j]))
@@ -105,7 +109,7 @@ class Model:
             sides = [side for side in sides if np.all(np.isfinite(side[1]))]
             if len(sides) < 2:  # at a limit, or the body inverts on the other side
                 sides.append((at, value if value is not None else self(x)[0]))
-            columns.append((sides[0][1] - sides[1][1]) / (sides[0][0] - sides[1][0]) if len(sides) == 2 else np.full(self.data.values.shape, np.nan))
+            columns.append((sides[0][1] - sides[1][1]) / (sides[0][0] - sides[1][0]) if len(sides) == 2 else np.full(self.data.n, np.nan))
         return np.stack(columns, axis=-1)
 
 
@@ -118,7 +122,7 @@ def _mean(values):
 
 def require_enough(data, variables):
     """Raises InputError if there are fewer data than unknown numbers."""
-    n, unknown = int(data.is_there.sum()), len(variables) + data.n_constants
+    n, unknown = data.n, len(variables) + data.n_constants
     if n <= unknown:
         raise InputError(f"there are {n} data, but {unknown} numbers are to be found ({len(variables)} variables, {data.n_constants} "
                          "for origin and places of the tracks); more data or fewer variables are expected")

@@ -20,12 +20,15 @@ ALIKE = 5             # correlation of residuals in time, in its own deviations,
 
 
 class Fit(Numbers):
-    """What was found: the keys of summary.json (doc/fit.md). Besides: data; model and residuals, arrays [time, place] like
-    data.values; covariance, an array [variable, variable] in units of the entries; settings, the entries of the best scene."""
+    """What was found: the keys of summary.json (doc/fit.md). Besides: data, whose series are what was measured; model and residuals,
+    arrays [time, place] like the values of the data, for several kinds of data lists of them; covariance, an array [variable, variable]
+    in units of the entries; settings, the entries of the best scene."""
 
-    def __init__(self, found, data, model, settings, covariance_of_values):
+    def __init__(self, found, data, residuals, settings, covariance_of_values):
+        """residuals: [datum], data less run."""
         super().__init__(found)
-        self.data, self.model, self.residuals = data, model, data.values - model
+        model, residuals = data.grids(data.values - residuals), data.grids(residuals)
+        self.data, self.model, self.residuals = data, *((model[0], residuals[0]) if len(model) == 1 else (model, residuals))
         self.settings, self.covariance = settings, covariance_of_values
 
     def __repr__(self):
@@ -74,13 +77,13 @@ def unfinished(problem, starts, is_stopped):
     without deviations, as derivatives say nothing of a minimum that was not reached."""
     model, data = problem.model, problem.data
     squares, z, _ = problem.least
-    values, grid = problem.real(z), np.full(data.values.shape, np.nan)
-    grid[data.is_there] = problem.residuals(z)[:data.is_there.sum()]
+    values, residual = problem.real(z), problem.residuals(z)[:data.n]
     variables = {name: {"value": float(value), "used": float(value), "deviation": None, "numerical_error": None, "bias": None,
                         **{level: None for level in LEVELS}, "profile": [], "from": float(low), "to": float(high), "determined": None,
                         "at_limit": ""}
                  for name, value, low, high in zip(model.names, values, model.low, model.high)}
-    goodness = {"kind": data.kind, "n_data": int(data.is_there.sum()), "n_variables": len(z), "n_constants": data.n_constants}
+    goodness = {"n_data": data.n, "n_variables": len(z), "n_constants": data.n_constants,
+                "series": [{"kind": one.kind, "n_data": int(one.is_there.sum())} for one in data.series]}
     message = (f"stopped by a signal after {len(starts)} of {int(model.parameters['Fit/Starts'])} starts; --resume goes on" if is_stopped else
                f"the search did not end within {MOST_STEPS} steps: the values are those so far, and not the best ones; a start that is nearer, "
                "narrower ranges or fewer variables are expected")
@@ -88,18 +91,16 @@ def unfinished(problem, starts, is_stopped):
              "variables": variables, "undetermined": [], "notes": [*data.notes, *([] if is_stopped else [message])],
              "goodness": goodness, "residuals": math.sqrt(squares / goodness["n_data"]) * problem.scale, "accuracy": model.accuracy,
              "n_runs": model.n_runs, "starts": starts}
-    return Fit(found, data, data.values + grid * problem.scale * data.relative, dict(one.split("=", 1) for one in model.overrides(values)), None)
+    return Fit(found, data, -residual * problem.scales, dict(one.split("=", 1) for one in model.overrides(values)), None)
 
 
 def described(problem, best, starts):
     """The Fit."""
     model, data = problem.model, problem.data
-    values, residual, there = problem.real(best.z), problem.residuals(best.z), data.is_there
-    grid = np.full(data.values.shape, np.nan)
-    grid[there] = residual[:there.sum()]
-    variables, goodness = _variables(problem, best, values), _goodness(problem, best, residual, grid)
-    n, k = goodness["n_data"], len(values) + data.n_constants + (0 if data.deviation else 1)
-    likelihood = goodness["chi_square"] if data.deviation else n * math.log(max(float(residual @ residual), 1e-300) * problem.scale ** 2 / n)
+    values, residual = problem.real(best.z), problem.residuals(best.z)
+    variables, goodness = _variables(problem, best, values), _goodness(problem, best, residual)
+    n, k = data.n, len(values) + data.n_constants + (0 if data.is_weighed else 1)
+    likelihood = goodness["chi_square"] if data.is_weighed else n * math.log(max(float(residual @ residual), 1e-300) * problem.scale ** 2 / n)
     matrix = covariance(best.jacobian)
     found = {"status": "finished", "reason": "converged", "message": "", "variables": variables,
              "undetermined": list(_untold(problem, best, variables, values)) if goodness["probability"] is None or goodness["probability"] >= HOPELESS else [],
@@ -107,7 +108,7 @@ def described(problem, best, starts):
              "correlation": (matrix / np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))).tolist(), "goodness": goodness,
              "information": {"aic": likelihood + 2 * k, "bic": likelihood + k * math.log(n)},
              "accuracy": model.accuracy, "n_runs": model.n_runs, "starts": starts}
-    return Fit(found, data, data.values + grid * problem.scale * data.relative, dict(one.split("=", 1) for one in model.overrides(values)),
+    return Fit(found, data, -residual[:data.n] * problem.scales, dict(one.split("=", 1) for one in model.overrides(values)),
                matrix * best.deviation ** 2 * np.outer(problem.width, problem.width))
 
 
@@ -145,21 +146,24 @@ def _variables(problem, best, values):
     return variables
 
 
-def _goodness(problem, best, residual, grid):
-    """Does the scene fit the data? grid: residuals [time, place]."""
-    data, n = problem.data, int(problem.data.is_there.sum())
-    chi_square, freedom = float(residual @ residual) / best.deviation ** 2, n - len(best.z) - data.n_constants
-    return {"kind": data.kind, "n_data": n, "n_variables": len(best.z), "n_constants": data.n_constants, "chi_square": chi_square,
-            "degrees_of_freedom": freedom, "probability": probability(chi_square, freedom) if data.deviation else None,
-            "largest_residual": _largest(data, grid / best.deviation), "deviation_of_data": best.deviation * problem.scale, "deviation_is_given": data.deviation is not None,
-            "correlation_in_time": correlation_in_time(grid)}
+def _goodness(problem, best, residual):
+    """Does the scene fit the data?"""
+    data, chi_square, grids = problem.data, float(residual @ residual) / best.deviation ** 2, problem.data.grids(residual[:problem.data.n] / best.deviation)
+    freedom, units = data.n - len(best.z) - data.n_constants, data.grids(problem.scales / data.relative)
+    return {"n_data": data.n, "n_variables": len(best.z), "n_constants": data.n_constants, "chi_square": chi_square,
+            "degrees_of_freedom": freedom, "probability": probability(chi_square, freedom) if data.is_weighed else None,
+            "largest_residual": max((_largest(one, grid) for one, grid in zip(data.series, grids)), key=lambda one: abs(one["deviations"])),
+            "deviation_is_given": data.is_weighed,
+            "series": [{"kind": one.kind, "n_data": int(one.is_there.sum()), "chi_square": float(np.nansum(grid ** 2)),
+                        "deviation": float(np.nanmax(unit)) * best.deviation, "correlation_in_time": correlation_in_time(grid)}
+                       for one, grid, unit in zip(data.series, grids, units)]}
 
 
-def _largest(data, grid):
+def _largest(series, grid):
     """The largest of residuals [time, place] in deviations, the time of the run, and the name of the marker or s of the place."""
     j, i = np.unravel_index(np.nanargmax(np.abs(grid)), grid.shape)
-    place = None if not len(data.places) else data.names[i] if data.kind == "markers" and len(data.names) > i else f"{data.places[i]:.6g}"
-    return {"deviations": float(grid[j, i]), "t": float(data.t[j]), "place": place}
+    place = None if not len(series.places) else series.names[i] if series.kind == "markers" and len(series.names) > i else f"{series.places[i]:.6g}"
+    return {"deviations": float(grid[j, i]), "t": float(series.t[j]), "place": place, "kind": series.kind}
 
 
 def _does_not_fit(goodness):
@@ -176,7 +180,7 @@ def _does_not_fit(goodness):
 def _largest_in_words(goodness):
     """The largest residual, where it is."""
     one = goodness["largest_residual"]
-    place = {"markers": f"marker {one['place']}, ", "strain": f"s = {one['place']}, "}.get(goodness["kind"], "")
+    place = {"markers": f"marker {one['place']}, ", "strain": f"s = {one['place']}, "}.get(one["kind"], f"the {one['kind']}, " if len(goodness["series"]) > 1 else "")
     return f"the largest residual is {abs(one['deviations']):.3g} deviations, at {place}t = {one['t']:.6g} of the run"
 
 
@@ -190,9 +194,11 @@ def _notes(best, variables, goodness, data):
         if abs(one["bias"] or 0) > BIASED * (one["deviation"] or math.inf):
             yield (f"of many such data the mean of {name} would be about {abs(one['bias']):.2g} too {'large' if one['bias'] > 0 else 'small'}, as the run "
                    "is not linear in it; the interval allows for that")
-    if goodness["correlation_in_time"] > ALIKE / math.sqrt(goodness["n_data"]):
-        yield (f"residuals that are neighbours in time are alike (correlation {goodness['correlation_in_time']:.2g}): the scene does not describe "
-               "all that the data have, or their errors are not independent, and the deviations are too small")
+    for one in goodness["series"]:
+        if one["correlation_in_time"] > ALIKE / math.sqrt(one["n_data"]):
+            of = f" of the {one['kind']}" if len(goodness["series"]) > 1 else ""
+            yield (f"residuals{of} that are neighbours in time are alike (correlation {one['correlation_in_time']:.2g}): the scene does not describe "
+                   "all that the data have, or their errors are not independent, and the deviations are too small")
     if not best.worst <= SHARE:
         yield ("the numerical error is not known" if math.isnan(best.worst) else
                f"the numerical error is up to {best.worst:.2g} of the statistical one")

@@ -33,7 +33,7 @@ def best_of_starts(problem, kept, workers, progress):
         _see(problem, found)
         least = _root_mean_square(problem, min(one["squares"] for one in wanted_of(problem, kept)))
         progress(f"start {found['start'] + 1} of {len(points)}: " + (
-            found["reason"] or f"residuals {_root_mean_square(problem, found['squares']):.6g} (root mean square), least so far {least:.6g}"))
+            found["reason"] or f"residuals {_root_mean_square(problem, found['squares']):.6g} (root mean square{' in deviations' if len(problem.data.series) > 1 else ''}), least so far {least:.6g}"))
     best = min(wanted_of(problem, kept), key=lambda one: one["squares"])
     model.n_runs = sum(one["n_runs"] for one in wanted_of(problem, kept))
     if best["squares"] == math.inf:
@@ -69,7 +69,7 @@ def table_of_starts(problem, kept):
 
 
 def _root_mean_square(problem, squares):
-    return math.sqrt(squares / problem.data.is_there.sum()) * problem.scale
+    return math.sqrt(squares / problem.data.n) * problem.scale
 
 
 def _see(problem, found):

@@ -77,10 +77,11 @@ def draw_variables(axes, variables):
     axes.axis("off")
 
 
-def columns_of(folder, *names):
-    """Columns of residuals.csv."""
+def data_of(folder, *names):
+    """Columns of residuals.csv: {kind of the data: columns}."""
     rows = read_rows(existing(folder / "residuals.csv", "the output folder of crawler fit"))
-    return [np.array([number(row[name]) for row in rows]) for name in names]
+    kinds = dict.fromkeys(row["kind"] for row in rows)
+    return {kind: [np.array([number(row[name]) for row in rows if row["kind"] == kind]) for name in names] for kind in kinds}
 
 
 def comparison_of(folder, rows):
@@ -96,10 +97,13 @@ def comparison_of(folder, rows):
              title="which scene the data prefer")
     left.legend(frameon=False)
     for k, row in enumerate(rows):
-        t, residuals = columns_of(folder / row["folder"], "t", "residual")
+        series = read_summary(folder / row["folder"], "the output folder of crawler fit")["goodness"]["series"]
+        units = {one["kind"]: one["deviation"] if len(series) > 1 else 1 for one in series}
+        data = data_of(folder / row["folder"], "t", "residual")
+        t, residuals = np.concatenate([one[0] for one in data.values()]), np.concatenate([one[1] / units[kind] for kind, one in data.items()])
         times, where = np.unique(t, return_inverse=True)
         right.plot(times, np.sqrt(np.bincount(where, residuals ** 2) / np.bincount(where)), LINES[k % len(LINES)], color=COLOURS[k % len(COLOURS)], label=row["scene"])
-    right.set(xlabel=NAMES["t"], ylabel="residuals (root mean square)", title="how far each is from the data", ylim=(0, None))
+    right.set(xlabel=NAMES["t"], ylabel=f"residuals (root mean square{', in deviations' if len(series) > 1 else ''})", title="how far each is from the data", ylim=(0, None))
     right.legend(frameon=False)
     return figure
 
@@ -114,12 +118,14 @@ def main():
         return
     if not summary.get("variables"):
         raise InputError(f"{options.folder} has no values to draw: {summary.get('message')}")
-    t, place, data, model, residuals = columns_of(options.folder, "t", "place", "data", "model", "residual")
-    place = np.nan_to_num(place)
-    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(13, 4.2), layout="constrained")
-    draw_data(left, t, place, data, model, summary["goodness"]["kind"])
-    draw_residuals(middle, t, place, residuals)
-    draw_variables(right, summary["variables"])
+    found = data_of(options.folder, "t", "place", "data", "model", "residual")
+    figure = plt.figure(figsize=(13, 1 + 3.2 * len(found)), layout="constrained")
+    grid = figure.add_gridspec(len(found), 3)
+    for row, (kind, (t, place, data, model, residuals)) in enumerate(found.items()):
+        left, middle = (figure.add_subplot(grid[row, column]) for column in (0, 1))
+        draw_data(left, t, np.nan_to_num(place), data, model, kind)
+        draw_residuals(middle, t, np.nan_to_num(place), residuals)
+    draw_variables(figure.add_subplot(grid[:, 2]), summary["variables"])
     save(figure, options.output or options.folder / "fit.png", dpi=110, few_colours=True)
 
 

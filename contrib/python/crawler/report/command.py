@@ -65,7 +65,7 @@ def data_of(folder, kind):
             raise InputError(f"{folder} has no scenes to compare: {(data['summary'] or {}).get('message')}")
         return {**data, "runs": [], "fits": fits_within(folder, data["summary"] or {})}
     if table and (folder / table).exists():
-        data["table"] = table_in(folder / table, group) if group else data_of_fit(folder / table, data["summary"] or {})
+        data["table" if group else "tables"] = table_in(folder / table, group) if group else data_of_fit(folder / table)
     if name == "tradeoff" and (folder / "tradeoff.csv").exists() and "advice" not in (data["summary"] or {"advice": []}):
         data["summary"].update(evaluate(read_rows(folder)))
     if name == "run":

@@ -1,24 +1,26 @@
 // What a fit has found: values and profiles, what the data do not tell, and the data beside the best run.
 
-const tableOf = (heads, rows, soft = []) => el('div', {class: 'scroll'}, el('table', {},
-  el('thead', {}, el('tr', {}, ...heads.map((name, i) => el('th', {class: soft.includes(i) && 'wide-only'}, name)))),
-  el('tbody', {}, ...rows.map(cells => el('tr', {}, ...cells.map((cell, i) => el('td', {class: (i ? 'value' : 'entry') + (soft.includes(i) ? ' wide-only' : '')}, ...[cell].flat())))))));
+// A table; on a narrow screen a block for each row, in which each cell has its heading before it.
+const tableOf = (heads, rows) => el('div', {class: 'scroll'}, el('table', {class: 'stacks'}, el('thead', {}, el('tr', {}, ...heads.map(name => el('th', {}, name)))),
+  el('tbody', {}, ...rows.map(cells => el('tr', {}, ...cells.map((cell, i) => el('td', i ? {class: 'value', 'data-head': heads[i]} : {class: 'entry'}, ...[cell].flat())))))));
 const sentence = text => `${text[0].toUpperCase()}${text.slice(1)}.`;
 const told = () => Object.entries(summary.variables ?? {}).filter(([, one]) => one.determined);
 
 function showValues() {
   if (!summary.variables) return; // a fit that was killed
-  const unit = entry => unitText(page.parameters.entries.find(one => one.entry === entry.replace(/\[\d+\]$/, ''))?.unit), between = (ends, one) => !ends ? '–'
+  const unit = entry => unitText(page.parameters.entries.find(one => one.entry === entry.replace(/\[[^\]]*\]$/, ''))?.unit), between = (ends, one) => !ends ? '–'
     : [0, 1].flatMap(i => [i ? ' to ' : '', ends[i] === null ? 'the limit' : exactly(ends[i], showWith(ends[i], one.deviation))]);
   const box = section('Values'), rows = Object.entries(summary.variables ?? {}).map(([entry, one]) => [[...brokenAtSlashes(entry)],
     one.determined === false ? 'not told by the data' : [exactly(one.value, showWith(one.value, one.deviation)), known(one.deviation) ? ` ± ${show(one.deviation, 2)}` : '', el('span', {class: 'unit'}, ' ' + unit(entry))],
     show(one.numerical_error, 2), show(one.bias, 2), between(one.interval_68, one), between(one.interval_95, one), `${show(one.from)} to ${show(one.to)}`]);
-  box.append(tableOf(['entry', 'value ± deviation', 'numerical error', 'bias', '68 %', '95 %', 'range'], rows, [2, 3, 4, 6]));
+  box.append(tableOf(['entry', 'value ± deviation', 'numerical error', 'bias', '68 %', '95 %', 'range'], rows));
   const {goodness: fit = {}} = summary;
   if (known(fit.chi_square)) box.append(el('p', {}, `${plural(fit.n_data, 'measured number')}, ${plural(fit.degrees_of_freedom, 'degree')} of freedom. `, fit.deviation_is_given
     ? `Chi-square is ${show(fit.chi_square, 5)}; noise alone gives as much or more with the probability ${show(fit.probability, 2)}.`
-    : `The standard deviation of a datum is ${show(fit.deviation_of_data, 3)}, from the residuals: whether the scene fits cannot be told.`,
-    ` Residuals that are neighbours in time have the correlation ${show(fit.correlation_in_time, 2)}.`));
+    : `The standard deviation of a datum is ${show(fit.series[0].deviation, 3)}, from the residuals: whether the scene fits cannot be told.`,
+    fit.series.length > 1 ? '' : ` Residuals that are neighbours in time have the correlation ${show(fit.series[0].correlation_in_time, 2)}.`));
+  if (fit.series?.length > 1 && known(fit.chi_square)) box.append(tableOf(['data', 'numbers', 'chi-square', 'deviation of one', 'correlation in time'],
+    fit.series.map(one => [one.kind, exactly(one.n_data), exactly(one.chi_square, show(one.chi_square, 5)), show(one.deviation, 3), show(one.correlation_in_time, 2)])));
   for (const text of [...summary.undetermined ?? [], ...summary.notes ?? []]) box.append(el('div', {class: 'notice unfinished', role: 'note'}, el('p', {}, sentence(text))));
 }
 
@@ -63,12 +65,12 @@ function showFit() {
   showValues();
   showProfiles();
   showCorrelation();
-  if (page.table) {
-    const details = () => {}, box = section('Data and the best run');
-    new Explorer(box, page.table, {axes: [], details, decorate: drawBestRun, first: {x: ['t'], y: ['data'], colour: ['place', 't']}});
+  for (const table of page.tables ?? []) {
+    const details = () => {}, of = page.tables.length > 1 ? `: ${table.kind}` : '', box = section(`Data and the best run${of}`);
+    new Explorer(box, table, {axes: [], details, decorate: drawBestRun, first: {x: ['t'], y: ['data'], colour: ['place', 't']}});
     box.append(el('p', {class: 'soft small'}, 'Dots: the data. Lines: the best run.'));
-    new Explorer(section('Residuals', el('p', {class: 'soft'}, 'Data less run. Patches or stripes are what the scene does not describe; noise has none.')), page.table,
-      {axes: ['t', 'place'], details, first: {x: ['place', 't'], y: page.table.columns.some(column => column.name === 'place') ? ['t'] : ['residual'], colour: ['residual']}});
+    new Explorer(section(`Residuals${of}`, el('p', {class: 'soft'}, 'Data less run. Patches or stripes are what the scene does not describe; noise has none.')), table,
+      {axes: ['t', 'place'], details, first: {x: ['place', 't'], y: table.columns.some(column => column.name === 'place') ? ['t'] : ['residual'], colour: ['residual']}});
   }
   const starts = summary.starts ?? [];
   if (starts.length > 1) section('Starts', tableOf(['start', 'residuals (root mean square)', ...Object.keys(starts[0].values).map(shortName)],
@@ -80,7 +82,7 @@ function showComparison() {
   const rows = summary.comparison ?? [], criteria = [['aic', 'AIC'], ['bic', 'BIC']], far = Math.max(10, ...rows.flatMap(one => criteria.map(([key]) => one[`${key}_less_least`])));
   const box = section('Which scene the data prefer', el('p', {class: 'soft'}, 'Information criteria of Akaike and Bayes, and by how much they are above the least one; a difference of 10 is strong evidence.'),
     tableOf(['scene', 'variables', 'chi-square', 'degrees of freedom', 'AIC', 'BIC', 'AIC less least', 'BIC less least'], rows.map(one => [el('a', {href: `${one.folder}/`}, one.scene),
-      ...[one.variables, one.chi_square, one.degrees_of_freedom, one.aic, one.bic, one.aic_less_least, one.bic_less_least].map(value => exactly(value))]), [1, 3, 4, 5]));
+      ...[one.variables, one.chi_square, one.degrees_of_freedom, one.aic, one.bic, one.aic_less_least, one.bic_less_least].map(value => exactly(value))])));
   const chart = figure('Criteria.', 'One more than the difference from the least; grey: a difference of 10.');
   box.append(chart);
   new Chart(chart, {height: 60 + 50 * rows.length, label: 'information criteria', axes: () => ({x: {low: 1, high: 1.3 * (1 + far), log: true, title: '1 + difference from the least'},

@@ -76,18 +76,21 @@ def run_in(folder, title, most_times):
     return run
 
 
-def data_of_fit(path, summary):
-    """The table of what was measured, as table_in() gives it: time, place, data, the best run, and the residuals."""
-    unit = {"strain": "1", "speed": "length/time"}.get(summary.get("goodness", {}).get("kind"), "length")
-    meanings = {"t": ("time", "time of the run"), "place": ("length", "where on the undeformed body"), "data": (unit, "what was measured"),
-                "model": (unit, "the best run"), "residual": (unit, "data less run, without what origin and places can take up")}
+def data_of_fit(path):
+    """Tables of what was measured, as table_in() gives them, one for each kind of data: time, place, data, the best run, and the residuals."""
     columns = read_columns(path)
-    if list(columns) != list(meanings) or not all(isinstance(column, np.ndarray) for column in columns.values()):
-        raise InputError(f'"{path}" is damaged: the columns {", ".join(meanings)} with numbers are expected')
-    rows = some(len(columns["t"]), MOST_ROWS)
-    digits = None if len(rows) <= MOST_STEPS else DIGITS
-    return {"all_rows": len(columns["t"]), "rows": len(rows), "left_out": [],
-            "columns": [Column(name, *meanings[name], column[rows], digits).json() for name, column in columns.items() if np.any(np.isfinite(column))]}
+    if list(columns) != ["kind", "t", "place", "data", "model", "residual"] or not all(isinstance(columns[name], np.ndarray) for name in columns if name != "kind"):
+        raise InputError(f'"{path}" is damaged: the columns kind, t, place, data, model and residual are expected')
+    kinds, tables = np.array(columns.pop("kind")), []
+    for kind in dict.fromkeys(kinds.tolist()):
+        unit, here = {"strain": "1", "speed": "length/time"}.get(kind, "length"), np.flatnonzero(kinds == kind)
+        meanings = {"t": ("time", "time of the run"), "place": ("length", "where on the undeformed body"), "data": (unit, "what was measured"),
+                    "model": (unit, "the best run"), "residual": (unit, "data less run, without what origin and places can take up")}
+        rows = here[some(len(here), MOST_ROWS)]
+        digits = None if len(rows) <= MOST_STEPS else DIGITS
+        tables.append({"kind": kind, "all_rows": len(here), "rows": len(rows), "left_out": [],
+                       "columns": [Column(name, *meanings[name], column[rows], digits).json() for name, column in columns.items() if np.any(np.isfinite(column[here]))]})
+    return tables
 
 
 def fits_within(folder, summary):

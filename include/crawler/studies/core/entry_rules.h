@@ -31,15 +31,9 @@ namespace crawler
     std::vector<Chooser> choosers;
   };
 
-  /// An entry with the constants of a formula, which is declared behind that of the formula.
-  struct ConstantsOfFormula
-  {
-    std::string path, formula_path;
-    std::vector<std::string> names;
-  };
-
-  std::vector<ConstantsOfFormula>
-  constants_of_formulas(const Declarations &declarations);
+  /// Those of the names in the entry @p constants that none of its formulas uses.
+  std::vector<std::string>
+  unused_constants(const Declarations &declarations, const EntryInfo &constants);
 
   /// Is the variable or constant @p name in the formula?
   bool

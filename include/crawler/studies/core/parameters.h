@@ -76,9 +76,8 @@ namespace crawler
   /// variables).
   struct FitParameters
   {
-    std::string data = "", variables = "", markers_at = "first", origin = "unknown";
+    std::string data = "", variables = "", markers_at = "first", origin = "unknown", deviation = "automatic";
     std::optional<double> first_time;      ///< [time]
-    std::optional<double> deviation;       ///< [unit of the data]
     std::optional<double> place_deviation; ///< [length]
     unsigned int n_starts = 1, seed = 1;
 

@@ -9,7 +9,7 @@
 namespace crawler
 {
   /// The numbers of the scene that entries of other sections may name: of the body, the ground, the active stress, and
-  /// the end time; those of a list one by one, "Section/Entry[2]".
+  /// the end time; those of a list and constants of formulas one by one, "Section/Entry[2]", "Section/Entry[a]".
   class SceneNumbers
   {
   public:

@@ -19,4 +19,8 @@ namespace crawler
   /// scene, empty or inadmissible ranges, values in the file outside of them.
   std::vector<Variable>
   read_variables(Form &form, const std::string &entry);
+
+  /// The same of a file, with the place in it where one is wrong.
+  std::vector<Variable>
+  read_variables(const ParameterFile &file, const std::string &entry);
 } // namespace crawler

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/nearest_name.h>
+#include <crawler/parameters/listed_numbers.h>
+#include <crawler/parameters/plain_text.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace crawler
+{
+  namespace
+  {
+    constexpr std::size_t longest_list = 10000; ///< that a place in brackets makes
+
+    std::vector<ListedNumber>
+    in_places(const std::vector<double> &numbers)
+    {
+      std::vector<ListedNumber> list;
+      for (const double number : numbers)
+        list.push_back({std::to_string(list.size() + 1), number});
+      return list;
+    }
+
+    std::vector<ListedNumber>
+    constants_of(const std::string &text)
+    {
+      std::vector<ListedNumber> list;
+      std::istringstream in(text);
+      for (std::string item; std::getline(in, item, ',');)
+        if (const auto equals = item.find('='); equals != std::string::npos)
+          if (const auto number = to_number(trimmed(item.substr(equals + 1))))
+            list.push_back({trimmed(item.substr(0, equals)), *number});
+      return list;
+    }
+
+    [[noreturn]] void
+    refuse(const EntryInfo &entry, const std::string &key, const std::string &reason)
+    {
+      throw InputError(fmt::format("\"{}[{}]\" {}", entry.path, key, reason), entry.path);
+    }
+
+    /// Says what may stand in the brackets instead.
+    [[noreturn]] void
+    refuse_key(const EntryInfo &entry,
+               const std::string &text,
+               const std::string &key,
+               const std::vector<ListedNumber> &list)
+    {
+      switch (entry.values.kind)
+      {
+        case EntryKind::constants:
+        {
+          std::vector<std::string> names;
+          for (const ListedNumber &one : list)
+            names.push_back(one.key);
+          const auto near = nearest_names(key, names, 1);
+          refuse(
+            entry,
+            key,
+            names.empty()
+              ? fmt::format("names a constant, but \"{}\" has none; {} is expected there", entry.path, entry.expected)
+              : fmt::format("names no constant: {} is expected{}",
+                            quoted_list(names),
+                            near.empty() || names.size() == 1 ? "" : "; the nearest name is " + quoted_list(near)));
+        }
+        case EntryKind::profile:
+          refuse(entry,
+                 key,
+                 list.empty() ? fmt::format("names a number of a list, but \"{}\" is \"{}\"; numbers at places that "
+                                            "are equally spaced from tail to head are expected there, as 1, 1, 1, 1",
+                                            entry.path,
+                                            text)
+                              : fmt::format("names no number of the list; \"{}\" has {} of them, so [1] to [{}] are "
+                                            "expected",
+                                            entry.path,
+                                            list.size(),
+                                            list.size()));
+        case EntryKind::numbers:
+          throw InputError(
+            fmt::format("\"{}\" should name a number of a list, but a whole number from 1 to {} is expected "
+                        "in the brackets",
+                        entry.path,
+                        longest_list),
+            entry.path);
+        default:
+          refuse(entry, key, fmt::format("names a number of a list, but \"{}\" is {}", entry.path, entry.expected));
+      }
+    }
+
+    /// The numbers of the entry, and which of them the key names; a list is as long as the key says.
+    std::pair<std::vector<ListedNumber>, std::size_t>
+    numbers_with(const EntryInfo &entry, const std::string &text, const std::string &key)
+    {
+      std::vector<ListedNumber> list = listed_numbers(entry, text);
+      const auto number              = to_number(key);
+      if (entry.values.kind == EntryKind::numbers && number && *number >= 1. && *number <= longest_list)
+        for (std::size_t n = list.size() + 1; static_cast<double>(n) <= *number; ++n)
+          list.push_back({std::to_string(n), 0.});
+      const auto found = std::ranges::find(list, key, &ListedNumber::key);
+      if (found != list.end())
+      {
+        const auto place = static_cast<std::size_t>(found - list.begin());
+        return {std::move(list), place};
+      }
+      refuse_key(entry, text, key, list);
+    }
+  } // namespace
+
+  std::vector<ListedNumber>
+  listed_numbers(const EntryInfo &entry, const std::string &text)
+  {
+    if (entry.values.kind == EntryKind::constants)
+      return constants_of(text);
+    const bool is_list = entry.values.kind == EntryKind::numbers ||
+                         (entry.values.kind == EntryKind::profile && text.find(',') != std::string::npos);
+    return is_list ? in_places(to_numbers(text).value_or(std::vector<double>())) : std::vector<ListedNumber>();
+  }
+
+  double
+  listed_number(const EntryInfo &entry, const std::string &text, const std::string &key)
+  {
+    const auto [list, place] = numbers_with(entry, text, key);
+    return list[place].value;
+  }
+
+  std::string
+  with_listed_number(const EntryInfo &entry, const std::string &text, const std::string &key, const double value)
+  {
+    auto [list, place] = numbers_with(entry, text, key);
+    list[place].value  = value;
+    std::string result;
+    for (const ListedNumber &other : list)
+      result += (result.empty() ? "" : ", ") + (entry.values.kind == EntryKind::constants ? other.key + " = " : "") +
+                to_text(other.value);
+    return result;
+  }
+
+  std::optional<std::string>
+  take_key(std::string &path)
+  {
+    const std::size_t start = path.find('[');
+    if (start == std::string::npos || !path.ends_with(']'))
+      return std::nullopt;
+    std::string key = trimmed(path.substr(start + 1, path.size() - start - 2));
+    path            = trimmed(path.substr(0, start));
+    return key;
+  }
+} // namespace crawler
