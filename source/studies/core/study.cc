@@ -95,7 +95,7 @@ namespace crawler
     bool is_whole = true;
     std::string problem;
     {
-      WorkQueue queue(communicator, work.n_parts);
+      WorkQueue queue(communicator, work.n_parts, work.besides);
       StudyProgress progress(log, work.n_points, work.points);
       const auto show_progress = [&]() {
         if (rank_of(communicator) != 0 || !progress.is_due())

@@ -3,10 +3,8 @@
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
 #include <crawler/base/plain_numbers.h>
-#include <crawler/base/row_file.h>
 #include <crawler/base/stop_signal.h>
 #include <crawler/parameters/declarations.h>
-#include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/python.h>
@@ -14,192 +12,23 @@
 #include <crawler/studies/core/study_folder.h>
 #include <crawler/studies/optimize/gradient_check.h>
 #include <crawler/studies/optimize/optimize.h>
-#include <crawler/studies/optimize/optimize_cases.h>
-#include <crawler/studies/optimize/optimize_results.h>
+#include <crawler/studies/optimize/optimize_searches.h>
 #include <crawler/studies/run/run.h>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
+#include <memory>
 #include <optional>
-#include <span>
 
 namespace crawler
 {
   namespace
   {
     namespace fs = std::filesystem;
-    using Json   = nlohmann::ordered_json;
 
     constexpr double accuracy_of_check = 1e-7; ///< of simulations, for --check-gradient
-
-    /// A case and a start: of its own, or the best gait of a neighbour of the case.
-    struct Part
-    {
-      unsigned long number_of_case, start;
-      std::optional<unsigned long> neighbour = {};
-      std::vector<double> x                  = {}; ///< the gait of the neighbour
-
-      fs::path
-      file(const fs::path &folder) const
-      {
-        return folder / "starts" /
-               (neighbour
-                  ? fmt::format("{}-from-{}-{:08x}.json", number_of_case + 1, *neighbour + 1, mark(std::span(x)))
-                  : fmt::format("{}-{}.json", number_of_case + 1, start));
-      }
-
-      /// A number that no other part has, for the notes on crashes.
-      unsigned long
-      number() const
-      {
-        return mark(std::span(file("").native()));
-      }
-
-    private:
-      /// A number that other bytes do not have (FNV-1a).
-      template <class Span>
-      static std::uint32_t
-      mark(const Span bytes)
-      {
-        std::uint32_t sum = 2166136261u;
-        for (const std::byte byte : std::as_bytes(bytes))
-          sum = (sum ^ std::to_integer<std::uint32_t>(byte)) * 16777619u;
-        return sum;
-      }
-    };
-
-    std::vector<Part>
-    parts_of(const OptimizeCases &cases)
-    {
-      std::vector<Part> parts;
-      for (unsigned long number = 0; number < cases.size(); ++number)
-        for (unsigned long start = 0; start < cases.parameters().optimize.n_starts; ++start)
-          parts.push_back({number, start});
-      return parts;
-    }
-
-    /// What is in the folder already of a part. Throws InputError if its file is damaged.
-    std::optional<StartResult>
-    earlier(const Part &part, const fs::path &folder)
-    {
-      const fs::path file = part.file(folder);
-      if (!fs::exists(file))
-        return std::nullopt;
-      try
-      {
-        return unpack_start(read_whole_file(file));
-      }
-      catch (const nlohmann::json::exception &)
-      {
-        throw InputError(
-          fmt::format("\"{}\" is damaged, or of another version; without this file --resume computes its "
-                      "start again",
-                      file.string()));
-      }
-    }
-
-    bool
-    is_done(const Part &part, const fs::path &folder)
-    {
-      const auto found = earlier(part, folder);
-      return found && !found->was_interrupted;
-    }
-
-    /// What the parts have found so far.
-    OptimizeResults
-    results_of(OptimizeCases &cases, std::vector<Part> parts, const fs::path &folder)
-    {
-      std::ranges::stable_sort(parts, {}, &Part::number_of_case);
-      std::vector<StartResult> starts;
-      for (const Part &part : parts)
-        if (auto start = earlier(part, folder))
-          starts.push_back(std::move(*start));
-      return {cases, std::move(starts)};
-    }
-
-    /// The gait @p x in a case, if it keeps to all limits and is better than @p own by more than the optimiser's
-    /// tolerance.
-    std::optional<GaitRecord>
-    better_gait(OptimizeCases &cases, const StartResult &own, const std::vector<double> &x)
-    {
-      constexpr double more = 10.;
-      const auto family     = cases.family(own.number_of_case);
-      const auto &variables = family->variables();
-      for (std::size_t i = 0; i < x.size(); ++i)
-        if (x[i] < variables[i].from || x[i] > variables[i].to)
-          return std::nullopt;
-      const OptimizeParameters wishes = family->form().parameters.optimize;
-      try
-      {
-        const auto model = make_gait_model(*family, x, []() { return false; });
-        GaitProblem problem(*model, wishes, variables, x, []() { return false; });
-        const GaitRecord record = problem.record(problem.to_y(x));
-        if (!record.problem.empty() || record.violation > problem.admissible())
-          return std::nullopt;
-        const std::vector<GaitRecord> both = {own.best, record};
-        const bool is_better               = &GaitProblem::best_of(both, wishes, problem.admissible()) == &both[1] &&
-                               (!own.is_admissible() || std::abs(record.objective - own.best.objective) >
-                                                          more * problem.admissible() * std::abs(own.best.objective));
-        return is_better ? std::optional(record) : std::nullopt;
-      }
-      catch (const InputError &) // here it is no gait
-      {
-        return std::nullopt;
-      }
-    }
-
-    /// Of each case whose best gait is beaten by that of a neighbour the best one of these, to go on from there.
-    std::vector<Part>
-    parts_from_neighbours(OptimizeCases &cases, const std::vector<Part> &parts, const fs::path &folder, Log &log)
-    {
-      const OptimizeResults results = results_of(cases, parts, folder);
-      const auto best_of            = [&](const unsigned long number) -> const StartResult            *{
-        for (const std::size_t i : results.best)
-          if (results.starts[i].number_of_case == number)
-            return &results.starts[i];
-        return nullptr;
-      };
-      std::vector<Part> more;
-      for (unsigned long number = 0; number < cases.size(); ++number)
-      {
-        const StartResult *const own = best_of(number);
-        if (own == nullptr)
-          continue;
-        StartResult leader = *own;
-        std::optional<Part> found;
-        for (const unsigned long neighbour : cases.neighbours(number))
-        {
-          const StartResult *const other = best_of(neighbour);
-          if (other == nullptr || results.cases[neighbour].paths != results.cases[number].paths)
-            continue;
-          const std::vector<double> &x = other->best.x;
-          const bool is_known =
-            std::ranges::any_of(parts, [&](const Part &part) { return part.number_of_case == number && part.x == x; });
-          const auto record = is_known ? std::nullopt : better_gait(cases, leader, x);
-          if (!record)
-            continue;
-          leader.best = *record;
-          const auto n_own =
-            std::ranges::count_if(parts, [&](const Part &part) { return part.number_of_case == number; });
-          found = {number, static_cast<unsigned long>(n_own), neighbour, x};
-        }
-        if (!found)
-          continue;
-        log.line(
-          fmt::format("With {} the gait of {} is better ({:.6g}) than its own ({:.6g}): the search goes on there.",
-                      cases.in_words(number),
-                      cases.in_words(*found->neighbour),
-                      leader.best.objective,
-                      own->best.objective));
-        more.push_back(*found);
-      }
-      return more;
-    }
 
     /// The parameter files and runs of an earlier study, but for files that are not the program's.
     void
@@ -219,6 +48,7 @@ namespace crawler
           runs.push_back(entry.path());
       }
       std::error_code error;
+      fs::remove_all(folder / "starts", error); // of earlier versions
       for (const fs::path &file : files)
         fs::remove(file, error);
       for (const fs::path &run : runs)
@@ -230,24 +60,31 @@ namespace crawler
       }
     }
 
+    /// Starts were files of their own in versions before this table of them.
     void
-    begin_or_resume(MPI_Comm communicator, StudyFolder &folder, const ParameterFile &file, const std::string &effective)
+    require_no_old_starts(const fs::path &folder)
     {
-      on_first_rank(communicator, [&]() -> std::string {
-        const fs::path starts = folder.path() / "starts";
-        if (folder.begin(file.text(), effective))
-          folder.resume([&]() {
-            return differences(
-              read_whole_file(folder.path() / "parameters.prm"), effective, folder.kind().free_entries);
-          });
-        else
-        {
-          remove_optima(folder.path());
-          fs::remove_all(starts);
-          fs::create_directories(starts);
-        }
-        return "";
-      });
+      std::error_code error;
+      if (!fs::exists(folder / OptimizeMemory::file, error) && fs::exists(folder / "starts" / "1-0.json", error))
+        throw InputError(fmt::format("the optimization in \"{}\" was made by an earlier version of crawler, which kept "
+                                     "its starts as starts/*.json instead of {}, so it cannot be resumed; another "
+                                     "folder is expected for --output, or --overwrite",
+                                     folder.string(),
+                                     OptimizeMemory::file));
+    }
+
+    /// What has been found already, or room for it (one process).
+    std::unique_ptr<OptimizeMemory>
+    begin_or_resume(OptimizeCases &cases, StudyFolder &folder, const ParameterFile &file, const CommandOptions &options)
+    {
+      if (options.resume)
+        require_no_old_starts(folder.path());
+      PlannedRows plan{0, {}, cases.inputs(), cases.effective()};
+      auto memory = std::make_unique<OptimizeMemory>(OptimizeNames(cases), std::move(plan), options.command_line);
+      memory->begin_or_resume(folder, file);
+      if (memory->starts().empty())
+        remove_optima(folder.path());
+      return memory;
     }
 
     std::string
@@ -330,7 +167,7 @@ namespace crawler
     /// Tables, the optima with their runs, and the summary, by rank 0. Returns the exit code.
     ExitCode
     write_results(OptimizeCases &cases,
-                  const std::vector<Part> &parts,
+                  OptimizeSearches &searches,
                   const CommandOptions &options,
                   const std::string &effective,
                   const bool is_whole,
@@ -339,11 +176,10 @@ namespace crawler
                   const fs::path &folder,
                   Log &log)
     {
-      const OptimizeResults results = results_of(cases, parts, folder);
-      const Table evaluations       = evaluation_table(results);
+      const OptimizeResults results = searches.results();
+      const Table evaluations       = evaluation_table(results, results.starts);
       write_file(folder / "results.csv", csv(evaluations));
-      write_hdf5(folder / "results.h5", "optimize", evaluations, provenance(effective, options.command_line));
-      write_file(folder / "starts.csv", csv(start_table(results)));
+      write_file(folder / "starts.csv", csv(start_table(results, results.starts)));
       std::vector<std::string> summaries;
       bool is_admissible = !results.best.empty(), has_converged = !results.best.empty(), runs = true;
       for (std::size_t i = 0; i < results.best.size(); ++i)
@@ -382,15 +218,14 @@ namespace crawler
                  : why == "limits_exceeded" ? conflict(results)
                  : why == "best_run_failed" ? "the run of a best gait did not end as it should; its log.txt says why"
                                             : "the optimiser did not converge; the lines above say why");
-      const std::string number = !cases.axes().empty() ? "-N" : "";
-      const auto n_neighbours =
-        std::ranges::count_if(parts, [](const Part &part) { return part.neighbour.has_value(); });
+      const std::string number       = !cases.axes().empty() ? "-N" : "";
+      const std::size_t n_neighbours = searches.n_from_neighbours();
       if (cases.parameters().optimize.n_starts == 1 && !results.best.empty())
         log.line(fmt::format("{}1 start: the optimum may be a local one; Optimize/Starts = 8 looks from others, too.",
                              cases.axes().empty() ? "" : "Each case had "));
       log.line(fmt::format("{} evaluations from {}{}, {:.1f} s. {}",
                            std::get<std::vector<double>>(evaluations.front().values).size(),
-                           counted(results.starts.size() - static_cast<std::size_t>(n_neighbours), "start"),
+                           counted(results.starts.size() - n_neighbours, "start"),
                            n_neighbours > 0 ? " and " + counted(n_neighbours, "gait") + " of neighbours" : "",
                            seconds,
                            results.best.empty() ? fmt::format("Tables are in {}/.", folder.string())
@@ -472,72 +307,24 @@ namespace crawler
     {
       throw file.with_place(error);
     }
-    std::vector<Part> parts     = parts_of(cases);
-    const std::string effective = cases.effective();
-    const fs::path path         = output_folder(options.output, options.file);
-    StudyFolder folder({"optimization", {"starts"}, {"Optimize/Time limit", "Optimize/Starts"}}, path, options, log);
-    begin_or_resume(communicator, folder, file, effective);
-
+    const fs::path path = output_folder(options.output, options.file);
+    StudyFolder folder(
+      {"optimization", {OptimizeMemory::file}, {"Optimize/Time limit", "Optimize/Starts"}}, path, options, log);
+    std::unique_ptr<OptimizeMemory> memory;
+    on_first_rank(communicator, [&]() {
+      memory = begin_or_resume(cases, folder, file, options);
+      return "";
+    });
     const std::function<bool()> interrupted = [&]() {
       return stop_signal.arrived_anywhere(MPI_COMM_SELF) || (own.time_limit && now() - begin > *own.time_limit);
     };
-    SearchState state;
-    CrashNote note(path);
-    const Crashes crashes = crashes_in(path);
-    const auto search_all = [&](const std::vector<Part> &some) {
-      const auto n_missing =
-        static_cast<unsigned long>(std::ranges::count_if(some, [&](const Part &part) { return !is_done(part, path); }));
-      return share_work(communicator,
-                        {some.size(),
-                         n_missing,
-                         "starts",
-                         interrupted,
-                         [&](const unsigned long number, const auto &stops, const auto &see) {
-                           const Part &part = some[number];
-                           if (is_done(part, path))
-                             return true;
-                           const auto family = cases.family(part.number_of_case);
-                           const auto x = part.neighbour ? part.x : start_values(own, family->variables(), part.start);
-                           const unsigned long mark = part.number();
-                           note.at_work_on(std::span(&mark, 1));
-                           const StartResult result =
-                             is_given_up(mark, crashes)
-                               ? without_gait(part.number_of_case, part.start, x, crash_message)
-                               : search(*family, part.number_of_case, part.start, x, state, stops);
-                           write_file(part.file(path), pack(result));
-                           note.at_work_on({});
-                           see(1, result.has_converged ? 0 : 1);
-                           return !result.was_interrupted;
-                         },
-                         [&]() {
-                           const std::string evaluations = counted(state.evaluations, "evaluation");
-                           return std::isnan(state.best)
-                                    ? evaluations + ", no gait within the limits yet"
-                                    : fmt::format("{}, best {} {:.6g}", evaluations, own.objective, state.best);
-                         }},
-                        log);
-    };
-    bool is_whole = search_all(parts);
-    for (unsigned long round = 0; is_whole && round < cases.size(); ++round)
-    {
-      const std::string more = on_first_rank(communicator, [&]() {
-        Json list = Json::array();
-        for (const Part &part : parts_from_neighbours(cases, parts, path, log))
-          list.push_back({part.number_of_case, part.start, *part.neighbour, part.x});
-        return list.dump();
-      });
-      std::vector<Part> added;
-      for (const Json &part : Json::parse(more))
-        added.push_back({part[0], part[1], part[2].get<unsigned long>(), part[3]});
-      if (added.empty())
-        break;
-      parts.insert(parts.end(), added.begin(), added.end());
-      is_whole = search_all(added);
-    }
+    OptimizeSearches searches(communicator, cases, std::move(memory), path, interrupted, log);
+    const bool is_whole      = searches.go_on();
     const std::string reason = is_whole ? "" : stop_signal.arrived_anywhere(communicator) ? "signal" : "time_limit";
     const std::string code   = on_first_rank(communicator, [&]() {
       folder.require_in_place();
-      const ExitCode end = write_results(cases, parts, options, effective, is_whole, reason, begin, path, log);
+      const ExitCode end =
+        write_results(cases, searches, options, cases.effective(), is_whole, reason, begin, path, log);
       folder.leave();
       return fmt::format("{}", static_cast<int>(end));
     });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/parameters/axis.h>
+#include <crawler/studies/core/study.h>
 #include <crawler/studies/optimize/optimize_cases.h>
 
 #include <fmt/format.h>
@@ -98,6 +99,14 @@ namespace crawler
     for (const Variable &variable : first->variables())
       varied.paths.push_back(variable.path);
     return notes_on_entries(file, declarations(), "optimize", varied);
+  }
+
+  SweepInputs
+  OptimizeCases::inputs() const
+  {
+    SweepInputs inputs = points_ ? sweep_inputs(*points_) : SweepInputs();
+    inputs.effective   = without_comments(effective());
+    return inputs;
   }
 
   std::string

@@ -50,6 +50,8 @@ namespace crawler
       compute;
     /// What rank 0 can say of the part that it computes, for whoever watches. Nothing: parts are short.
     std::function<std::string()> state = {};
+    /// What rank 0 does for the others whenever it serves them (WorkQueue).
+    std::function<void()> besides = {};
   };
 
   /// Returns false if some rank was interrupted (collective). A file that one rank cannot write ends the work of all:

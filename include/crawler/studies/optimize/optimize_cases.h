@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/studies/optimize/scene_family.h>
+#include <crawler/studies/sweep/sweep_inputs.h>
 #include <crawler/studies/sweep/sweep_points.h>
 
 #include <memory>
@@ -71,6 +72,10 @@ namespace crawler
     /// On entries without an effect in any case.
     std::vector<std::string>
     notes(const ParameterFile &file);
+
+    /// What the gaits depend on (one process: reads files). Throws FileError.
+    SweepInputs
+    inputs() const;
 
     /// All entries as they are used, but for the axes, as a .prm file.
     std::string
