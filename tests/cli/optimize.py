@@ -288,7 +288,7 @@ def test_uneven(place):
     best = summary(place / "uneven")
     merit = best["displacement"] / math.sqrt(best["stress_power"])
     expect(uneven.returncode == 0 and abs(merit - best["optimize"]["optima"][0]["objective"]) < 1e-6 and merit > 0.2
-           and best["gait"]["efficiency"] is None and "efficiency" not in rows(place / "uneven")[0],
+           and best["gait"]["efficiency"] is None and not any(row["efficiency"] for row in rows(place / "uneven")),
            f"a body with profiles: merit {merit}, {uneven.stdout}{uneven.stderr}")
 
 

@@ -10,6 +10,7 @@
 #include <crawler/studies/core/python.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/core/study_folder.h>
+#include <crawler/studies/core/table_csv.h>
 #include <crawler/studies/optimize/gradient_check.h>
 #include <crawler/studies/optimize/optimize.h>
 #include <crawler/studies/optimize/optimize_searches.h>
@@ -21,6 +22,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <ranges>
 
 namespace crawler
 {
@@ -73,28 +75,15 @@ namespace crawler
                                      OptimizeMemory::file));
     }
 
-    /// What has been found already, or room for it (one process).
-    std::unique_ptr<OptimizeMemory>
-    begin_or_resume(OptimizeCases &cases, StudyFolder &folder, const ParameterFile &file, const CommandOptions &options)
-    {
-      if (options.resume)
-        require_no_old_starts(folder.path());
-      PlannedRows plan{0, {}, cases.inputs(), cases.effective()};
-      auto memory = std::make_unique<OptimizeMemory>(OptimizeNames(cases), std::move(plan), options.command_line);
-      memory->begin_or_resume(folder, file);
-      if (memory->starts().empty())
-        remove_optima(folder.path());
-      return memory;
-    }
-
     std::string
     in_words(const OptimizeCases &cases, const GaitModel &model)
     {
-      const auto [fewest, most] = cases.n_variables();
+      const auto [fewest, most] = std::ranges::minmax(
+        cases.names().cases | std::views::transform([](const auto &one) { return one.paths.size(); }));
       return fmt::format("Optimisation of the {}: {}{}, {}; {}.",
                          cases.parameters().optimize.objective,
                          fewest < most ? fmt::format("{} to {} variables", fewest, most) : counted(most, "variable"),
-                         !cases.axes().empty() ? fmt::format(" in each of {}", counted(cases.size(), "case")) : "",
+                         cases.are_several() ? fmt::format(" in each of {}", counted(cases.size(), "case")) : "",
                          counted(cases.parameters().optimize.n_starts, "start"),
                          model.description());
     }
@@ -110,7 +99,7 @@ namespace crawler
     {
       const auto family           = cases.family(start.number_of_case);
       const Parameters parameters = family->parameters(start.best.x);
-      const std::string number    = !cases.axes().empty() ? fmt::format("-{}", start.number_of_case + 1) : "";
+      const std::string number    = cases.are_several() ? fmt::format("-{}", start.number_of_case + 1) : "";
       Declarations &entries       = family->form().declarations;
       entries.set("Sweep/Axes", "");
       const fs::path file = folder / ("optimum" + number + ".prm"), place = folder / ("best" + number);
@@ -177,9 +166,10 @@ namespace crawler
                   Log &log)
     {
       const OptimizeResults results = searches.results();
-      const Table evaluations       = evaluation_table(results, results.starts);
-      write_file(folder / "results.csv", csv(evaluations));
-      write_file(folder / "starts.csv", csv(start_table(results, results.starts)));
+      const auto ignore             = [](const Table &) {};
+      for (const auto &[file, group] : {std::pair(OptimizeMemory::evaluations_file, OptimizeMemory::evaluations_group),
+                                        std::pair(OptimizeMemory::file, OptimizeMemory::group)})
+        write_table_csv(MPI_COMM_SELF, folder / file, group, (folder / file).replace_extension("csv"), ignore);
       std::vector<std::string> summaries;
       bool is_admissible = !results.best.empty(), has_converged = !results.best.empty(), runs = true;
       for (std::size_t i = 0; i < results.best.size(); ++i)
@@ -191,7 +181,7 @@ namespace crawler
         summaries.push_back(summary);
         runs = runs && is_good;
       }
-      write_file(folder / "optima.csv", csv(optimum_table(results, summaries)));
+      write_file(folder / "optima.csv", csv(optimum_table(results, folder, summaries)));
       const bool is_wrong      = exceeds_bound(results);
       const bool is_good       = is_admissible && has_converged && runs && !is_wrong;
       const std::string status = !is_whole ? "stopped" : is_good ? "finished" : "failed";
@@ -204,7 +194,7 @@ namespace crawler
       const double seconds     = now() - begin; // pictures are no part of it
       write_file(folder / "summary.json",
                  optimize_json(results, summaries, status, why, seconds, options.command_line));
-      for (const std::string &line : in_words(results, summaries, cases.parameters().units))
+      for (const std::string &line : in_words(results, cases, summaries))
         log.line(line);
       if (!results.best.empty())
         draw("optimize", folder, log);
@@ -218,13 +208,13 @@ namespace crawler
                  : why == "limits_exceeded" ? conflict(results)
                  : why == "best_run_failed" ? "the run of a best gait did not end as it should; its log.txt says why"
                                             : "the optimiser did not converge; the lines above say why");
-      const std::string number       = !cases.axes().empty() ? "-N" : "";
+      const std::string number       = cases.are_several() ? "-N" : "";
       const std::size_t n_neighbours = searches.n_from_neighbours();
       if (cases.parameters().optimize.n_starts == 1 && !results.best.empty())
         log.line(fmt::format("{}1 start: the optimum may be a local one; Optimize/Starts = 8 looks from others, too.",
-                             cases.axes().empty() ? "" : "Each case had "));
+                             cases.are_several() ? "Each case had " : ""));
       log.line(fmt::format("{} evaluations from {}{}, {:.1f} s. {}",
-                           std::get<std::vector<double>>(evaluations.front().values).size(),
+                           results.n_evaluations(),
                            counted(results.starts.size() - n_neighbours, "start"),
                            n_neighbours > 0 ? " and " + counted(n_neighbours, "gait") + " of neighbours" : "",
                            seconds,
@@ -254,7 +244,7 @@ namespace crawler
         auto x               = start_values(cases.parameters().optimize, family->variables(), 0);
         const auto model     = make_gait_model(*family, x, []() { return false; });
         const auto wishes    = GaitProblem::wishes(family->form().parameters.optimize);
-        const bool has_cases = !cases.axes().empty();
+        const bool has_cases = cases.are_several();
         if (number == 0)
           log.line(in_words(cases, *model));
         if (has_cases)
@@ -312,7 +302,11 @@ namespace crawler
       {"optimization", {OptimizeMemory::file}, {"Optimize/Time limit", "Optimize/Starts"}}, path, options, log);
     std::unique_ptr<OptimizeMemory> memory;
     on_first_rank(communicator, [&]() {
-      memory = begin_or_resume(cases, folder, file, options);
+      if (options.resume)
+        require_no_old_starts(path);
+      memory = std::make_unique<OptimizeMemory>(cases, folder, file, options.command_line);
+      if (memory->starts().empty())
+        remove_optima(path);
       return "";
     });
     const std::function<bool()> interrupted = [&]() {
@@ -356,7 +350,7 @@ namespace crawler
           *model, family->form().parameters.optimize, family->variables(), start, []() { return false; });
         const GaitRecord record = problem.record(problem.to_y(start));
         log.line(fmt::format("  The start{}: {} {:.6g}, which {}.",
-                             !cases.axes().empty() ? " with " + cases.in_words(number) : "",
+                             cases.are_several() ? " with " + cases.in_words(number) : "",
                              own.objective,
                              record.objective,
                              record.violation <= problem.admissible()

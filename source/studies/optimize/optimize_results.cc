@@ -8,7 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <numeric>
 
 namespace crawler
 {
@@ -31,13 +31,13 @@ namespace crawler
     }
   } // namespace
 
-  OptimizeResults::OptimizeResults(const OptimizeNames &names, std::vector<StartResult> its_starts)
-    : OptimizeNames(names)
+  OptimizeResults::OptimizeResults(const OptimizeNames &its_names, std::vector<StartResult> its_starts)
+    : names(its_names)
     , starts(std::move(its_starts))
   {
     const auto value = [&](const std::size_t i) {
       const double f = starts[i].best.objective;
-      return objective == "cost of transport" ? 1. / f : cases[starts[i].number_of_case].sign * f;
+      return names.objective == "cost of transport" ? 1. / f : names.cases[starts[i].number_of_case].sign * f;
     };
     const auto is_better = [&](const std::size_t i, const std::size_t j) {
       if (starts[i].is_admissible() != starts[j].is_admissible())
@@ -55,30 +55,42 @@ namespace crawler
     }
   }
 
-  Table
-  optimum_table(const OptimizeResults &results, const std::vector<std::string> &summaries)
+  std::size_t
+  OptimizeResults::n_evaluations() const
   {
-    std::vector<const StartResult *> optima;
-    std::vector<double> error, efficiency, of_stride;
-    std::map<std::string, std::vector<double>> multipliers;
-    for (std::size_t i = 0; i < results.best.size(); ++i)
-    {
-      const StartResult &start = results.starts[results.best[i]];
-      const Json run           = Json::parse(summaries[i]);
-      optima.push_back(&start);
-      error.push_back(number_at(run, "/displacement_error/total"));
-      efficiency.push_back(number_at(run, "/gait/efficiency"));
-      of_stride.push_back(number_at(run, "/gait/stride_efficiency"));
-      for (const GaitLimit &limit : start.limits)
-        multipliers.try_emplace(limit.name, results.best.size(), NAN).first->second[i] = limit.multiplier;
-    }
-    Table table = record_table(results, optima);
-    std::erase_if(table, [](const auto &column) { return column.name == "efficiency"; }); // that of the run is better
-    table.push_back({"displacement_error", "length", "bound of its error, by the run of the optimum", error});
-    table.push_back({"efficiency", "1", "part of what any gait with this work and these strains could", efficiency});
-    table.push_back({"stride_efficiency", "1", "the same of the last stride, with its dissipation", of_stride});
-    for (const auto &[name, values] : multipliers)
-      table.push_back({"multiplier of " + name, "", "objective for one unit more", values});
+    return std::accumulate(starts.begin(),
+                           starts.end(),
+                           std::size_t(0),
+                           [](const std::size_t n, const StartResult &one) { return n + one.records.size(); });
+  }
+
+  Table
+  optimum_table(const OptimizeResults &results,
+                const std::filesystem::path &folder,
+                const std::vector<std::string> &summaries)
+  {
+    const RowReader reader(MPI_COMM_SELF, folder / OptimizeMemory::file, OptimizeMemory::group);
+    Table table;
+    for (const Column &column : reader.read(0, reader.n_rows()))
+      if (column.name != "index" && column.name != "efficiency" && column.name != "first evaluation")
+      {
+        const auto picked = [&](const auto &values) -> decltype(Column::values) {
+          std::decay_t<decltype(values)> rows;
+          for (const std::size_t i : results.best)
+            rows.push_back(values[i]);
+          return rows;
+        };
+        table.push_back({column.name, column.unit, column.description, std::visit(picked, column.values)});
+      }
+    const auto add = [&](const char *name, const char *unit, const char *description, const char *place) {
+      std::vector<double> values;
+      for (const std::string &summary : summaries)
+        values.push_back(number_at(Json::parse(summary), place));
+      table.push_back({name, unit, description, values});
+    };
+    add("displacement_error", "length", "bound of its error, by the run of the optimum", "/displacement_error/total");
+    add("efficiency", "1", "part of what any gait with this work and these strains could", "/gait/efficiency");
+    add("stride_efficiency", "1", "the same of the last stride, with its dissipation", "/gait/stride_efficiency");
     return table;
   }
 
@@ -90,22 +102,19 @@ namespace crawler
                 const double seconds,
                 const std::string &command_line)
   {
-    Json all                = summaries.empty() ? Json::object() : Json::parse(summaries.back());
-    Json own                = {{"status", status},
-                               {"reason", reason.empty() ? Json() : Json(reason)},
-                               {"objective", results.objective},
-                               {"starts", results.starts.size()},
-                               {"seconds", seconds},
-                               {"command_line", command_line},
-                               {"optima", Json::array()}};
-    std::size_t evaluations = 0;
-    for (const StartResult &start : results.starts)
-      evaluations += start.records.size();
-    own["evaluations"] = evaluations;
+    Json all = summaries.empty() ? Json::object() : Json::parse(summaries.back());
+    Json own = {{"status", status},
+                {"reason", reason.empty() ? Json() : Json(reason)},
+                {"objective", results.names.objective},
+                {"starts", results.starts.size()},
+                {"seconds", seconds},
+                {"command_line", command_line},
+                {"optima", Json::array()},
+                {"evaluations", results.n_evaluations()}};
     for (std::size_t i = 0; i < results.best.size(); ++i)
     {
       const StartResult &start       = results.starts[results.best[i]];
-      const OptimizeNames::Case &its = results.cases[start.number_of_case];
+      const OptimizeNames::Case &its = results.names.cases[start.number_of_case];
       Json one                       = {{"number", start.number_of_case + 1},
                                         {"case", Json::object()},
                                         {"start", start.start},
@@ -117,8 +126,9 @@ namespace crawler
                                         {"is_admissible", start.is_admissible()},
                                         {"variables", Json::object()},
                                         {"limits", Json::object()}};
-      for (std::size_t k = 0; k < results.axes.size(); ++k)
-        one["case"][results.axes[k]] = to_number(its.values[k]) ? Json(*to_number(its.values[k])) : Json(its.values[k]);
+      for (std::size_t k = 0; k < results.names.axes.size(); ++k)
+        one["case"][results.names.axes[k]] =
+          to_number(its.values[k]) ? Json(*to_number(its.values[k])) : Json(its.values[k]);
       for (std::size_t k = 0; k < its.paths.size(); ++k)
         one["variables"][its.paths[k]] = start.best.x[k];
       for (const GaitLimit &limit : start.limits)
@@ -138,7 +148,7 @@ namespace crawler
   }
 
   std::vector<std::string>
-  in_words(const OptimizeResults &results, const std::vector<std::string> &summaries, const UnitNames &units)
+  in_words(const OptimizeResults &results, const OptimizeCases &cases, const std::vector<std::string> &summaries)
   {
     constexpr std::size_t most_variables = 12;
     constexpr double near_inversion      = 0.02;
@@ -146,13 +156,13 @@ namespace crawler
     for (std::size_t i = 0; i < results.best.size(); ++i)
     {
       const StartResult &start       = results.starts[results.best[i]];
-      const OptimizeNames::Case &its = results.cases[start.number_of_case];
+      const OptimizeNames::Case &its = results.names.cases[start.number_of_case];
       lines.push_back(fmt::format(
         "Best {}{}: {:.8g}{}{}{}",
-        results.objective,
-        its.words.empty() ? "" : fmt::format(" with {}", its.words),
+        results.names.objective,
+        cases.are_several() ? " with " + cases.in_words(start.number_of_case) : "",
         start.best.objective,
-        units.behind(results.unit),
+        cases.parameters().units.behind(results.names.unit),
         start.is_admissible() ? ""
                               : fmt::format(" ({} is EXCEEDED, by {:.2g} %: no gait that keeps to all limits "
                                             "was found)",
@@ -161,7 +171,7 @@ namespace crawler
         start.has_converged ? "" : fmt::format(" (the optimiser did not converge: {})", start.message)));
       if (i < summaries.size())
       {
-        const bool is_stride = results.objective == "periodic merit";
+        const bool is_stride = results.names.objective == "periodic merit";
         const double efficiency =
           number_at(Json::parse(summaries[i]), is_stride ? "/gait/stride_efficiency" : "/gait/efficiency");
         if (std::isfinite(efficiency))

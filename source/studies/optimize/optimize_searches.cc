@@ -8,25 +8,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <span>
 
 namespace crawler
 {
   namespace
   {
-    /// A number that other numbers do not have (FNV-1a).
-    template <class Numbers>
+    /// A number for the notes on crashes that no other start has.
     unsigned long
-    mark(const Numbers &numbers)
+    mark(const StartName &start)
     {
-      std::uint32_t sum = 2166136261u;
-      for (const std::byte byte : std::as_bytes(std::span(numbers)))
-        sum = (sum ^ std::to_integer<std::uint32_t>(byte)) * 16777619u;
-      return sum;
+      return start.number_of_case << 40 | start.start << 20 | start.neighbour;
     }
 
     /// The gait @p x in a case, if it keeps to all limits and is better than @p own by more than the optimiser's
@@ -116,12 +109,11 @@ namespace crawler
     const auto compute           = [&](const unsigned long number, const auto &stops, const auto &see) {
       if (done[number])
         return true;
-      const Part &part              = some[number];
-      const auto family             = cases_.family(part.number_of_case);
-      const OptimizeParameters &own = cases_.parameters().optimize;
-      const auto x                  = part.neighbour ? part.x : start_values(own, family->variables(), part.start);
-      const unsigned long crash_mark =
-        mark(std::array<unsigned long, 3>{{part.number_of_case, part.start, part.origin}});
+      const Part &part               = some[number];
+      const auto family              = cases_.family(part.number_of_case);
+      const OptimizeParameters &own  = cases_.parameters().optimize;
+      const auto x                   = part.neighbour > 0 ? part.x : start_values(own, family->variables(), part.start);
+      const unsigned long crash_mark = mark(part);
       note_.at_work_on(std::span(&crash_mark, 1));
       StartResult result = is_given_up(crash_mark, crashes_) ? without_gait(part, x, crash_message)
                                                                        : search(*family, part, x, state_, stops);
@@ -185,7 +177,7 @@ namespace crawler
     for (const StartName &name : names_in_order())
       if (const StartResult *const start = memory_->find(name))
         starts.push_back(*start);
-    return {memory_->names(), std::move(starts)};
+    return {cases_.names(), std::move(starts)};
   }
 
   OptimizeResults
@@ -198,8 +190,7 @@ namespace crawler
   std::size_t
   OptimizeSearches::n_from_neighbours() const
   {
-    return static_cast<std::size_t>(
-      std::ranges::count_if(parts_, [](const Part &part) { return part.neighbour.has_value(); }));
+    return static_cast<std::size_t>(std::ranges::count_if(parts_, [](const Part &part) { return part.neighbour > 0; }));
   }
 
   /// Of each case whose best gait is beaten by that of a neighbour the best one of these, to go on from there.
@@ -224,7 +215,7 @@ namespace crawler
       for (const unsigned long neighbour : cases_.neighbours(number))
       {
         const StartResult *const other = best_of(neighbour);
-        if (other == nullptr || results.cases[neighbour].paths != results.cases[number].paths)
+        if (other == nullptr || cases_.names().cases[neighbour].paths != cases_.names().cases[number].paths)
           continue;
         const std::vector<double> &x = other->best.x;
         const bool is_known =
@@ -235,16 +226,14 @@ namespace crawler
         leader.best = *record;
         const auto n_own =
           std::ranges::count_if(parts_, [&](const Part &part) { return part.number_of_case == number; });
-        std::vector<double> origin = x;
-        origin.push_back(static_cast<double>(neighbour));
-        found = {{number, static_cast<unsigned long>(n_own), mark(origin)}, neighbour, x};
+        found = {{number, static_cast<unsigned long>(n_own), neighbour + 1}, x};
       }
       if (!found)
         continue;
       log_.line(
         fmt::format("With {} the gait of {} is better ({:.6g}) than its own ({:.6g}): the search goes on there.",
                     cases_.in_words(number),
-                    cases_.in_words(*found->neighbour),
+                    cases_.in_words(found->neighbour - 1),
                     leader.best.objective,
                     own->best.objective));
       more.push_back(*found);

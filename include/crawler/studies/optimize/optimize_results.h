@@ -11,19 +11,25 @@
 namespace crawler
 {
   /// What `crawler optimize` has found: for each case the best of the starts.
-  struct OptimizeResults : OptimizeNames
+  struct OptimizeResults
   {
+    const OptimizeNames &names;
     std::vector<StartResult> starts;
     std::vector<std::size_t> best; ///< of starts, one for each case that has a gait
 
     /// @p starts in the order of the cases. The best ones are chosen here.
     OptimizeResults(const OptimizeNames &names, std::vector<StartResult> starts);
+
+    std::size_t
+    n_evaluations() const;
   };
 
-  /// A row for each optimum: what the program finds for it, by the @p summaries of their runs, and what its limits
-  /// cost.
+  /// A row for each optimum: that of its start in the @p folder, and what the program finds for it, by the
+  /// @p summaries of their runs.
   Table
-  optimum_table(const OptimizeResults &results, const std::vector<std::string> &summaries);
+  optimum_table(const OptimizeResults &results,
+                const std::filesystem::path &folder,
+                const std::vector<std::string> &summaries);
 
   /// The summary: that of the run of the last optimum, @p summaries of the runs of all, and what the optimiser says.
   std::string
@@ -36,5 +42,5 @@ namespace crawler
 
   /// The lines for the screen.
   std::vector<std::string>
-  in_words(const OptimizeResults &results, const std::vector<std::string> &summaries, const UnitNames &units);
+  in_words(const OptimizeResults &results, const OptimizeCases &cases, const std::vector<std::string> &summaries);
 } // namespace crawler

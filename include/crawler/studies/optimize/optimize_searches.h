@@ -17,13 +17,12 @@ namespace crawler
   /// A start of a case: of its own, or the best gait of a neighbour of the case.
   struct Part : StartName
   {
-    std::optional<unsigned long> neighbour = {};
-    std::vector<double> x                  = {}; ///< the gait of the neighbour
+    std::vector<double> x = {}; ///< the gait of the neighbour
 
     void
     exchange(Archive &archive)
     {
-      archive(number_of_case, start, origin, neighbour, x);
+      archive(number_of_case, start, neighbour, x);
     }
   };
 

@@ -12,11 +12,11 @@
 
 namespace crawler
 {
-  /// Which start of which case; one that goes on from the best gait of a neighbour of the case has an origin.
+  /// Which start of which case.
   struct StartName
   {
     unsigned long number_of_case = 0, start = 0;
-    unsigned long origin = 0; ///< a mark of that gait
+    unsigned long neighbour = 0; ///< number of the case from whose best gait it goes on, from 1 on; 0: none
 
     bool
     operator==(const StartName &) const = default;
@@ -44,7 +44,7 @@ namespace crawler
     void
     exchange(Archive &archive)
     {
-      archive(number_of_case, start, origin, best, limits, has_converged, was_interrupted, message);
+      archive(number_of_case, start, neighbour, best, limits, has_converged, was_interrupted, message);
       archive(iterations, admissible, seconds, records);
     }
   };
