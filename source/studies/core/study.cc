@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/versions.h>
@@ -87,6 +88,42 @@ namespace crawler
       if (old_values.count(entry) == 0)
         compare(entry);
     return list;
+  }
+
+  StudyClock::StudyClock(std::string section)
+    : begin_(now())
+    , section_(std::move(section))
+  {
+  }
+
+  void
+  StudyClock::set_limit(const std::optional<double> seconds)
+  {
+    limit_ = seconds;
+  }
+
+  bool
+  StudyClock::is_over() const
+  {
+    return signal_.arrived() || (limit_ && seconds() > *limit_);
+  }
+
+  std::string
+  StudyClock::reason(MPI_Comm communicator, const bool is_whole) const
+  {
+    return is_whole ? "" : signal_.arrived_anywhere(communicator) ? "signal" : "time_limit";
+  }
+
+  std::string
+  StudyClock::in_words(const std::string &reason) const
+  {
+    return "stopped by " + (reason == "signal" ? "a signal" : section_ + "/Time limit");
+  }
+
+  double
+  StudyClock::seconds() const
+  {
+    return now() - begin_;
   }
 
   bool

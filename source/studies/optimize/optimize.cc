@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
 #include <crawler/base/plain_numbers.h>
-#include <crawler/base/stop_signal.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/output_folder.h>
@@ -29,8 +27,6 @@ namespace crawler
   namespace
   {
     namespace fs = std::filesystem;
-
-    constexpr double accuracy_of_check = 1e-7; ///< of simulations, for --check-gradient
 
     /// The parameter files and runs of an earlier study, but for files that are not the program's.
     void
@@ -120,48 +116,95 @@ namespace crawler
       return {fs::exists(place / "summary.json") ? read_whole_file(place / "summary.json") : "{}", is_good};
     }
 
-    std::string
-    first_problem(const OptimizeResults &results)
+    /// How a study ended.
+    struct Ending
     {
-      for (const StartResult &start : results.starts)
-        if (!start.best.problem.empty())
-          return start.best.problem;
-      return "its objective is not known";
+      std::string reason; ///< empty: well
+      ExitCode code;
+      std::string warning;
+    };
+
+    /// @p clock's reason if it was stopped: @p stop.
+    Ending
+    ending_of(const OptimizeResults &results,
+              const bool runs_are_good,
+              const std::string &stop,
+              const StudyClock &clock)
+    {
+      const auto of_best = [&](const auto &is_so) {
+        return std::ranges::find_if_not(results.best, [&](const std::size_t i) { return is_so(results.starts[i]); });
+      };
+      const auto has_problem = [](const std::string &begin) {
+        return
+          [begin](const GaitRecord &record) { return !record.problem.empty() && record.problem.starts_with(begin); };
+      };
+      const auto exceeds_bound = [&](const StartResult &start) {
+        return std::ranges::any_of(start.records, has_problem("gait_efficiency"));
+      };
+      if (std::ranges::any_of(results.starts, exceeds_bound))
+        return {"gait_efficiency",
+                ExitCode::self_check_failed,
+                "an evaluation is better than any gait can be (column problem of results.csv), so it is wrong"};
+      if (!stop.empty())
+        return {stop, ExitCode::stopped, clock.in_words(stop) + "; --resume goes on"};
+      if (results.best.empty())
+      {
+        const auto first = std::ranges::find_if(results.starts, has_problem(""), &StartResult::best);
+        return {"limits_exceeded",
+                ExitCode::numerical_failure,
+                "no start makes a gait: " +
+                  (first == results.starts.end() ? "its objective is not known" : first->best.problem)};
+      }
+      if (const auto worst = of_best([](const StartResult &best) { return best.is_admissible(); });
+          worst != results.best.end())
+        return {"limits_exceeded",
+                ExitCode::numerical_failure,
+                fmt::format("no gait that keeps to all limits was found: the best one exceeds {} by {:.3g} %; the "
+                            "limits may contradict each other, or the start is far from them",
+                            results.starts[*worst].best.worst_limit,
+                            100. * results.starts[*worst].best.violation)};
+      if (of_best([](const StartResult &best) { return best.has_converged; }) != results.best.end())
+        return {"optimiser_not_converged",
+                ExitCode::numerical_failure,
+                "the optimiser did not converge; the lines above say why"};
+      if (!runs_are_good)
+        return {"best_run_failed",
+                ExitCode::numerical_failure,
+                "the run of a best gait did not end as it should; its log.txt says why"};
+      return {"", ExitCode::finished, ""};
     }
 
-    /// The limit that the best of the gaits exceeds.
-    std::string
-    conflict(const OptimizeResults &results)
+    /// What was done, and where it is.
+    void
+    report(const OptimizeCases &cases,
+           const OptimizeResults &results,
+           const std::size_t n_neighbours,
+           const double seconds,
+           const fs::path &folder,
+           Log &log)
     {
-      const auto best =
-        std::ranges::find_if(results.best, [&](const std::size_t i) { return !results.starts[i].is_admissible(); });
-      const auto &gait = results.starts[*best].best;
-      return fmt::format(
-        "no gait that keeps to all limits was found: the best one exceeds {} by {:.3g} %; the limits may "
-        "contradict each other, or the start is far from them",
-        gait.worst_limit,
-        100. * gait.violation);
+      const std::string number = cases.are_several() ? "-N" : "", place = folder.string();
+      if (cases.parameters().optimize.n_starts == 1 && !results.best.empty())
+        log.line(fmt::format("{}1 start: the optimum may be a local one; Optimize/Starts = 8 looks from others, too.",
+                             cases.are_several() ? "Each case had " : ""));
+      log.line(fmt::format(
+        "{} evaluations from {}{}, {:.1f} s. {}",
+        results.n_evaluations(),
+        counted(results.starts.size() - n_neighbours, "start"),
+        n_neighbours > 0 ? " and " + counted(n_neighbours, "gait") + " of neighbours" : "",
+        seconds,
+        results.best.empty()
+          ? fmt::format("Tables are in {}/.", place)
+          : fmt::format("The best gait is in {0}/optimum{1}.prm, its run in {0}/best{1}/.", place, number)));
     }
 
-    /// Is an evaluation better than any gait can be?
-    bool
-    exceeds_bound(const OptimizeResults &results)
-    {
-      return std::ranges::any_of(results.starts, [](const StartResult &start) {
-        return std::ranges::any_of(
-          start.records, [](const GaitRecord &record) { return record.problem.starts_with("gait_efficiency"); });
-      });
-    }
-
-    /// Tables, the optima with their runs, and the summary, by rank 0. Returns the exit code.
+    /// Tables, the optima with their runs, and the summary, by rank 0. @p stop: why the study is not whole.
     ExitCode
     write_results(OptimizeCases &cases,
                   OptimizeSearches &searches,
                   const CommandOptions &options,
-                  const std::string &effective,
-                  const bool is_whole,
-                  const std::string &reason,
-                  const double begin,
+                  const std::string &stop,
+                  const StudyClock &clock,
                   const fs::path &folder,
                   Log &log)
     {
@@ -171,62 +214,53 @@ namespace crawler
                                         std::pair(OptimizeMemory::file, OptimizeMemory::group)})
         write_table_csv(MPI_COMM_SELF, folder / file, group, (folder / file).replace_extension("csv"), ignore);
       std::vector<std::string> summaries;
-      bool is_admissible = !results.best.empty(), has_converged = !results.best.empty(), runs = true;
-      for (std::size_t i = 0; i < results.best.size(); ++i)
+      bool runs_are_good = true;
+      for (const std::size_t best : results.best)
       {
-        const StartResult &best       = results.starts[results.best[i]];
-        is_admissible                 = is_admissible && best.is_admissible();
-        has_converged                 = has_converged && best.has_converged;
-        const auto [summary, is_good] = run_optimum(cases, best, effective, folder, options);
+        const auto [summary, is_good] = run_optimum(cases, results.starts[best], cases.effective(), folder, options);
         summaries.push_back(summary);
-        runs = runs && is_good;
+        runs_are_good = runs_are_good && is_good;
       }
       write_file(folder / "optima.csv", csv(optimum_table(results, folder, summaries)));
-      const bool is_wrong      = exceeds_bound(results);
-      const bool is_good       = is_admissible && has_converged && runs && !is_wrong;
-      const std::string status = !is_whole ? "stopped" : is_good ? "finished" : "failed";
-      const std::string why    = is_wrong         ? "gait_efficiency"
-                                 : !is_whole      ? reason
-                                 : !is_admissible ? "limits_exceeded"
-                                 : !has_converged ? "optimiser_not_converged"
-                                 : !runs          ? "best_run_failed"
-                                                  : "";
-      const double seconds     = now() - begin; // pictures are no part of it
+      const Ending end         = ending_of(results, runs_are_good, stop, clock);
+      const std::string status = !stop.empty() ? "stopped" : end.code == ExitCode::finished ? "finished" : "failed";
+      const double seconds     = clock.seconds(); // pictures are no part of it
       write_file(folder / "summary.json",
-                 optimize_json(results, summaries, status, why, seconds, options.command_line));
+                 optimize_json(results, summaries, status, end.reason, seconds, options.command_line));
       for (const std::string &line : in_words(results, cases, summaries))
         log.line(line);
       if (!results.best.empty())
         draw("optimize", folder, log);
-      if (is_wrong)
-        log.warn("an evaluation is better than any gait can be (column problem of results.csv), so it is wrong");
-      if (!is_whole)
-        log.warn(
-          fmt::format("stopped by {}; --resume goes on", reason == "signal" ? "a signal" : "Optimize/Time limit"));
-      else if (status == "failed" && !is_wrong)
-        log.warn(results.best.empty()       ? "no start makes a gait: " + first_problem(results)
-                 : why == "limits_exceeded" ? conflict(results)
-                 : why == "best_run_failed" ? "the run of a best gait did not end as it should; its log.txt says why"
-                                            : "the optimiser did not converge; the lines above say why");
-      const std::string number       = cases.are_several() ? "-N" : "";
-      const std::size_t n_neighbours = searches.n_from_neighbours();
-      if (cases.parameters().optimize.n_starts == 1 && !results.best.empty())
-        log.line(fmt::format("{}1 start: the optimum may be a local one; Optimize/Starts = 8 looks from others, too.",
-                             cases.are_several() ? "Each case had " : ""));
-      log.line(fmt::format("{} evaluations from {}{}, {:.1f} s. {}",
-                           results.n_evaluations(),
-                           counted(results.starts.size() - n_neighbours, "start"),
-                           n_neighbours > 0 ? " and " + counted(n_neighbours, "gait") + " of neighbours" : "",
-                           seconds,
-                           results.best.empty() ? fmt::format("Tables are in {}/.", folder.string())
-                                                : fmt::format("The best gait is in {0}/optimum{1}.prm, its run in "
-                                                              "{0}/best{1}/.",
-                                                              folder.string(),
-                                                              number)));
-      return is_wrong    ? ExitCode::self_check_failed
-             : !is_whole ? ExitCode::stopped
-             : is_good   ? ExitCode::finished
-                         : ExitCode::numerical_failure;
+      if (!end.warning.empty())
+        log.warn(end.warning);
+      report(cases, results, searches.n_from_neighbours(), seconds, folder, log);
+      return end.code;
+    }
+
+    /// The start of a case: the scenes about it, and what computes its gaits.
+    struct CaseStart
+    {
+      std::unique_ptr<SceneFamily> scenes;
+      std::vector<double> x;
+      std::unique_ptr<GaitModel> model;
+
+      /// @p accuracy: instead of that of the file.
+      CaseStart(OptimizeCases &cases, const unsigned long number, const std::optional<double> accuracy = {})
+        : scenes(cases.family(number))
+        , x(start_values(cases.parameters().optimize, scenes->variables(), 0))
+      {
+        if (accuracy)
+          scenes->form().declarations.set("Accuracy", to_text(*accuracy));
+        model = make_gait_model(*scenes, x, []() { return false; });
+      }
+    };
+
+    void
+    introduce(const OptimizeCases &cases, const GaitModel &model, const std::vector<std::string> &notes, Log &log)
+    {
+      log.line(in_words(cases, model));
+      for (const std::string &note : notes)
+        log.line(note);
     }
 
     /// --check-gradient: of each case at the start; where that is special (a jump at the end of the run, say), so that
@@ -234,34 +268,31 @@ namespace crawler
     ExitCode
     check_gradients(OptimizeCases &cases, Log &log)
     {
-      constexpr double beside = 0.0137;
-      bool agrees             = true;
+      constexpr double accurate = 1e-7, beside = 0.0137; // differences of rough simulations say little
+      const double accuracy = cases.parameters().accuracy;
+      bool agrees           = true;
       for (unsigned long number = 0; number < cases.size(); ++number)
       {
-        const auto family = cases.family(number);
-        // Differences of rough simulations say little.
-        family->form().declarations.set("Accuracy", to_text(std::min(cases.parameters().accuracy, accuracy_of_check)));
-        auto x               = start_values(cases.parameters().optimize, family->variables(), 0);
-        const auto model     = make_gait_model(*family, x, []() { return false; });
-        const auto wishes    = GaitProblem::wishes(family->form().parameters.optimize);
-        const bool has_cases = cases.are_several();
+        CaseStart start(cases, number, std::min(accuracy, accurate));
+        const SceneFamily &family = *start.scenes;
+        const auto wishes         = GaitProblem::wishes(start.scenes->form().parameters.optimize);
         if (number == 0)
-          log.line(in_words(cases, *model));
-        if (has_cases)
+          introduce(cases, *start.model, {}, log);
+        if (cases.are_several())
           log.line("Case " + cases.in_words(number));
-        auto result = check_gradient(*model, *family, wishes, x, log);
+        auto result = check_gradient(*start.model, family, wishes, start.x, log);
         if (!result)
         {
-          for (std::size_t i = 0; i < x.size(); ++i)
+          for (std::size_t i = 0; i < start.x.size(); ++i)
           {
-            const double shift = beside * family->scale(x, i);
-            x[i] += x[i] + shift <= family->variables()[i].to ? shift : -shift;
+            const double shift = beside * family.scale(start.x, i);
+            start.x[i] += start.x[i] + shift <= family.variables()[i].to ? shift : -shift;
           }
           log.line(fmt::format("Beside the start, all variables being {:g} % of their size away:", 100. * beside));
-          result = check_gradient(*model, *family, wishes, x, log);
+          result = check_gradient(*start.model, family, wishes, start.x, log);
         }
         agrees = agrees && result.value_or(true);
-        family->form().declarations.set("Accuracy", to_text(cases.parameters().accuracy));
+        start.scenes->form().declarations.set("Accuracy", to_text(accuracy));
       }
       return agrees ? ExitCode::finished : ExitCode::self_check_failed;
     }
@@ -276,22 +307,16 @@ namespace crawler
   ExitCode
   optimize_input(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
   {
-    const StopSignal stop_signal; // from here on a signal ends the study in order
-    const double begin = now();
+    StudyClock clock("Optimize");
     Log log(rank_of(communicator) == 0, options);
     OptimizeCases cases(communicator, file);
-    const OptimizeParameters own = cases.parameters().optimize;
     try
     {
       if (options.check_gradient)
         return check_gradients(cases, log);
-      const auto family = cases.family(0);
-      const auto start  = start_values(own, family->variables(), 0);
-      const auto model  = make_gait_model(*family, start, []() { return false; });
-      log.line(in_words(cases, *model));
-      for (const std::string &note : cases.notes(file))
-        log.line(note);
-      model->evaluate(start, /*with_gradients=*/false).require_start();
+      const CaseStart start(cases, 0);
+      introduce(cases, *start.model, cases.notes(file), log);
+      start.model->evaluate(start.x, /*with_gradients=*/false).require_start();
     }
     catch (const InputError &error)
     {
@@ -309,20 +334,16 @@ namespace crawler
         remove_optima(path);
       return "";
     });
-    const std::function<bool()> interrupted = [&]() {
-      return stop_signal.arrived_anywhere(MPI_COMM_SELF) || (own.time_limit && now() - begin > *own.time_limit);
-    };
-    OptimizeSearches searches(communicator, cases, std::move(memory), path, interrupted, log);
-    const bool is_whole      = searches.go_on();
-    const std::string reason = is_whole ? "" : stop_signal.arrived_anywhere(communicator) ? "signal" : "time_limit";
-    const std::string code   = on_first_rank(communicator, [&]() {
+    clock.set_limit(cases.parameters().optimize.time_limit);
+    OptimizeSearches searches(
+      communicator, cases, std::move(memory), path, [&]() { return clock.is_over(); }, log);
+    const std::string stop = clock.reason(communicator, searches.go_on());
+    return exit_code_of_first_rank(communicator, [&]() {
       folder.require_in_place();
-      const ExitCode end =
-        write_results(cases, searches, options, cases.effective(), is_whole, reason, begin, path, log);
+      const ExitCode end = write_results(cases, searches, options, stop, clock, path, log);
       folder.leave();
-      return fmt::format("{}", static_cast<int>(end));
+      return end;
     });
-    return static_cast<ExitCode>(std::stoi(code));
   }
 
   bool
@@ -332,26 +353,21 @@ namespace crawler
     if (variables == nullptr || variables->value.empty())
       return false;
     OptimizeCases cases(communicator, file);
-    const OptimizeParameters &own = cases.parameters().optimize;
     try
     {
       for (unsigned long number = 0; number < cases.size(); ++number)
       {
-        const auto family = cases.family(number);
-        const auto start  = start_values(own, family->variables(), 0);
-        const auto model  = make_gait_model(*family, start, []() { return false; });
+        const CaseStart start(cases, number);
         if (number == 0)
-        {
-          log.line(in_words(cases, *model));
-          for (const std::string &note : cases.notes(file))
-            log.line(note);
-        }
+          introduce(cases, *start.model, cases.notes(file), log);
         GaitProblem problem(
-          *model, family->form().parameters.optimize, family->variables(), start, []() { return false; });
-        const GaitRecord record = problem.record(problem.to_y(start));
+          *start.model, start.scenes->form().parameters.optimize, start.scenes->variables(), start.x, []() {
+            return false;
+          });
+        const GaitRecord record = problem.record(problem.to_y(start.x));
         log.line(fmt::format("  The start{}: {} {:.6g}, which {}.",
                              cases.are_several() ? " with " + cases.in_words(number) : "",
-                             own.objective,
+                             cases.names().objective,
                              record.objective,
                              record.violation <= problem.admissible()
                                ? "keeps to all limits"
