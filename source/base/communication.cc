@@ -7,6 +7,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -122,6 +123,13 @@ namespace crawler
     if (kind == "file")
       throw FileError(text, /*on_all_ranks=*/true);
     return text;
+  }
+
+  ExitCode
+  exit_code_of_first_rank(MPI_Comm communicator, const std::function<ExitCode()> &action)
+  {
+    return static_cast<ExitCode>(
+      std::stoi(on_first_rank(communicator, [&]() { return std::to_string(static_cast<int>(action())); })));
   }
 
   QuickStart::QuickStart()

@@ -4,6 +4,7 @@
 #include <crawler/base/work_queue.h>
 
 #include <thread>
+#include <utility>
 
 namespace crawler
 {
@@ -12,11 +13,12 @@ namespace crawler
     constexpr int owner = 0; // the rank that has the counters
   }
 
-  WorkQueue::WorkQueue(MPI_Comm communicator, const unsigned long size)
+  WorkQueue::WorkQueue(MPI_Comm communicator, const unsigned long size, std::function<void()> besides)
     : communicator_(communicator)
     , size_(size)
     , is_owner_(rank_of(communicator) == owner)
     , has_others_(size_of(communicator) > 1)
+    , besides_(std::move(besides))
   {
     MPI_Win_allocate(is_owner_ ? 3 * sizeof(unsigned long) : 0,
                      sizeof(unsigned long),
@@ -103,6 +105,8 @@ namespace crawler
       int ignored = 0;
       MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, communicator_, &ignored, MPI_STATUS_IGNORE);
     }
+    if (besides_)
+      besides_();
     served_ = now();
   }
 

@@ -11,12 +11,13 @@ import math
 import os
 import pathlib
 import signal
+import struct
 import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import NO_PICTURES, Checks, call, on_ranks, tests_of_part  # noqa: E402
-from tables import csv_rows, json_of  # noqa: E402
+from tables import csv_rows, h5_columns, json_of  # noqa: E402
 
 CRAWLER, PRM, MPIRUN = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), sys.argv[3]
 MODES, SEGMENTS = "Active stress/Modes/", "Active stress/Segments/"
@@ -51,6 +52,14 @@ def optima(folder):
 def rows(folder):
     """All evaluations, but for how long they took."""
     return [{name: value for name, value in row.items() if name != "seconds"} for row in csv_rows(folder / "results.csv")]
+
+
+def kept(folder):
+    """What is known of the starts that have ended, by case and start; not where it stands."""
+    columns = h5_columns(folder / "starts.h5", "starts")
+    names = [name for name in columns if name not in ("index", "first evaluation")]
+    return {(columns["case"][i], columns["start"][i]): str([columns[name][i] for name in names])
+            for i, status in enumerate(columns["status"]) if status == "finished"}
 
 
 def merits(folder):
@@ -135,17 +144,26 @@ def test_cases(place):
     text = (place / "cases" / "optimum-3.prm").read_text(encoding="utf-8")
     expect("set Direction" in text and "8, 8" not in text, "an optimum has the axes of the study")
 
-    # Words and numbers that go together; a damaged file.
+    # Words and numbers that go together; a damaged row; a folder of an earlier version.
     settings = ("Sweep/Design=zip", f"Sweep/Axes={MODES}Harmonics : 1, 2; {MODES}"
                 'Coefficients : "0, 0.2, 0.001", "0, 0.2, 0.001, 0.01, 0.02"')
     pairs = run("optimize_harmonics", place / "pairs", *settings)
     found = [o["objective"] for o in optima(place / "pairs")] if pairs.returncode == 0 else []
     expect(len(found) == 2 and abs(found[0] - 0.21462) < 1e-4 and abs(found[1] - 0.22618) < 1e-4,
            f"pairs: {found}, {pairs.stderr}")
-    (place / "pairs" / "starts" / "2-0.json").write_text('{"case": ', encoding="utf-8")
-    damaged = run("optimize_harmonics", place / "pairs", *settings, options=["--resume"])
-    expect(damaged.returncode == 2 and "2-0.json" in damaged.stderr and damaged.stderr.count("\n") == 1,
-           f"a damaged file: {damaged.returncode}, {damaged.stderr}")
+    for name, group, column in (("starts.h5", "starts", "seconds"), ("results.h5", "optimize", "objective")):
+        before, text = rows(place / "pairs"), (place / "pairs" / name).read_bytes()
+        numbers = h5_columns(place / "pairs" / name, group)[column]
+        value = struct.pack("<d", next(one for one in numbers[::-1] if one == one))
+        (place / "pairs" / name).write_bytes(text.replace(value, struct.pack("<d", 1234.5), 1))
+        damaged = run("optimize_harmonics", place / "pairs", *settings, options=["--resume"])
+        expect(value in text and damaged.returncode == 0 and "was damaged" in damaged.stderr
+               and rows(place / "pairs") == before, f"a damaged row of {name}: {damaged.returncode}, {damaged.stderr}")
+    (place / "old" / "starts").mkdir(parents=True)
+    (place / "old" / "starts" / "1-0.json").write_text("{}", encoding="utf-8")
+    old = run("optimize_harmonics", place / "old", options=["--resume"])
+    expect(old.returncode == 2 and "made by an earlier version" in old.stderr and old.stderr.count("\n") == 1,
+           f"a folder of an earlier version: {old.returncode}, {old.stderr}")
 
 
 def test_neighbours(place):
@@ -187,10 +205,15 @@ def test_stops(place):
     refused = run("optimize_harmonics", place / "one", "Optimize/Largest strain=0.2", options=["--resume"])
     expect(refused.returncode == 2 and "Optimize/Largest strain was" in refused.stderr, f"resume: {refused.stderr}")
 
-    # Of two ranks the one that ends this start is killed.
-    for name, ranks, stop_at, code in (("two ranks", 2, None, 0), ("killed", 1, "write:1-2.json:KILL", -signal.SIGKILL),
-                                       ("a rank killed", 2, "write:1-1.json:KILL", 128 + signal.SIGKILL),
-                                       ("stopped", 1, "write:1-0.json:TERM", 5)):
+    # The row of evaluations behind which this start has a row of its own.
+    evaluations = [int(float(start["evaluations"])) for start in csv_rows(place / "one" / "starts.csv")]
+    last = [sum(evaluations[:i + 1]) + i for i in range(3)]
+
+    # Of two ranks the one that keeps the rows is killed, or the other one.
+    for name, ranks, stop_at, code in (("two ranks", 2, None, 0), ("killed", 1, f"row:{last[2]}:KILL", -signal.SIGKILL),
+                                       ("a rank killed", 2, f"row:{last[1]}:KILL", 128 + signal.SIGKILL),
+                                       ("the other killed", 2, "step:200:KILL:1", 128 + signal.SIGKILL),
+                                       ("stopped", 1, f"row:{last[0]}:TERM", 5)):
         folder = place / name.replace(" ", "_")
         done = run("optimize_harmonics", folder, *BUDGETS, ranks=ranks, stop_at=stop_at)
         expect(done.returncode == code and (folder / "results.csv").exists() == (code in (0, 5)),
@@ -200,17 +223,17 @@ def test_stops(place):
             expect(state["status"] == "stopped" and state["reason"] == "signal" and "--resume" in done.stderr
                    and (folder / "best-1" / "summary.json").exists(), f"a signal ends with the best so far: {done.stderr}")
         if code != 0:
-            kept = {file: file.read_bytes() for file in (folder / "starts").glob("*.json")
-                    if not json_of(file)["was_interrupted"]}
+            before = kept(folder)
             resumed = run("optimize_harmonics", folder, *BUDGETS, options=["--resume"])
-            expect(resumed.returncode == 0 and (ranks > 1 or kept) and all(
-                file.read_bytes() == text for file, text in kept.items()), f"{name}, and resumed: {resumed.stderr}")
+            after = kept(folder)
+            expect(resumed.returncode == 0 and (ranks > 1 or before) and all(after[one] == before[one] for one in before),
+                   f"{name}, and resumed: {before.keys()}, {resumed.stderr}")
         expect(rows(folder) == rows(place / "one"), f"{name}: the table of one in one go")
 
     # A start at which the program crashed twice is a row that says so.
     for i in range(2):
         died = run("optimize_harmonics", place / "crashed", *BUDGETS, options=["--resume"] if i else [],
-                   stop_at="write:1-2.json:SEGV")
+                   stop_at=f"row:{last[2]}:SEGV")
         expect(died.returncode == -signal.SIGSEGV, f"crash {i}: {died.returncode}, {died.stderr}")
     given_up = run("optimize_harmonics", place / "crashed", *BUDGETS, options=["--resume"])
     starts = csv_rows(place / "crashed" / "starts.csv")
@@ -280,7 +303,7 @@ def test_uneven(place):
     best = summary(place / "uneven")
     merit = best["displacement"] / math.sqrt(best["stress_power"])
     expect(uneven.returncode == 0 and abs(merit - best["optimize"]["optima"][0]["objective"]) < 1e-6 and merit > 0.2
-           and best["gait"]["efficiency"] is None and "efficiency" not in rows(place / "uneven")[0],
+           and best["gait"]["efficiency"] is None and not any(row["efficiency"] for row in rows(place / "uneven")),
            f"a body with profiles: merit {merit}, {uneven.stdout}{uneven.stderr}")
 
 

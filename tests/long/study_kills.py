@@ -8,7 +8,6 @@ KILLS: so many of a sweep (default: 20), and a quarter of it of a cross-checked 
 rank, of mpirun, by SIGTERM. tests/cli/sweep.py, tradeoff.py and optimize.py are the short versions. Some minutes.
 """
 import ctypes
-import json
 import os
 import pathlib
 import random
@@ -110,11 +109,13 @@ class TradeoffStudy(PointStudy):
 
 
 class OptimizeStudy(Study):
-    """A file for each start; one that was stopped goes on."""
+    """A row for each start; one that was stopped goes on."""
 
     def done(self, output):
-        texts = {file.name: file.read_text(encoding="utf-8") for file in (output / "starts").glob("*.json")}
-        return {name: text for name, text in texts.items() if not json.loads(text)["was_interrupted"]}
+        file = output / "starts.h5"
+        rows = h5_columns(file, "starts") if file.exists() else {"status": []}
+        return {(rows["case"][i], rows["start"][i]): rows["seconds"][i]
+                for i, status in enumerate(rows["status"]) if status == "finished"}
 
     def answers(self, output):
         return [{name: value for name, value in row.items() if name != "seconds"}
@@ -212,10 +213,10 @@ def test_kills(folder):
                                              "status", "seconds")}
     budgets = ("--set", "Sweep/Axes=Optimize/Work : 0.001, 0.003", "--set", "Optimize/Objective=displacement",
                "--set", "Optimize/Starts=3")
-    starts = [f"{case}-{start}.json" for case in (1, 2) for start in range(3)]
+    tables = ("starts.h5", "results.h5", "results.csv", "starts.csv", "summary.json")
     studies = {**point_study,
                "tradeoff": TradeoffStudy(("tradeoff", "scene.prm"), "tradeoff", "tradeoff", "status", "seconds"),
-               "optimize": OptimizeStudy(("optimize", PRM / "optimize_harmonics.prm", *budgets), starts, 0)}
+               "optimize": OptimizeStudy(("optimize", PRM / "optimize_harmonics.prm", *budgets), tables, 400)}
     for name, study in studies.items():
         (folder / name).mkdir()
         write(folder / name, f"{P} : linspace(1.5, 4, 16); {CHI} : linspace(0.05, 0.5, 48)")

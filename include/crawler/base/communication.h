@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/exceptions.h>
+
 #include <mpi.h>
 
 #include <functional>
@@ -37,6 +39,10 @@ namespace crawler
    */
   std::string
   on_first_rank(MPI_Comm communicator, const std::function<std::string()> &action);
+
+  /// The same of an exit code: rank 0 says how all ranks end.
+  ExitCode
+  exit_code_of_first_rank(MPI_Comm communicator, const std::function<ExitCode()> &action);
 
   /**
    * Open MPI in a process that no launcher has started runs a daemon and looks for networks, which takes longer than

@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <functional>
 #include <optional>
 
 namespace crawler
@@ -17,7 +18,8 @@ namespace crawler
   {
   public:
     /// Collective, and so is the destructor: it waits for the other ranks, asleep rather than spinning.
-    WorkQueue(MPI_Comm communicator, unsigned long size);
+    /// @p besides is what rank 0 does whenever it serves, the destructor included; it must not throw.
+    WorkQueue(MPI_Comm communicator, unsigned long size, std::function<void()> besides = {});
     ~WorkQueue();
     WorkQueue(const WorkQueue &) = delete;
 
@@ -58,6 +60,7 @@ namespace crawler
     const MPI_Comm communicator_;
     const unsigned long size_;
     const bool is_owner_, has_others_;
+    const std::function<void()> besides_;
     double served_           = 0.;      ///< when
     unsigned long *counters_ = nullptr; ///< on rank 0
     MPI_Win window_          = MPI_WIN_NULL;

@@ -52,6 +52,8 @@ namespace crawler
                                                 "recommendations.prm",
                                                 "scaling.png",
                                                 "starts.csv",
+                                                "starts.h5",
+                                                "starts.h5.part",
                                                 "optimum.prm",
                                                 "optima.csv",
                                                 "optimize.png",

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/versions.h>
@@ -89,13 +90,49 @@ namespace crawler
     return list;
   }
 
+  StudyClock::StudyClock(std::string section)
+    : begin_(now())
+    , section_(std::move(section))
+  {
+  }
+
+  void
+  StudyClock::set_limit(const std::optional<double> seconds)
+  {
+    limit_ = seconds;
+  }
+
+  bool
+  StudyClock::is_over() const
+  {
+    return signal_.arrived() || (limit_ && seconds() > *limit_);
+  }
+
+  std::string
+  StudyClock::reason(MPI_Comm communicator, const bool is_whole) const
+  {
+    return is_whole ? "" : signal_.arrived_anywhere(communicator) ? "signal" : "time_limit";
+  }
+
+  std::string
+  StudyClock::in_words(const std::string &reason) const
+  {
+    return "stopped by " + (reason == "signal" ? "a signal" : section_ + "/Time limit");
+  }
+
+  double
+  StudyClock::seconds() const
+  {
+    return now() - begin_;
+  }
+
   bool
   share_work(MPI_Comm communicator, const SharedWork &work, Log &log)
   {
     bool is_whole = true;
     std::string problem;
     {
-      WorkQueue queue(communicator, work.n_parts);
+      WorkQueue queue(communicator, work.n_parts, work.besides);
       StudyProgress progress(log, work.n_points, work.points);
       const auto show_progress = [&]() {
         if (rank_of(communicator) != 0 || !progress.is_due())

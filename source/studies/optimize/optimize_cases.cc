@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/parameters/axis.h>
+#include <crawler/studies/core/study.h>
 #include <crawler/studies/optimize/optimize_cases.h>
 
 #include <fmt/format.h>
@@ -34,33 +35,65 @@ namespace crawler
   {
     if (!trimmed(parameters().sweep.axes).empty())
       points_ = std::make_unique<SweepPoints>(communicator, file);
+    names_.objective = parameters().optimize.objective;
+    names_.unit      = names_.objective == "displacement"    ? "length"
+                       : names_.objective == "speed"         ? "length/time"
+                       : names_.objective.ends_with("merit") ? "1"
+                                                             : "force";
     try
     {
       if (points_)
         for (const SweepAxis &axis : points_->design().axes())
         {
           require_admissible(axis.entry);
-          axes_.push_back(axis.entry);
+          names_.axes.push_back(axis.entry);
         }
       for (unsigned long number = 0; number < size(); ++number)
         try
         {
-          const auto its = family(number);
-          its->form().parameters.create_scene();
-          const std::size_t n = its->variables().size();
-          n_variables_        = number == 0 ? std::pair(n, n)
-                                            : std::pair(std::min(n, n_variables_.first), std::max(n, n_variables_.second));
+          add_case(number);
         }
         catch (const InputError &error)
         {
-          throw axes_.empty() ? error
-                              : InputError(fmt::format("the case {}: {}", in_words(number), error.what()), error.entry);
+          throw are_several() ? InputError(fmt::format("the case {}: {}", in_words(number), error.what()), error.entry)
+                              : error;
         }
     }
     catch (const InputError &error)
     {
       throw file.with_place(error);
     }
+    std::ranges::sort(names_.limits, {}, [all = limits_of(parameters().optimize)](const std::string &name) {
+      return std::ranges::find(all, name, &LimitEntry::name) - all.begin();
+    });
+  }
+
+  void
+  OptimizeCases::add_case(const unsigned long number)
+  {
+    const auto add = [](std::vector<std::string> &list, const std::string &name) {
+      const bool is_new = std::ranges::find(list, name) == list.end();
+      if (is_new)
+        list.push_back(name);
+      return is_new;
+    };
+    OptimizeNames::Case &its = names_.cases.emplace_back();
+    for (std::size_t i = 0; i < names_.axes.size(); ++i)
+      its.values.push_back(points_->design().value(i, number));
+    const auto scenes                 = family(number);
+    const Declarations &entries       = scenes->form().declarations;
+    const OptimizeParameters &problem = scenes->form().parameters.optimize;
+    scenes->form().parameters.create_scene();
+    its.sign = problem.direction == "forward" ? 1. : -1.;
+    for (const Variable &variable : scenes->variables())
+    {
+      its.paths.push_back(variable.path);
+      if (add(names_.paths, variable.path))
+        names_.units.push_back(entries.info(variable.path).unit);
+    }
+    for (const auto &[limit, value] : limits_of(problem))
+      if (value)
+        add(names_.limits, limit);
   }
 
   std::unique_ptr<SceneFamily>
@@ -70,23 +103,18 @@ namespace crawler
     return std::make_unique<SceneFamily>(form, read_variables_of_gait(form));
   }
 
-  std::vector<std::string>
-  OptimizeCases::values(const unsigned long number) const
-  {
-    std::vector<std::string> list;
-    for (std::size_t i = 0; i < axes_.size(); ++i)
-      list.push_back(points_->design().value(i, number));
-    return list;
-  }
-
   std::string
   OptimizeCases::in_words(const unsigned long number) const
   {
     std::string words;
-    const std::vector<std::string> list = values(number);
-    for (std::size_t i = 0; i < axes_.size(); ++i)
-      words += fmt::format(
-        "{}{} = {}", i == 0 ? "" : ", ", axes_[i].substr(axes_[i].rfind('/') + 1 /* npos + 1 is 0 */), list[i]);
+    for (std::size_t i = 0; i < names_.axes.size(); ++i)
+    {
+      const std::string &axis = names_.axes[i];
+      words += fmt::format("{}{} = {}",
+                           i == 0 ? "" : ", ",
+                           axis.substr(axis.rfind('/') + 1 /* npos + 1 is 0 */),
+                           names_.cases[number].values[i]);
+    }
     return words;
   }
 
@@ -98,6 +126,14 @@ namespace crawler
     for (const Variable &variable : first->variables())
       varied.paths.push_back(variable.path);
     return notes_on_entries(file, declarations(), "optimize", varied);
+  }
+
+  SweepInputs
+  OptimizeCases::inputs() const
+  {
+    SweepInputs inputs = points_ ? sweep_inputs(*points_) : SweepInputs();
+    inputs.effective   = without_comments(effective());
+    return inputs;
   }
 
   std::string

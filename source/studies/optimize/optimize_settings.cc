@@ -19,8 +19,8 @@ namespace crawler
     void
     require_limit(const OptimizeParameters &p, const std::vector<Variable> &variables)
     {
-      if (p.objective == "cost of transport" || p.largest_strain || p.smallest_strain || p.work || p.positive_work ||
-          p.dissipation || p.mean_square_strain || p.largest_stress)
+      const auto holds = [](const LimitEntry &limit) { return limit.value && limit.name != "Largest stress rate"; };
+      if (p.objective == "cost of transport" || std::ranges::any_of(limits_of(p), holds))
         return;
       for (const Variable &variable : variables) // ranges are limits, but not meant as such
         if (variable.path.starts_with("Active stress/Modes/Coefficients"))
@@ -43,6 +43,19 @@ namespace crawler
         own);
     require_limit(p, variables);
     return variables;
+  }
+
+  std::vector<LimitEntry>
+  limits_of(const OptimizeParameters &p)
+  {
+    return {{"Work", p.work},
+            {"Positive work", p.positive_work},
+            {"Dissipation", p.dissipation},
+            {"Mean-square strain", p.mean_square_strain},
+            {"Smallest strain", p.smallest_strain},
+            {"Largest strain", p.largest_strain},
+            {"Largest stress", p.largest_stress},
+            {"Largest stress rate", p.largest_stress_rate}};
   }
 
   Parameters

@@ -8,7 +8,6 @@
 #include <crawler/studies/optimize/simulated_gait.h>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,30 +17,6 @@ namespace crawler
 {
   namespace
   {
-    using Json = nlohmann::ordered_json;
-
-    /// JSON has no infinities and no NaN.
-    double
-    number_of(const Json &value)
-    {
-      return value.is_number() ? value.get<double>() : NAN;
-    }
-
-    Json
-    json_of(const GaitRecord &record)
-    {
-      return {record.x, record.objective, record.numbers, record.violation, record.problem, record.worst_limit};
-    }
-
-    GaitRecord
-    record_of(const Json &json)
-    {
-      GaitRecord record{json.at(0), number_of(json.at(1)), {}, number_of(json.at(3)), json.at(4), json.at(5)};
-      for (std::size_t i = 0; i < n_gait_numbers; ++i)
-        record.numbers[i] = number_of(json.at(2).at(i));
-      return record;
-    }
-
     /// The limits of strain, closer by what was exceeded by more than @p exact, relative. Returns whether something
     /// was.
     bool
@@ -81,8 +56,7 @@ namespace crawler
     {
     public:
       Search(SceneFamily &family,
-             const unsigned long number_of_case,
-             const unsigned long start,
+             const StartName &start,
              const std::vector<double> &x,
              SearchState &state,
              const std::function<bool()> &stops)
@@ -94,8 +68,7 @@ namespace crawler
         , start_(x)
         , x_(x)
       {
-        result_.number_of_case = number_of_case;
-        result_.start          = start;
+        static_cast<StartName &>(result_) = start;
       }
 
       StartResult
@@ -110,8 +83,7 @@ namespace crawler
         {
           const bool may_invert  = !result_.records.empty() && !wanted_.smallest_strain;
           const StartResult none = without_gait(
-            result_.number_of_case,
-            result_.start,
+            result_,
             x_,
             error.what() + std::string(may_invert ? "; Optimize/Smallest strain keeps gaits away from inversion" : ""));
           result_.best = none.best;
@@ -296,59 +268,13 @@ namespace crawler
   } // namespace
 
   StartResult
-  without_gait(const unsigned long number_of_case,
-               const unsigned long start,
-               const std::vector<double> &x,
-               const std::string &problem)
+  without_gait(const StartName &start, const std::vector<double> &x, const std::string &problem)
   {
     StartResult result;
-    result.number_of_case = number_of_case;
-    result.start          = start;
-    result.best           = {x, NAN, {}, NAN, problem};
-    result.message        = "no gait";
-    result.records        = {result.best};
-    return result;
-  }
-
-  std::string
-  pack(const StartResult &result)
-  {
-    Json json = {{"case", result.number_of_case},
-                 {"start", result.start},
-                 {"best", json_of(result.best)},
-                 {"limits", Json::array()},
-                 {"has_converged", result.has_converged},
-                 {"was_interrupted", result.was_interrupted},
-                 {"message", result.message},
-                 {"iterations", result.iterations},
-                 {"admissible", result.admissible},
-                 {"seconds", result.seconds},
-                 {"records", Json::array()}};
-    for (const GaitLimit &limit : result.limits)
-      json["limits"].push_back({limit.name, limit.value, limit.multiplier});
-    for (const GaitRecord &record : result.records)
-      json["records"].push_back(json_of(record));
-    return json.dump();
-  }
-
-  StartResult
-  unpack_start(const std::string &text)
-  {
-    const Json json = Json::parse(text);
-    StartResult result;
-    result.number_of_case = json.at("case");
-    result.start          = json.at("start");
-    result.best           = record_of(json.at("best"));
-    for (const Json &limit : json.at("limits"))
-      result.limits.push_back({limit.at(0), number_of(limit.at(1)), number_of(limit.at(2))});
-    result.has_converged   = json.at("has_converged");
-    result.was_interrupted = json.at("was_interrupted");
-    result.message         = json.at("message");
-    result.iterations      = json.at("iterations");
-    result.admissible      = json.at("admissible");
-    result.seconds         = json.at("seconds");
-    for (const Json &record : json.at("records"))
-      result.records.push_back(record_of(record));
+    static_cast<StartName &>(result) = start;
+    result.best                      = {x, NAN, {}, NAN, problem};
+    result.message                   = "no gait";
+    result.records                   = {result.best};
     return result;
   }
 
@@ -369,13 +295,12 @@ namespace crawler
 
   StartResult
   search(SceneFamily &family,
-         const unsigned long number_of_case,
-         const unsigned long start,
+         const StartName &start,
          const std::vector<double> &x,
          SearchState &state,
          const std::function<bool()> &stops)
   {
     state = {};
-    return Search(family, number_of_case, start, x, state, stops).make();
+    return Search(family, start, x, state, stops).make();
   }
 } // namespace crawler

@@ -406,14 +406,14 @@ namespace crawler
         log.line("The state of the run is in restart.dat: the same command with --resume goes on with it.");
       return "";
     });
-    // The first rank speaks for all: a signal may have stopped some only.
-    int code = static_cast<int>(report_end(log,
-                                           result,
-                                           input.parameters.units,
-                                           folder,
-                                           output.has_snapshots() ? animation_file(output.snapshot_format) : ""));
-    MPI_Bcast(&code, 1, MPI_INT, 0, communicator);
-    return static_cast<ExitCode>(code);
+    // A signal may have stopped some ranks only.
+    return exit_code_of_first_rank(communicator, [&]() {
+      return report_end(log,
+                        result,
+                        input.parameters.units,
+                        folder,
+                        output.has_snapshots() ? animation_file(output.snapshot_format) : "");
+    });
   }
 
   namespace
@@ -463,8 +463,7 @@ namespace crawler
   {
     const OutputParameters &output = input.parameters.output;
     const auto folder              = output_folder(options.output, options.file);
-    int code                       = 0;
-    on_first_rank(communicator, [&]() {
+    return exit_code_of_first_rank(communicator, [&]() {
       const FolderLock lock(folder, options.overwrite);
       begin_files(log, input, folder);
       report_scene(log, input);
@@ -507,16 +506,12 @@ namespace crawler
       }
       lock.require_in_place();
       write_file(folder / "summary.json", summary_json(result, size_of(communicator), options.command_line));
-      code = static_cast<int>(
-        report_end(log,
-                   result,
-                   input.parameters.units,
-                   folder,
-                   output.has_snapshots() && result.error ? animation_file(output.snapshot_format) : ""));
-      return "";
+      return report_end(log,
+                        result,
+                        input.parameters.units,
+                        folder,
+                        output.has_snapshots() && result.error ? animation_file(output.snapshot_format) : "");
     });
-    MPI_Bcast(&code, 1, MPI_INT, 0, communicator);
-    return static_cast<ExitCode>(code);
   }
 
   ExitCode

@@ -201,7 +201,7 @@ namespace crawler
       }
       else if (changes = differences(attribute("parameters.prm"), plan.inputs.effective, free); changes.empty())
         changes.emplace_back("its table has the columns of another version of the program");
-      if (changes.empty() && rows->n_rows() != plan.n)
+      if (changes.empty() && !table.grows && rows->n_rows() != plan.n)
         changes.push_back(fmt::format("the number of points was {} and is {}", rows->n_rows(), plan.n));
       if (changes.empty())
         if (const std::string changed = changed_value(*rows, table.columns, plan.known); !changed.empty())

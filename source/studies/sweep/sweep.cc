@@ -4,7 +4,6 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/base/plain_numbers.h>
-#include <crawler/base/stop_signal.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/crash_file.h>
@@ -166,7 +165,7 @@ namespace crawler
 
     /// What stands in the log at the end.
     void
-    report(const SweepCounts &counts, const SweepEnd &end, const fs::path &folder, Log &log)
+    report(const SweepCounts &counts, const SweepEnd &end, const fs::path &folder, const StudyClock &clock, Log &log)
     {
       std::vector<std::string> words;
       for (const auto &[status, count] : counts.statuses)
@@ -179,8 +178,7 @@ namespace crawler
       if (!counts.verdicts.empty())
         report_check(counts, log);
       if (end.status != "finished")
-        log.warn(
-          fmt::format("stopped by {}; --resume goes on", end.reason == "signal" ? "a signal" : "Sweep/Time limit"));
+        log.warn(clock.in_words(end.reason) + "; --resume goes on");
       log.line(fmt::format("Results are in {0}/results.h5 and {0}/results.csv; draw them with: crawler plot {0}",
                            folder.string()));
     }
@@ -195,8 +193,7 @@ namespace crawler
   ExitCode
   sweep_input(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
   {
-    const StopSignal stop_signal; // from here on a signal ends the sweep in order
-    const double start         = now();
+    StudyClock clock("Sweep");
     const unsigned int n_ranks = size_of(communicator);
     Log log(rank_of(communicator) == 0, options);
     SweepPoints points(communicator, file);
@@ -224,11 +221,10 @@ namespace crawler
     for (const std::string &note : points.notes())
       log.line(note);
 
-    const std::function<bool()> interrupted = [&]() {
-      return stop_signal.arrived_anywhere(MPI_COMM_SELF) || (own.time_limit && now() - start > *own.time_limit);
-    };
-    bool is_whole      = compute_rows(communicator, path, points, table, done, interrupted, log);
-    std::string reason = is_whole ? "" : stop_signal.arrived_anywhere(communicator) ? "signal" : "time_limit";
+    clock.set_limit(own.time_limit);
+    bool is_whole = compute_rows(
+      communicator, path, points, table, done, [&]() { return clock.is_over(); }, log);
+    std::string reason = clock.reason(communicator, is_whole);
     if (is_whole && !kept.empty() && !keep_fields(communicator, options, path, points, kept))
     {
       is_whole = false;
@@ -242,19 +238,17 @@ namespace crawler
     try
     {
       const SweepCounts counts = write_results_csv(communicator, path);
-      end.seconds              = now() - start;
-      const std::string code   = on_first_rank(communicator, [&]() {
+      end.seconds              = clock.seconds();
+      return exit_code_of_first_rank(communicator, [&]() {
         write_file(path / "summary.json", sweep_json(counts, end));
-        report(counts, end, path, log);
+        report(counts, end, path, clock, log);
         folder.leave();
         const auto finished     = counts.statuses.find("finished");
         const auto not_finished = counts.n_points - (finished == counts.statuses.end() ? 0 : finished->second);
-        return fmt::format("{}",
-                           static_cast<int>(!is_whole                            ? ExitCode::stopped
-                                              : options.strict && not_finished > 0 ? ExitCode::rows_failed
-                                                                                   : ExitCode::finished));
+        return !is_whole                            ? ExitCode::stopped
+               : options.strict && not_finished > 0 ? ExitCode::rows_failed
+                                                    : ExitCode::finished;
       });
-      return static_cast<ExitCode>(std::stoi(code));
     }
     catch (const FileError &error)
     {

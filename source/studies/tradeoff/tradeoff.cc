@@ -4,7 +4,6 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/base/plain_numbers.h>
-#include <crawler/base/stop_signal.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/core/input.h>
@@ -99,6 +98,7 @@ namespace crawler
       const PointTable &table;
       const std::vector<TradeoffSetting> &settings;
       const std::function<bool()> &interrupted;
+      const StudyClock &clock;
       const std::string &command_line;
       StudyFolder &folder;
       Log &log;
@@ -271,8 +271,8 @@ namespace crawler
       }
       study.log.line(fmt::format("{:.1f} s. Results are in {}/.", end.seconds, path.string()));
       if (end.status == "stopped" && reference.status == "finished")
-        study.log.warn(fmt::format("stopped by {} after {} settings; --resume goes on",
-                                   end.reason == "signal" ? "a signal" : "Tradeoff/Time limit",
+        study.log.warn(fmt::format("{} after {} settings; --resume goes on",
+                                   study.clock.in_words(end.reason),
                                    end.n_before + n_computed(counts, end)));
     }
   } // namespace
@@ -280,20 +280,18 @@ namespace crawler
   ExitCode
   tradeoff(MPI_Comm communicator, const CommandOptions &options)
   {
-    const StopSignal stop_signal; // from here on a signal ends the study in order
-    const double start = now();
+    StudyClock clock("Tradeoff");
     Log log(rank_of(communicator) == 0, options);
     const Input input = read_input(read_file(communicator, options.file, options.overrides), /*command=*/"tradeoff");
-    const TradeoffParameters &own           = input.parameters.tradeoff;
-    const auto settings                     = settings_to_try(input);
-    const auto path                         = output_folder(options.output, options.file);
-    const PointTable table                  = tradeoff_table(own.run_time_limit);
-    const std::function<bool()> interrupted = [&]() {
-      return stop_signal.arrived_anywhere(MPI_COMM_SELF) || now() - start > own.time_limit;
-    };
+    const TradeoffParameters &own = input.parameters.tradeoff;
+    const auto settings           = settings_to_try(input);
+    const auto path               = output_folder(options.output, options.file);
+    const PointTable table        = tradeoff_table(own.run_time_limit);
+    clock.set_limit(own.time_limit);
+    const std::function<bool()> interrupted = [&]() { return clock.is_over(); };
     const StudyKind kind = {"tradeoff", {table.file}, {"Tradeoff/Time limit", "Tradeoff/Time limit per run"}};
     StudyFolder folder(kind, path, options, log);
-    Study study{communicator, input, table, settings, interrupted, options.command_line, folder, log};
+    Study study{communicator, input, table, settings, interrupted, clock, options.command_line, folder, log};
     const TradeoffReference reference = begin(study);
     const auto n_before               = static_cast<unsigned long>(std::ranges::count(study.done, true));
     SweepEnd end{reference.status, "", 0., size_of(communicator), n_before, options.command_line};
@@ -303,14 +301,14 @@ namespace crawler
     if (code == ExitCode::stopped)
     {
       end.status = "stopped";
-      end.reason = stop_signal.arrived_anywhere(communicator) ? "signal" : "time_limit";
+      end.reason = clock.reason(communicator, /*is_whole=*/false);
     }
     on_first_rank(communicator, [&]() {
       folder.require_in_place();
       return "";
     });
     const SweepCounts counts = write_results_csv(communicator, path, table.file, table.group);
-    end.seconds              = now() - start;
+    end.seconds              = clock.seconds();
     on_first_rank(communicator, [&]() {
       conclude(study, reference, counts, end);
       folder.leave();

@@ -17,7 +17,9 @@ TIMES, FEWEST_TIMES = 640, 64  # of all kymographs of a page together, and of ea
 
 # What a folder may be: its kind, a file or folder that only it has, its table, and the group in it.
 KINDS = (("tradeoff", "tradeoff.h5", "tradeoff.h5", "tradeoff"),
-         ("comparison", "comparison.csv", "comparison.csv", None), ("fit", "inputs.json", "residuals.csv", None), ("optimisation", "starts", "results.h5", "optimize"),
+         ("comparison", "comparison.csv", "comparison.csv", None), ("fit", "inputs.json", "residuals.csv", None), 
+         ("optimisation", "starts.h5", "results.h5", "optimize"),
+         ("optimisation", "starts.csv", "results.h5", "optimize"),
          ("sweep", "results.h5", "results.h5", "results"), ("run", "summary.json", None, None),
          ("run", "statistics.csv", None, None))
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/stop_signal.h>
 #include <crawler/studies/core/log.h>
 
 #include <mpi.h>
@@ -8,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,40 @@ namespace crawler
   std::vector<std::string>
   differences(const std::string &before, const std::string &after, const std::vector<std::string> &others);
 
+  /// The time since a study began, and what ends it before it is whole: a signal, which from now on ends it in order,
+  /// or its time limit.
+  class StudyClock
+  {
+  public:
+    /// @p section: of the parameters, for words.
+    explicit StudyClock(std::string section);
+
+    void
+    set_limit(std::optional<double> seconds);
+
+    /// Is the time over, or has a signal arrived on this rank?
+    bool
+    is_over() const;
+
+    /// Which of the two it was, if the study is not whole: "signal" or "time_limit"; empty if it @p is_whole
+    /// (collective).
+    std::string
+    reason(MPI_Comm communicator, bool is_whole) const;
+
+    /// "stopped by a signal", say, for a reason.
+    std::string
+    in_words(const std::string &reason) const;
+
+    double
+    seconds() const;
+
+  private:
+    const StopSignal signal_;
+    const double begin_;
+    const std::string section_;
+    std::optional<double> limit_;
+  };
+
   /// The parts of a study, which the ranks take one after the other.
   struct SharedWork
   {
@@ -50,6 +86,8 @@ namespace crawler
       compute;
     /// What rank 0 can say of the part that it computes, for whoever watches. Nothing: parts are short.
     std::function<std::string()> state = {};
+    /// What rank 0 does for the others whenever it serves them (WorkQueue).
+    std::function<void()> besides = {};
   };
 
   /// Returns false if some rank was interrupted (collective). A file that one rank cannot write ends the work of all:

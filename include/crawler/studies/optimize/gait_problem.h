@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/archive.h>
 #include <crawler/studies/core/parameters.h>
 #include <crawler/studies/optimize/gait_model.h>
 #include <crawler/studies/optimize/optimize_settings.h>
@@ -20,6 +21,12 @@ namespace crawler
     std::string name;  ///< its entry in section Optimize
     double value;      ///< in the user's units
     double multiplier; ///< by how much the objective would become better for one unit more
+
+    void
+    exchange(Archive &archive)
+    {
+      archive(name, value, multiplier);
+    }
   };
 
   /// What each evaluation gave: a row of the table.
@@ -31,6 +38,12 @@ namespace crawler
     double violation; ///< of the limit that is violated most, relative to it
     std::string problem;
     std::string worst_limit{}; ///< its name; empty: all limits are kept
+
+    void
+    exchange(Archive &archive)
+    {
+      archive(x, objective, numbers, violation, problem, worst_limit);
+    }
   };
 
   /**

@@ -2,15 +2,31 @@
 #pragma once
 
 #include <crawler/studies/optimize/scene_family.h>
+#include <crawler/studies/sweep/sweep_inputs.h>
 #include <crawler/studies/sweep/sweep_points.h>
 
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace crawler
 {
+  /// Cases, variables, objective and limits of an optimisation, as its tables name them.
+  struct OptimizeNames
+  {
+    struct Case
+    {
+      std::vector<std::string> values; ///< of the axes, as they stand in a parameter file
+      std::vector<std::string> paths;  ///< of the variables
+      double sign;                     ///< of the wanted direction
+    };
+    std::vector<std::string> axes;
+    std::vector<Case> cases;
+    std::vector<std::string> paths, units; ///< of the variables of any case
+    std::vector<std::string> limits;       ///< entries that limit any case
+    std::string objective, unit;           ///< and its unit
+  };
+
   /// The problems that an optimisation solves one by one: the points of section Sweep, or the file as it is where that
   /// has no axes.
   class OptimizeCases
@@ -25,25 +41,20 @@ namespace crawler
       return points_ ? points_->design().n_points() : 1;
     }
 
-    /// The smallest and the largest number of variables of a case.
-    std::pair<std::size_t, std::size_t>
-    n_variables() const
-    {
-      return n_variables_;
-    }
-
     /// The scenes of a case. One at a time: it goes before the next one comes.
     std::unique_ptr<SceneFamily>
     family(unsigned long number);
 
-    /// What varies over the cases, and the values of one as they stand in a parameter file.
-    const std::vector<std::string> &
-    axes() const
+    const OptimizeNames &
+    names() const
     {
-      return axes_;
+      return names_;
     }
-    std::vector<std::string>
-    values(unsigned long number) const;
+    bool
+    are_several() const
+    {
+      return !names_.axes.empty();
+    }
 
     /// The cases next to a case (SweepDesign::neighbours()).
     std::vector<unsigned long>
@@ -72,14 +83,20 @@ namespace crawler
     std::vector<std::string>
     notes(const ParameterFile &file);
 
+    /// What the gaits depend on (one process: reads files). Throws FileError.
+    SweepInputs
+    inputs() const;
+
     /// All entries as they are used, but for the axes, as a .prm file.
     std::string
     effective() const;
 
   private:
+    void
+    add_case(unsigned long number);
+
     Form file_form_;
     std::unique_ptr<SweepPoints> points_; ///< if there are axes
-    std::vector<std::string> axes_;
-    std::pair<std::size_t, std::size_t> n_variables_;
+    OptimizeNames names_;
   };
 } // namespace crawler

@@ -2,8 +2,7 @@
 #pragma once
 
 #include <crawler/base/table.h>
-#include <crawler/studies/optimize/optimize_cases.h>
-#include <crawler/studies/optimize/optimize_start.h>
+#include <crawler/studies/optimize/optimize_memory.h>
 
 #include <filesystem>
 #include <string>
@@ -14,37 +13,23 @@ namespace crawler
   /// What `crawler optimize` has found: for each case the best of the starts.
   struct OptimizeResults
   {
-    /// What there is of a case.
-    struct Case
-    {
-      std::vector<std::string> values; ///< of the axes
-      std::vector<std::string> paths;  ///< of the variables
-      std::string words;               ///< empty if there is only one
-      double sign;                     ///< of the wanted direction
-    };
-    std::vector<std::string> axes;
-    std::vector<Case> cases;
-    std::vector<std::string> paths, units; ///< of the variables of any case
-    std::string objective, unit;           ///< and its unit
+    const OptimizeNames &names;
     std::vector<StartResult> starts;
     std::vector<std::size_t> best; ///< of starts, one for each case that has a gait
 
     /// @p starts in the order of the cases. The best ones are chosen here.
-    OptimizeResults(OptimizeCases &cases, std::vector<StartResult> starts);
+    OptimizeResults(const OptimizeNames &names, std::vector<StartResult> starts);
+
+    std::size_t
+    n_evaluations() const;
   };
 
-  /// A row for each evaluation of all starts.
+  /// A row for each optimum: that of its start in the @p folder, and what the program finds for it, by the
+  /// @p summaries of their runs.
   Table
-  evaluation_table(const OptimizeResults &results);
-
-  /// A row for each start: the best that it has found.
-  Table
-  start_table(const OptimizeResults &results);
-
-  /// A row for each optimum: what the program finds for it, by the @p summaries of their runs, and what its limits
-  /// cost.
-  Table
-  optimum_table(const OptimizeResults &results, const std::vector<std::string> &summaries);
+  optimum_table(const OptimizeResults &results,
+                const std::filesystem::path &folder,
+                const std::vector<std::string> &summaries);
 
   /// The summary: that of the run of the last optimum, @p summaries of the runs of all, and what the optimiser says.
   std::string
@@ -57,5 +42,5 @@ namespace crawler
 
   /// The lines for the screen.
   std::vector<std::string>
-  in_words(const OptimizeResults &results, const std::vector<std::string> &summaries, const UnitNames &units);
+  in_words(const OptimizeResults &results, const OptimizeCases &cases, const std::vector<std::string> &summaries);
 } // namespace crawler

@@ -3,6 +3,8 @@
 
 #include <crawler/studies/core/variables.h>
 
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace crawler
@@ -11,6 +13,17 @@ namespace crawler
   /// that no limit holds.
   std::vector<Variable>
   read_variables_of_gait(Form &form);
+
+  /// An entry that limits gaits, and its value if it is set.
+  struct LimitEntry
+  {
+    std::string name;
+    std::optional<double> value;
+  };
+
+  /// All of them, in the order in which results name them.
+  std::vector<LimitEntry>
+  limits_of(const OptimizeParameters &parameters);
 
   /// The scene with these values. Throws InputError.
   Parameters

@@ -12,10 +12,19 @@
 
 namespace crawler
 {
-  /// What one start of the optimiser has found.
-  struct StartResult
+  /// Which start of which case.
+  struct StartName
   {
     unsigned long number_of_case = 0, start = 0;
+    unsigned long neighbour = 0; ///< number of the case from whose best gait it goes on, from 1 on; 0: none
+
+    bool
+    operator==(const StartName &) const = default;
+  };
+
+  /// What one start of the optimiser has found.
+  struct StartResult : StartName
+  {
     GaitRecord best = {};
     std::vector<GaitLimit> limits;
     bool has_converged = false, was_interrupted = false;
@@ -31,19 +40,18 @@ namespace crawler
     {
       return best.problem.empty() && best.violation <= admissible;
     }
+
+    void
+    exchange(Archive &archive)
+    {
+      archive(number_of_case, start, neighbour, best, limits, has_converged, was_interrupted, message);
+      archive(iterations, admissible, seconds, records);
+    }
   };
 
   /// Of a start that makes no gait because of this @p problem.
   StartResult
-  without_gait(unsigned long number_of_case,
-               unsigned long start,
-               const std::vector<double> &x,
-               const std::string &problem);
-
-  std::string
-  pack(const StartResult &result);
-  StartResult
-  unpack_start(const std::string &text);
+  without_gait(const StartName &start, const std::vector<double> &x, const std::string &problem);
 
   /// The level on which gaits are computed: simulations, or the kinematic level if Model says so. Throws InputError.
   std::unique_ptr<GaitModel>
@@ -57,14 +65,13 @@ namespace crawler
   };
 
   /**
-   * Looks for the best gait from the values @p x, which are start number @p start. Where the grid of the kinematic
+   * Looks for the best gait from the values @p x, which are those of @p start. Where the grid of the kinematic
    * level was too coarse for what was found, and where the strain exceeds its limits between the places at which it is
    * limited, the search goes on from there. An interrupted one has the best so far. Throws InputError.
    */
   StartResult
   search(class SceneFamily &family,
-         unsigned long number_of_case,
-         unsigned long start,
+         const StartName &start,
          const std::vector<double> &x,
          SearchState &state,
          const std::function<bool()> &stops);

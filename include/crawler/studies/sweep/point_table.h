@@ -28,7 +28,8 @@ namespace crawler
     /// Reasons with the seconds that were used up: rows that ran out of a time limit are computed again if it is
     /// larger.
     std::vector<std::pair<std::string, std::string>> reasons_and_seconds;
-    double time_limit; ///< [s]
+    double time_limit;  ///< [s]
+    bool grows = false; ///< rows come as they are found: their number says nothing about the study
 
     /// Those that are written when a point is computed; the last one is `done`.
     std::vector<RowFile::Column>

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/studies/optimize/optimize_cases.h>
+#include <crawler/studies/optimize/optimize_start.h>
+#include <crawler/studies/sweep/point_table.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /**
+   * The starts that have ended, on the rank that keeps them: rows of starts.h5, and those of their evaluations in
+   * results.h5 (contracts, doc/optimize.md). Rows come as starts end, behind those that are there; what is read again
+   * is what is whole in both.
+   */
+  class OptimizeMemory
+  {
+  public:
+    static const std::string file, group;                         ///< starts.h5
+    static const std::string evaluations_file, evaluations_group; ///< results.h5
+
+    /// Begins a study in the folder, or goes on with the one that is there. @p cases must outlive it. Throws as
+    /// begin_or_resume() of a table.
+    OptimizeMemory(const OptimizeCases &cases,
+                   StudyFolder &folder,
+                   const ParameterFile &file,
+                   std::string command_line);
+
+    /// This start, if it has ended.
+    const StartResult *
+    find(const StartName &start) const;
+
+    /// Writes a start, instead of what there is of it. Throws FileError.
+    void
+    keep(StartResult start);
+
+    /// Leaves what @p starts names, in this order, and closes the files.
+    void
+    arrange(const std::vector<StartName> &starts);
+
+    const std::vector<StartResult> &
+    starts() const
+    {
+      return starts_;
+    }
+
+  private:
+    void
+    write_all(bool with_room);
+    void
+    write(const StartResult &start);
+
+    const OptimizeNames &names_;
+    const std::filesystem::path folder_;
+    const std::string command_line_;
+    const PointTable table_;
+    PlannedRows plan_;
+    std::vector<StartResult> starts_; ///< in the order of their rows
+    std::unique_ptr<RowFile> start_rows_, evaluation_rows_;
+    unsigned long n_starts_ = 0, n_evaluations_ = 0;       ///< rows that are written
+    unsigned long most_starts_ = 0, most_evaluations_ = 0; ///< places for rows
+  };
+} // namespace crawler

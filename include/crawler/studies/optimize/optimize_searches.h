@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/mailbox.h>
+#include <crawler/studies/core/crash_file.h>
+#include <crawler/studies/optimize/optimize_cases.h>
+#include <crawler/studies/optimize/optimize_results.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// A start of a case: of its own, or the best gait of a neighbour of the case.
+  struct Part : StartName
+  {
+    std::vector<double> x = {}; ///< the gait of the neighbour
+
+    void
+    exchange(Archive &archive)
+    {
+      archive(number_of_case, start, neighbour, x);
+    }
+  };
+
+  /**
+   * The searches of an optimisation, which the ranks share (collective, but for what is said to be rank 0's). Rank 0
+   * keeps what they find.
+   */
+  class OptimizeSearches
+  {
+  public:
+    /// @p memory is that of rank 0.
+    OptimizeSearches(MPI_Comm communicator,
+                     OptimizeCases &cases,
+                     std::unique_ptr<OptimizeMemory> memory,
+                     const std::filesystem::path &folder,
+                     std::function<bool()> interrupted,
+                     Log &log);
+
+    /// The searches that have not ended yet: from all starts, then from the best gaits of neighbours as long as these
+    /// are better. Returns false if it was interrupted. Throws FileError, on all ranks.
+    bool
+    go_on();
+
+    /// What they have found, in the order of the cases, which its files have afterwards (rank 0).
+    OptimizeResults
+    results();
+
+    /// Those that began with the gait of a neighbour.
+    std::size_t
+    n_from_neighbours() const;
+
+  private:
+    bool
+    search_all(const std::vector<Part> &some);
+    std::vector<StartName>
+    names_in_order() const;
+    OptimizeResults
+    results_so_far() const;
+    std::vector<Part>
+    parts_from_neighbours();
+    void
+    keep(const std::string &text);
+
+    const MPI_Comm communicator_;
+    OptimizeCases &cases_;
+    const std::unique_ptr<OptimizeMemory> memory_;
+    const std::function<bool()> interrupted_;
+    Log &log_;
+    std::vector<Part> parts_;
+    SearchState state_;
+    const Crashes crashes_;
+    CrashNote note_;
+    Mailbox mailbox_;     ///< for the starts that other ranks than 0 have made
+    std::string problem_; ///< with the files
+  };
+} // namespace crawler

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/plain_numbers.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/studies/core/study.h>
+#include <crawler/studies/optimize/optimize_memory.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace crawler
+{
+  const std::string OptimizeMemory::file = "starts.h5", OptimizeMemory::group = "starts";
+  const std::string OptimizeMemory::evaluations_file = "results.h5", OptimizeMemory::evaluations_group = "optimize";
+
+  namespace
+  {
+    const std::string converged = "converged", stopped = "stopped";
+
+    /// In the order of GaitNumber.
+    const std::array<RowFile::Column, n_gait_numbers> number_columns = {{{"displacement", "length", ""},
+                                                                         {"stress_power", "energy", ""},
+                                                                         {"positive_power", "energy", ""},
+                                                                         {"mean_square_strain", "1", ""},
+                                                                         {"speed", "length/time", ""},
+                                                                         {"friction_time", "time^2/(force length)", ""},
+                                                                         {"dissipation", "energy", ""},
+                                                                         {"efficiency", "1", ""}}};
+
+    /// Goes through the fields of a row in the order of the columns: says what they are, writes them or reads them.
+    class Fields
+    {
+    public:
+      Fields() = default;
+      Fields(const Table &table, const unsigned long row)
+        : table_(&table)
+        , row_(row)
+      {
+      }
+
+      std::vector<RowFile::Column> columns;
+      RowFile::Row values; ///< if they are written
+
+      void
+      number(const RowFile::Column &column, double &value)
+      {
+        if (table_ != nullptr)
+          value = std::get<std::vector<double>>(table_->at(columns.size()).values)[row_];
+        columns.push_back(column);
+        values.emplace_back(value);
+      }
+      /// A whole number; a damaged one becomes the largest.
+      template <typename Number>
+      void
+      whole(const RowFile::Column &column, Number &value)
+      {
+        auto real = static_cast<double>(value);
+        number(column, real);
+        value = real >= 0. && real < 0x1p32 ? static_cast<Number>(real) : static_cast<Number>(-1);
+      }
+      void
+      text(const RowFile::Column &column, std::string &value)
+      {
+        if (table_ != nullptr)
+          value = std::get<std::vector<std::string>>(table_->at(columns.size()).values)[row_];
+        columns.push_back(column);
+        values.emplace_back(shortened(value, column.width));
+      }
+
+    private:
+      const Table *table_ = nullptr; ///< if they are read
+      unsigned long row_  = 0;
+    };
+
+    /// A gait of a start. The case is too large if it is damaged.
+    void
+    exchange(Fields &fields, const OptimizeNames &names, StartName &start, GaitRecord &record, const unsigned int width)
+    {
+      unsigned long number = start.number_of_case + 1;
+      fields.whole({"case", "1", "number of the case"}, number);
+      start.number_of_case           = std::min(number - 1, names.cases.size());
+      const OptimizeNames::Case &its = names.cases[std::min(start.number_of_case, names.cases.size() - 1)];
+      for (std::size_t i = 0; i < names.axes.size(); ++i)
+        if (std::ranges::find(names.paths, names.axes[i]) == names.paths.end()) // else it is only a start
+        {
+          std::string value  = its.values[i];
+          std::size_t widest = 1;
+          for (const OptimizeNames::Case &one : names.cases)
+            widest = std::max(widest, one.values[i].size());
+          fields.text({names.axes[i], "", "of the case", static_cast<unsigned int>(widest)}, value);
+        }
+      fields.whole({"start", "1", "number of the start"}, start.start);
+      record.x.resize(its.paths.size(), NAN); // stopped before there was a gait
+      for (std::size_t i = 0; i < names.paths.size(); ++i)
+      {
+        double none      = NAN;
+        const auto place = std::ranges::find(its.paths, names.paths[i]);
+        fields.number({names.paths[i], names.units[i], "variable"},
+                      place == its.paths.end() ? none : record.x[static_cast<std::size_t>(place - its.paths.begin())]);
+      }
+      if (std::isnan(record.x.front()))
+        record.x.clear();
+      fields.number({"objective", names.unit, names.objective}, record.objective);
+      for (std::size_t i = 0; i < n_gait_numbers; ++i)
+        fields.number(number_columns[i], record.numbers[i]);
+      fields.number({"violation", "1", "of the limit that is exceeded most, relative to it"}, record.violation);
+      fields.text({"problem", "", "why there is no gait", width}, record.problem);
+    }
+
+    /// What is written of a gait.
+    GaitRecord
+    shown(GaitRecord record)
+    {
+      if (record.problem.empty() && !record.x.empty())
+        return record;
+      record.objective = record.violation = NAN;
+      record.numbers.fill(NAN);
+      return record;
+    }
+
+    void
+    exchange(Fields &fields, const OptimizeNames &names, StartName &start, double &number, GaitRecord &record)
+    {
+      constexpr unsigned int width = 256;
+      fields.number({"evaluation", "1", "number of the evaluation in its start"}, number);
+      exchange(fields, names, start, record, width);
+    }
+
+    /// Of a start its gait with this number.
+    Fields
+    evaluation(const OptimizeNames &names, StartName start, double number, GaitRecord record)
+    {
+      Fields fields;
+      exchange(fields, names, start, number, record);
+      return fields;
+    }
+
+    /// A start without its evaluations, and which rows these are.
+    struct Stored
+    {
+      StartResult start             = {};
+      unsigned int first_evaluation = 0, n_evaluations = 0;
+    };
+
+    void
+    exchange(Fields &fields, const OptimizeNames &names, Stored &stored)
+    {
+      constexpr unsigned int width = 1024;
+      StartResult &start           = stored.start;
+      std::string end              = start.has_converged ? converged : start.message;
+      std::string status           = start.was_interrupted ? stopped : "finished";
+      exchange(fields, names, start, start.best, width);
+      fields.whole({"iterations", "1", "of the optimiser"}, start.iterations);
+      fields.whole({"evaluations", "1", "of gaits"}, stored.n_evaluations);
+      fields.number({"seconds", "s", "wall time"}, start.seconds);
+      fields.text({"optimiser", "", "how it ended", width}, end);
+      fields.text({"exceeded limit", "", "the one that is exceeded most", 32}, start.best.worst_limit);
+      for (const std::string &name : names.limits)
+      {
+        const auto known = std::ranges::find(start.limits, name, &GaitLimit::name);
+        GaitLimit limit  = known == start.limits.end() ? GaitLimit{name, NAN, NAN} : *known;
+        fields.number({"limit of " + name, "", "as it was set"}, limit.value);
+        fields.number({"multiplier of " + name, "", "objective for one unit more"}, limit.multiplier);
+        if (known == start.limits.end() && !std::isnan(limit.value))
+          start.limits.push_back(limit);
+      }
+      fields.number({"admissible", "1", "violation of a limit, relative to it"}, start.admissible);
+      fields.whole({"neighbour", "1", "number of the case from whose best gait it went on; 0: none"}, start.neighbour);
+      fields.whole({"first evaluation", "1", "its row in results.h5"}, stored.first_evaluation);
+      fields.text({"status", "", "finished or stopped; empty: there is no row", 16}, status);
+      start.has_converged   = end == converged;
+      start.message         = start.has_converged ? "" : end;
+      start.was_interrupted = status == stopped;
+    }
+
+    const RowFile::Column index_column = {"index", "1", "number of the row"};
+
+    RowFile::Known
+    known_index()
+    {
+      return {1, [](std::size_t, const unsigned long row) { return static_cast<double>(row); }};
+    }
+
+    PointTable
+    table_of_starts(const OptimizeNames &names)
+    {
+      PointTable table = {
+        OptimizeMemory::file, OptimizeMemory::group, {index_column}, 1, "status", {}, HUGE_VAL, /*grows=*/true};
+      Fields fields;
+      Stored any;
+      exchange(fields, names, any);
+      table.columns.insert(table.columns.end(), fields.columns.begin(), fields.columns.end());
+      return table;
+    }
+
+    std::vector<RowFile::Column>
+    evaluation_columns(const OptimizeNames &names)
+    {
+      return evaluation(names, {}, 0., {}).columns;
+    }
+
+    /// Reads the evaluations of a start. Returns false if they are not whole, or not its own.
+    bool
+    read_evaluations(const OptimizeNames &names, const RowReader &rows, Stored &stored)
+    {
+      const unsigned long first = stored.first_evaluation, n = stored.n_evaluations;
+      if (first > rows.n_rows() || n > rows.n_rows() - first)
+        return false;
+      Table table       = rows.read(first, n);
+      const auto intact = rows.intact(evaluation_columns(names), first, n);
+      if (intact && std::ranges::count(*intact, false) > 0)
+        return false;
+      table.erase(table.begin()); // the index
+      for (unsigned long i = 0; i < n; ++i)
+      {
+        Fields fields(table, i);
+        StartName name;
+        double number      = 0.;
+        GaitRecord &record = stored.start.records.emplace_back();
+        exchange(fields, names, name, number, record);
+        if (number != static_cast<double>(i) || name.number_of_case != stored.start.number_of_case ||
+            name.start != stored.start.start)
+          return false;
+      }
+      return true;
+    }
+  } // namespace
+
+  OptimizeMemory::OptimizeMemory(const OptimizeCases &cases,
+                                 StudyFolder &folder,
+                                 const ParameterFile &parameter_file,
+                                 std::string command_line)
+    : names_(cases.names())
+    , folder_(folder.path())
+    , command_line_(std::move(command_line))
+    , table_(table_of_starts(names_))
+    , plan_{0, known_index(), cases.inputs(), cases.effective()}
+  {
+    const auto done = begin_or_resume(folder, table_, parameter_file, plan_, command_line_);
+    if (std::ranges::count(done, true) > 0)
+    {
+      const RowReader rows(MPI_COMM_SELF, folder_ / file, group),
+        evaluations(MPI_COMM_SELF, folder_ / evaluations_file, evaluations_group);
+      Table table = rows.read(0, rows.n_rows());
+      table.erase(table.begin()); // the index
+      unsigned long n_damaged = 0;
+      for (unsigned long row = 0; row < done.size(); ++row)
+        if (done[row])
+        {
+          Fields fields(table, row);
+          Stored stored;
+          exchange(fields, names_, stored);
+          if (stored.start.number_of_case < names_.cases.size() && read_evaluations(names_, evaluations, stored))
+            starts_.push_back(std::move(stored.start));
+          else
+            ++n_damaged;
+        }
+      if (n_damaged > 0)
+        folder.log().warn(
+          fmt::format("warning: the evaluations of {} are not what was written, so {} was damaged; they "
+                      "are computed anew",
+                      counted(n_damaged, "start"),
+                      evaluations_file));
+    }
+    write_all(/*with_room=*/true);
+  }
+
+  const StartResult *
+  OptimizeMemory::find(const StartName &start) const
+  {
+    const auto found = std::ranges::find_if(starts_, [&](const StartName &one) { return one == start; });
+    return found == starts_.end() ? nullptr : &*found;
+  }
+
+  void
+  OptimizeMemory::keep(StartResult start)
+  {
+    const bool is_new = std::erase_if(starts_, [&](const StartName &one) { return one == start; }) == 0;
+    const bool fits   = n_starts_ < most_starts_ && n_evaluations_ + start.records.size() <= most_evaluations_;
+    starts_.push_back(std::move(start));
+    if (is_new && fits)
+      write(starts_.back());
+    else
+      write_all(/*with_room=*/true);
+  }
+
+  void
+  OptimizeMemory::arrange(const std::vector<StartName> &names)
+  {
+    std::vector<StartResult> arranged;
+    for (const StartName &name : names)
+      if (const StartResult *const start = find(name))
+        arranged.push_back(*start);
+    starts_ = std::move(arranged);
+    write_all(/*with_room=*/false);
+    start_rows_.reset();
+    evaluation_rows_.reset();
+  }
+
+  void
+  OptimizeMemory::write_all(const bool with_room)
+  {
+    constexpr unsigned long fewest_starts = 16, fewest_evaluations = 1024;
+    start_rows_.reset();
+    evaluation_rows_.reset();
+    unsigned long n = 0;
+    for (const StartResult &start : starts_)
+      n += start.records.size();
+    most_starts_      = starts_.size() + (with_room ? std::max(starts_.size(), fewest_starts) : 0);
+    most_evaluations_ = n + (with_room ? std::max(n, fewest_evaluations) : 0);
+    plan_.n           = most_starts_;
+    const std::vector<RowFile::Column> written = evaluation_columns(names_);
+    std::vector<RowFile::Column> columns       = written;
+    columns.insert(columns.begin(), index_column);
+    create_table(folder_, table_, plan_, command_line_);
+    const auto path = folder_ / evaluations_file;
+    RowFile::create(
+      path, evaluations_group, columns, most_evaluations_, provenance(plan_.effective, command_line_), known_index());
+    start_rows_      = std::make_unique<RowFile>(MPI_COMM_SELF, folder_ / file, group, table_.written_columns());
+    evaluation_rows_ = std::make_unique<RowFile>(MPI_COMM_SELF, path, evaluations_group, written);
+    n_starts_ = n_evaluations_ = 0;
+    for (const StartResult &start : starts_)
+      write(start);
+  }
+
+  void
+  OptimizeMemory::write(const StartResult &start)
+  {
+    std::vector<RowFile::Row> rows;
+    for (const GaitRecord &record : start.records)
+      rows.push_back(evaluation(names_, start, static_cast<double>(rows.size()), shown(record)).values);
+    evaluation_rows_->write(n_evaluations_, rows);
+    Stored stored{start, static_cast<unsigned int>(n_evaluations_), static_cast<unsigned int>(rows.size())};
+    stored.start.best = shown(start.best);
+    Fields fields;
+    exchange(fields, names_, stored);
+    start_rows_->write(n_starts_, {{fields.values}});
+    ++n_starts_;
+    n_evaluations_ += rows.size();
+  }
+} // namespace crawler
