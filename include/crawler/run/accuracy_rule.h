@@ -138,11 +138,9 @@ namespace crawler::accuracy_rule
   // tests/verification/random_extremes.cc and tests/benchmark/stretch_table.cc.
   namespace family
   {
-    /// Cells of the finest mesh, and for a smaller Accuracy than accurate.
-    inline constexpr unsigned int most_cells = 3200, most_cells_if_accurate = 6400;
-    /// But of bodies that invert.
-    inline constexpr unsigned int most_cells_if_inverted = 1600;
-    inline constexpr double accurate                     = 2e-6;
+    /// Cells of the finest mesh, for a smaller Accuracy than accurate, and of bodies that invert.
+    inline constexpr unsigned int most_cells = 3200, most_cells_if_accurate = 6400, most_cells_if_inverted = 1600;
+    inline constexpr double accurate = 2e-6;
     /// Cells times steps that the next mesh may take, about a second for each 2e6, and how many times as many as the
     /// last one it does.
     inline constexpr double most_work = 2.5e7, most_work_if_accurate = 5e7, more_work = 5.;
@@ -165,8 +163,8 @@ namespace crawler::accuracy_rule
     /// Extrapolations that settle at least so fast are believed to go on so; and what settles faster than fourth order
     /// does it by chance.
     inline constexpr double fast = 5., credited = 4., fastest = 16.;
-    /// The time of an inversion that flows to the last feed converges with order 1/2 to 1 for a between this and 0: its
-    /// error is at most so many times its last change.
+    /// For a between this and 0 the time of an inversion converges slowly: with an error of so many times its last
+    /// change.
     inline constexpr double least_slow_exponent = -0.5, sticking_factor = 3.;
     /// That is believed where the order is as near to 2 as this.
     inline constexpr double clean = 0.25;
