@@ -163,8 +163,7 @@ namespace crawler::accuracy_rule
     /// Extrapolations that settle at least so fast are believed to go on so; and what settles faster than fourth order
     /// does it by chance.
     inline constexpr double fast = 5., credited = 4., fastest = 16.;
-    /// For a between this and 0 the time of an inversion converges slowly: with an error of so many times its last
-    /// change.
+    /// For a between this and 0 the time of an inversion has an error of so many times its last change.
     inline constexpr double least_slow_exponent = -0.5, sticking_factor = 3.;
     /// That is believed where the order is as near to 2 as this.
     inline constexpr double clean = 0.25;
