@@ -520,5 +520,4 @@ namespace crawler
   {
     return path_text(split_path(path));
   }
-
 } // namespace crawler

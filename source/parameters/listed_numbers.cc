@@ -24,15 +24,20 @@ namespace crawler
       return list;
     }
 
+    /// None of a list with an error, which whoever reads the formula names.
     std::vector<ListedNumber>
     constants_of(const std::string &text)
     {
       std::vector<ListedNumber> list;
       std::istringstream in(text);
       for (std::string item; std::getline(in, item, ',');)
-        if (const auto equals = item.find('='); equals != std::string::npos)
-          if (const auto number = to_number(trimmed(item.substr(equals + 1))))
-            list.push_back({trimmed(item.substr(0, equals)), *number});
+      {
+        const auto equals = item.find('=');
+        const auto number = to_number(equals == std::string::npos ? std::string() : trimmed(item.substr(equals + 1)));
+        if (!number)
+          return {};
+        list.push_back({trimmed(item.substr(0, equals)), *number});
+      }
       return list;
     }
 

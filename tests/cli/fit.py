@@ -33,7 +33,7 @@ REFUSED = [
       "Active stress/Travelling wave/Amplitude=5.5"], 2, "cannot be run"),
     (["fit_worm.prm", "--workers", "0"], 2, "from 1"), (["fit_worm.prm", "--workers", "two"], 2, "whole number"),
     (["fit_worm.prm", "three.prm", "--output", "output-fit_worm"], 2, "not empty"), (["fit_worm.prm", "--set", "Fit/Markers at=0,1"], 2, "9 markers"), (["fit_worm.prm", "other/fit_worm.prm"], 2, '"fit_worm.prm" and "other/fit_worm.prm" have the same name'),
-    (["fit_worm.prm", "three.prm", "--set", "Fit/Variables="], 2, 'fit_worm.prm: "Fit/Variables" is empty')]
+    (["fit_worm.prm", "three.prm", "--set", "Fit/Variables="], 2, 'fit_worm.prm: --set "Fit/Variables=": "Fit/Variables" is empty')]
 THREE = ("fit", "three.prm")
 checks = Checks()
 check = checks.expect

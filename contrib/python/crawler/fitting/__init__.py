@@ -18,6 +18,6 @@ def prepared(scene, settings, data=None, **reading):
     effective, notes, variables = _compiled().variables_of_fit(scene())
     parameters = parameters_of(effective)
     data = data if data is not None else parameters["Fit/Data"]
-    if isinstance(data, str) and not data:
+    if isinstance(data, (str, list, tuple)) and not data:
         raise InputError("Fit/Data is empty, but the name of a file with what was measured is expected (or --data)")
     return Model(scene, effective, variables, read_data(data, parameters, **reading)), notes

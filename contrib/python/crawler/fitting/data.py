@@ -109,7 +109,7 @@ def read_data(data, parameters, **reading):
     scene. reading: options of measured.read_samples(). Raises InputError, also for a file that cannot be read, as for those of other
     entries.
     """
-    parts = [one.strip() for one in data.split(";")] if isinstance(data, str) else list(data) if isinstance(data, (list, tuple)) else [data]
+    parts = [one.strip() for one in data.split(";") if one.strip()] if isinstance(data, str) else list(data) if isinstance(data, (list, tuple)) else [data]
     read, kinds = [], {}
     for number, part in enumerate(parts, 1):
         if not isinstance(part, (str, os.PathLike, Samples)):
@@ -117,6 +117,8 @@ def read_data(data, parameters, **reading):
         samples = part if isinstance(part, Samples) else _read_file(part, reading, len(parts) > 1)
         name = f'"{part}"' if not isinstance(part, Samples) else "the data" if len(parts) == 1 else f"number {number} of the data"
         _require_sound(samples, name)
+        if len(parts) > 1 and np.all(np.isnan(samples.values)):
+            raise InputError(f"{name} has no numbers, but some are expected of each kind of data")
         kind = KINDS.get(samples.quantity)
         if kind is None:
             raise InputError(f"{name} has samples of {samples.quantity}, but markers, strain, or columns t and centre or speed are expected")
