@@ -247,7 +247,7 @@ namespace crawler
       /// @p accuracy: instead of that of the file.
       CaseStart(OptimizeCases &cases, const unsigned long number, const std::optional<double> accuracy = {})
         : scenes(cases.family(number))
-        , x(start_values(cases.parameters().optimize, scenes->variables(), 0))
+        , x(scenes->start(0))
       {
         if (accuracy)
           scenes->form().declarations.set("Accuracy", to_text(*accuracy));

@@ -110,8 +110,7 @@ namespace crawler
         return true;
       const Part &part               = some[number];
       const auto family              = cases_.family(part.number_of_case);
-      const OptimizeParameters &own  = cases_.parameters().optimize;
-      const auto x                   = part.neighbour > 0 ? part.x : start_values(own, family->variables(), part.start);
+      const auto x                   = part.neighbour > 0 ? part.x : family->start(part.start);
       const unsigned long crash_mark = mark(part);
       note_.at_work_on(std::span(&crash_mark, 1));
       StartResult result = is_given_up(crash_mark, crashes_) ? without_gait(part, x, crash_message)
