@@ -289,10 +289,10 @@ namespace crawler
   }
 
   void
-  OptimizeMemory::arrange(const std::vector<StartName> &names)
+  OptimizeMemory::arrange(const std::vector<StartName> &starts)
   {
     std::vector<StartResult> arranged;
-    for (const StartName &name : names)
+    for (const StartName &name : starts)
       if (const StartResult *const start = find(name))
         arranged.push_back(*start);
     starts_ = std::move(arranged);

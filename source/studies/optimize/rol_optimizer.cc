@@ -196,7 +196,7 @@ namespace crawler
         impossible = problem.latest_beside(*unknowns->getVector()).problem;
       const bool is_good = (end == ROL::EXITSTATUS_CONVERGED || end == ROL::EXITSTATUS_STEPTOL) && impossible.empty();
       if (!impossible.empty())
-        impossible = "better gaits are impossible: " + impossible;
+        impossible.insert(0, "better gaits are impossible: ");
       const List c     = problem.at(*unknowns->getVector(), false).constraints;
       const double now = violation(problem, c);
       lagrangian->mu   = lagrangian->forces(c);

@@ -191,7 +191,7 @@ namespace crawler
       if (!is_similar)
         continue;
       const bool is_one_sided = around.places[0] == 0.;
-      variations.push_back({{{&scenes[i][0], &scenes[i][1], &scenes[i][2], &scenes[i][3]}},
+      variations.push_back({{{scenes[i].data(), &scenes[i][1], &scenes[i][2], &scenes[i][3]}},
                             around.places[is_one_sided ? 1 : 2],
                             is_one_sided});
       own.push_back(i);
