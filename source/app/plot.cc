@@ -32,7 +32,7 @@ namespace crawler
     {
       static const std::vector<Kind> list = {
         {"tradeoff", "a tradeoff", {"tradeoff.csv", "tradeoff.h5"}},
-        {"optimize", "an optimisation", {"starts.csv"}},
+        {"optimize", "an optimisation", {"starts.csv", "starts.h5"}},
         {"fit", "a fit", {"residuals.csv", "inputs.json", "comparison.csv"}},
         {"sweep", "a sweep", {"results.h5"}},
         {"calibration", "a calibration", {"calibration.csv"}},

@@ -13,6 +13,11 @@
 
 namespace crawler
 {
+  namespace
+  {
+    constexpr int letter = 7; // tag of what send_to_first_rank() sends
+  }
+
   unsigned int
   rank_of(MPI_Comm communicator)
   {
@@ -130,6 +135,26 @@ namespace crawler
   {
     return static_cast<ExitCode>(
       std::stoi(on_first_rank(communicator, [&]() { return std::to_string(static_cast<int>(action())); })));
+  }
+
+  void
+  send_to_first_rank(const std::string &text, MPI_Comm communicator)
+  {
+    MPI_Ssend(text.data(), static_cast<int>(text.size()), MPI_BYTE, 0, letter, communicator);
+  }
+
+  void
+  take_from_others(MPI_Comm communicator, const std::function<void(const std::string &)> &keep)
+  {
+    int is_there = 0, size = 0;
+    MPI_Status status;
+    while (MPI_Iprobe(MPI_ANY_SOURCE, letter, communicator, &is_there, &status), is_there != 0)
+    {
+      MPI_Get_count(&status, MPI_BYTE, &size);
+      std::string text(static_cast<std::size_t>(size), '\0');
+      MPI_Recv(text.data(), size, MPI_BYTE, status.MPI_SOURCE, letter, communicator, MPI_STATUS_IGNORE);
+      keep(text);
+    }
   }
 
   QuickStart::QuickStart()

@@ -57,7 +57,7 @@ def rows(folder):
 def kept(folder):
     """What is known of the starts that have ended, by case and start; not where it stands."""
     columns = h5_columns(folder / "starts.h5", "starts")
-    names = [name for name in columns if name not in ("index", "first evaluation")]
+    names = [name for name in columns if name != "index"]
     return {(columns["case"][i], columns["start"][i]): str([columns[name][i] for name in names])
             for i, status in enumerate(columns["status"]) if status == "finished"}
 

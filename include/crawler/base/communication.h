@@ -44,6 +44,14 @@ namespace crawler
   ExitCode
   exit_code_of_first_rank(MPI_Comm communicator, const std::function<ExitCode()> &action);
 
+  /// Sends bytes to rank 0 from another rank, and waits until they are taken there.
+  void
+  send_to_first_rank(const std::string &text, MPI_Comm communicator);
+
+  /// Hands to @p keep, on rank 0, what other ranks are sending. Throws what that throws.
+  void
+  take_from_others(MPI_Comm communicator, const std::function<void(const std::string &)> &keep);
+
   /**
    * Open MPI in a process that no launcher has started runs a daemon and looks for networks, which takes longer than
    * most runs. While this object lives, when MPI is initialized, it does neither; what the user has set in the

@@ -53,10 +53,8 @@ namespace crawler
   void
   StudyFolder::remove_locks_of_mpi() const
   {
-    const auto is_lock = [&](const std::string &name) {
-      return name.ends_with(".lock") && std::any_of(kind_.results.begin(),
-                                                    kind_.results.end(),
-                                                    [&](const auto &result) { return name.starts_with(result + "-"); });
+    const auto is_lock = [](const std::string &name) {
+      return name.ends_with(".lock") && (name.find(".h5-") != name.npos || name.find(".h5.part-") != name.npos);
     };
     std::vector<fs::path> locks;
     for (const auto &file : fs::directory_iterator(path_))

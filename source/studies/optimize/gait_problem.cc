@@ -24,9 +24,7 @@ namespace crawler
   GaitProblem::wishes(const OptimizeParameters &p)
   {
     GaitWishes wishes;
-    const auto want = [&](const GaitNumber number, const bool is_wanted) {
-      wishes.numbers[static_cast<std::size_t>(number)] |= is_wanted;
-    };
+    const auto want = [&](const GaitNumber number, const bool is_wanted) { wishes.numbers[number] |= is_wanted; };
     want(GaitNumber::displacement, p.objective != "speed");
     want(GaitNumber::speed, p.objective == "speed");
     want(GaitNumber::work, p.work || p.objective == "merit" || p.objective == "cost of transport");
@@ -96,11 +94,12 @@ namespace crawler
     }
     const double first = std::abs(objective(values, nullptr));
     if (!std::isfinite(first))
-      throw InputError(fmt::format("the start has no {}, since its work is {:g}; one that takes work is expected",
-                                   parameters.objective,
-                                   values.number(parameters.objective == "periodic merit" ? GaitNumber::dissipation
-                                                                                          : GaitNumber::work)),
-                       "Optimize/Variables");
+      throw InputError(
+        fmt::format(
+          "the start has no {}, since its work is {:g}; one that takes work is expected",
+          parameters.objective,
+          values.numbers[parameters.objective == "periodic merit" ? GaitNumber::dissipation : GaitNumber::work]),
+        "Optimize/Variables");
     if (first > 0.)
       scale_ = first;
     // A start that hardly moves says little of what can be reached.
@@ -146,7 +145,7 @@ namespace crawler
                               : parameters_.objective == "cost of transport" ? -1.
                                                                              : 0.,
                  power_of_T = is_merit ? -0.5 : 0.;
-    const double D = values.number(first), W = values.number(energy), T = values.number(GaitNumber::friction_time);
+    const double D = values.numbers[first], W = values.numbers[energy], T = values.numbers[GaitNumber::friction_time];
     if (power_of_W != 0. && !(W > 0.))
       return NAN;
     const double by_D =
@@ -156,11 +155,11 @@ namespace crawler
       gradient->assign(variables_.size(), 0.);
       for (std::size_t i = 0; i < variables_.size(); ++i)
       {
-        (*gradient)[i] = by_D * values.gradient(first)[i];
+        (*gradient)[i] = by_D * values.gradients[first][i];
         if (power_of_W != 0.)
-          (*gradient)[i] += by_D * D * power_of_W / W * values.gradient(energy)[i];
+          (*gradient)[i] += by_D * D * power_of_W / W * values.gradients[energy][i];
         if (power_of_T != 0.)
-          (*gradient)[i] += by_D * D * power_of_T / T * values.gradient(GaitNumber::friction_time)[i];
+          (*gradient)[i] += by_D * D * power_of_T / T * values.gradients[GaitNumber::friction_time][i];
       }
     }
     return by_D * D;
@@ -206,12 +205,12 @@ namespace crawler
       std::size_t next = 0;
       for (const NumberLimit &limit : number_limits_)
       {
-        latest_.constraints[next] = values.number(limit.number) / limit.value;
+        latest_.constraints[next] = values.numbers[limit.number] / limit.value;
         see(latest_.constraints[next] - 1., limit.name);
         ++next;
         if (!with_gradients)
           continue;
-        latest_.rows.push_back(values.gradient(limit.number));
+        latest_.rows.push_back(values.gradients[limit.number]);
         for (std::size_t i = 0; i < y.size(); ++i)
           latest_.rows.back()[i] *= range(i) / limit.value;
       }

@@ -249,7 +249,7 @@ namespace crawler
     return samples;
   }
 
-  std::array<double, n_gait_numbers>
+  ByGaitNumber<double>
   KinematicGait::numbers(const State &state, const Samples &samples, const StrainFunctional::Values &values) const
   {
     const Units &units  = state.reduced.units();
@@ -260,14 +260,14 @@ namespace crawler
     const double bound       = largest_merit(*state.reduced.scene().friction, 1. + least, 1. + most) *
                          std::sqrt(values[StrainFunctional::dissipation]),
                  part = std::abs(values[StrainFunctional::displacement]) / bound;
-    return {{D,
-             energy * values[StrainFunctional::stress_work],
-             energy * values[StrainFunctional::positive_work],
-             values[StrainFunctional::mean_square],
-             D / scene.end_time,
-             scene.end_time / (scene.body.friction_coefficient * scene.body.length),
-             energy * values[StrainFunctional::dissipation],
-             bound > 0. && !scene.profiles.friction ? part : NAN}};
+    return {{{D,
+              energy * values[StrainFunctional::stress_work],
+              energy * values[StrainFunctional::positive_work],
+              values[StrainFunctional::mean_square],
+              D / scene.end_time,
+              scene.end_time / (scene.body.friction_coefficient * scene.body.length),
+              energy * values[StrainFunctional::dissipation],
+              bound > 0. && !scene.profiles.friction ? part : NAN}}};
   }
 
   GaitValues
@@ -287,7 +287,7 @@ namespace crawler
         return result;
       }
       result.numbers = numbers(*state, samples, *values);
-      if (const double efficiency = result.number(GaitNumber::efficiency); efficiency > 1. + accurate_enough)
+      if (const double efficiency = result.numbers[GaitNumber::efficiency]; efficiency > 1. + accurate_enough)
       {
         result.problem =
           fmt::format("gait_efficiency: the gait efficiency is {:.8g}, but no gait has more than 1", efficiency);
@@ -325,7 +325,7 @@ namespace crawler
       for (std::size_t i = 0; i < x.size(); ++i)
       {
         const auto around = family_.stencil(x, i, step);
-        std::array<double, n_gait_numbers> derivatives{};
+        ByGaitNumber<double> derivatives{};
         for (std::size_t k = 0; k < around.places.size(); ++k)
         {
           std::vector<double> other = x;
@@ -349,24 +349,20 @@ namespace crawler
     const std::vector<Samples> &slopes = linear_ ? linear_->slopes : slopes_;
     const Units &units                 = state.reduced.units();
     const auto put = [&](const StrainFunctional::Number number, const GaitNumber what, const double unit) {
+      if (!wishes_.numbers[what])
+        return;
       const StrainSamples weights = grid_->weights(number, samples.on_grid, state.body(*grid_));
       for (std::size_t i = 0; i < x.size(); ++i)
         if (only_strain[i])
-          values.gradients[static_cast<std::size_t>(what)][i] =
+          values.gradients[what][i] =
             unit * (dot(weights.strain, slopes[i].on_grid.strain) + dot(weights.rate, slopes[i].on_grid.rate));
     };
-    if (wishes_.has(GaitNumber::displacement))
-      put(StrainFunctional::displacement, GaitNumber::displacement, units.length);
-    if (wishes_.has(GaitNumber::speed))
-      put(StrainFunctional::displacement, GaitNumber::speed, units.length / state.physical.end_time);
-    if (wishes_.has(GaitNumber::work))
-      put(StrainFunctional::stress_work, GaitNumber::work, units.energy());
-    if (wishes_.has(GaitNumber::positive_work))
-      put(StrainFunctional::positive_work, GaitNumber::positive_work, units.energy());
-    if (wishes_.has(GaitNumber::dissipation))
-      put(StrainFunctional::dissipation, GaitNumber::dissipation, units.energy());
-    if (wishes_.has(GaitNumber::mean_square))
-      put(StrainFunctional::mean_square, GaitNumber::mean_square, 1.);
+    put(StrainFunctional::displacement, GaitNumber::displacement, units.length);
+    put(StrainFunctional::displacement, GaitNumber::speed, units.length / state.physical.end_time);
+    put(StrainFunctional::stress_work, GaitNumber::work, units.energy());
+    put(StrainFunctional::positive_work, GaitNumber::positive_work, units.energy());
+    put(StrainFunctional::dissipation, GaitNumber::dissipation, units.energy());
+    put(StrainFunctional::mean_square, GaitNumber::mean_square, 1.);
     if (!wishes_.strain)
       return;
     if (!linear_ || !jacobian_)

@@ -20,7 +20,6 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <ranges>
 
 namespace crawler
 {
@@ -74,14 +73,16 @@ namespace crawler
     std::string
     in_words(const OptimizeCases &cases, const GaitModel &model)
     {
-      const auto [fewest, most] = std::ranges::minmax(
-        cases.names().cases | std::views::transform([](const auto &one) { return one.paths.size(); }));
-      return fmt::format("Optimisation of the {}: {}{}, {}; {}.",
-                         cases.parameters().optimize.objective,
-                         fewest < most ? fmt::format("{} to {} variables", fewest, most) : counted(most, "variable"),
-                         cases.are_several() ? fmt::format(" in each of {}", counted(cases.size(), "case")) : "",
-                         counted(cases.parameters().optimize.n_starts, "start"),
-                         model.description());
+      const auto n_variables    = [](const OptimizeNames::Case &one) { return one.paths.size(); };
+      const auto [least, most]  = std::ranges::minmax_element(cases.names().cases, {}, n_variables);
+      const std::string several = counted(most->paths.size(), "variable");
+      return fmt::format(
+        "Optimisation of the {}: {}{}, {}; {}.",
+        cases.parameters().optimize.objective,
+        least->paths.size() < most->paths.size() ? fmt::format("{} to {}", least->paths.size(), several) : several,
+        cases.are_several() ? fmt::format(" in each of {}", counted(cases.size(), "case")) : "",
+        counted(cases.parameters().optimize.n_starts, "start"),
+        model.description());
     }
 
     /// The optimum as a parameter file, and its run in a folder of its own. Returns the summary of the run, and whether
@@ -110,7 +111,7 @@ namespace crawler
       one.overwrite = one.quiet = true;
       one.resume                = false;
       if (parameters.create_scene().active_stress->feedback() == nullptr)
-        one.overrides.push_back("Output/Active stress table=129, 513");
+        one.overrides.emplace_back("Output/Active stress table=129, 513");
       fs::create_directories(place);
       const bool is_good = run(MPI_COMM_SELF, one) == ExitCode::finished;
       return {fs::exists(place / "summary.json") ? read_whole_file(place / "summary.json") : "{}", is_good};
@@ -247,7 +248,7 @@ namespace crawler
       /// @p accuracy: instead of that of the file.
       CaseStart(OptimizeCases &cases, const unsigned long number, const std::optional<double> accuracy = {})
         : scenes(cases.family(number))
-        , x(start_values(cases.parameters().optimize, scenes->variables(), 0))
+        , x(scenes->start(0))
       {
         if (accuracy)
           scenes->form().declarations.set("Accuracy", to_text(*accuracy));

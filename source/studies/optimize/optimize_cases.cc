@@ -100,7 +100,7 @@ namespace crawler
   OptimizeCases::family(const unsigned long number)
   {
     Form &form = points_ ? points_->form(number) : file_form_;
-    return std::make_unique<SceneFamily>(form, read_variables_of_gait(form));
+    return std::make_unique<SceneFamily>(form);
   }
 
   std::string

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/files.h>
 #include <crawler/base/plain_numbers.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/study.h>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 namespace crawler
@@ -138,23 +140,16 @@ namespace crawler
       return fields;
     }
 
-    /// A start without its evaluations, and which rows these are.
-    struct Stored
-    {
-      StartResult start             = {};
-      unsigned int first_evaluation = 0, n_evaluations = 0;
-    };
-
+    /// A start, and the number of its evaluations, which are not in its row.
     void
-    exchange(Fields &fields, const OptimizeNames &names, Stored &stored)
+    exchange(Fields &fields, const OptimizeNames &names, StartResult &start, std::size_t &n_evaluations)
     {
       constexpr unsigned int width = 1024;
-      StartResult &start           = stored.start;
       std::string end              = start.has_converged ? converged : start.message;
       std::string status           = start.was_interrupted ? stopped : "finished";
       exchange(fields, names, start, start.best, width);
       fields.whole({"iterations", "1", "of the optimiser"}, start.iterations);
-      fields.whole({"evaluations", "1", "of gaits"}, stored.n_evaluations);
+      fields.whole({"evaluations", "1", "of gaits"}, n_evaluations);
       fields.number({"seconds", "s", "wall time"}, start.seconds);
       fields.text({"optimiser", "", "how it ended", width}, end);
       fields.text({"exceeded limit", "", "the one that is exceeded most", 32}, start.best.worst_limit);
@@ -169,7 +164,6 @@ namespace crawler
       }
       fields.number({"admissible", "1", "violation of a limit, relative to it"}, start.admissible);
       fields.whole({"neighbour", "1", "number of the case from whose best gait it went on; 0: none"}, start.neighbour);
-      fields.whole({"first evaluation", "1", "its row in results.h5"}, stored.first_evaluation);
       fields.text({"status", "", "finished or stopped; empty: there is no row", 16}, status);
       start.has_converged   = end == converged;
       start.message         = start.has_converged ? "" : end;
@@ -190,8 +184,9 @@ namespace crawler
       PointTable table = {
         OptimizeMemory::file, OptimizeMemory::group, {index_column}, 1, "status", {}, HUGE_VAL, /*grows=*/true};
       Fields fields;
-      Stored any;
-      exchange(fields, names, any);
+      StartResult any;
+      std::size_t none = 0;
+      exchange(fields, names, any, none);
       table.columns.insert(table.columns.end(), fields.columns.begin(), fields.columns.end());
       return table;
     }
@@ -202,30 +197,34 @@ namespace crawler
       return evaluation(names, {}, 0., {}).columns;
     }
 
-    /// Reads the evaluations of a start. Returns false if they are not whole, or not its own.
-    bool
-    read_evaluations(const OptimizeNames &names, const RowReader &rows, Stored &stored)
+    using Evaluations = std::map<std::pair<unsigned long, unsigned long>, std::vector<GaitRecord>>;
+
+    /// Those that are whole, by case and start.
+    Evaluations
+    read_evaluations(const OptimizeNames &names, const std::filesystem::path &path)
     {
-      const unsigned long first = stored.first_evaluation, n = stored.n_evaluations;
-      if (first > rows.n_rows() || n > rows.n_rows() - first)
-        return false;
-      Table table       = rows.read(first, n);
-      const auto intact = rows.intact(evaluation_columns(names), first, n);
-      if (intact && std::ranges::count(*intact, false) > 0)
-        return false;
+      const RowReader rows(MPI_COMM_SELF, path, OptimizeMemory::evaluations_group);
+      const unsigned long n = rows.n_rows();
+      const auto intact     = rows.intact(evaluation_columns(names), 0, n);
+      Table table           = rows.read(0, n);
       table.erase(table.begin()); // the index
-      for (unsigned long i = 0; i < n; ++i)
+      Evaluations all;
+      for (unsigned long row = 0; row < n; ++row)
       {
-        Fields fields(table, i);
+        Fields fields(table, row);
         StartName name;
-        double number      = 0.;
-        GaitRecord &record = stored.start.records.emplace_back();
+        double number = 0.;
+        GaitRecord record;
         exchange(fields, names, name, number, record);
-        if (number != static_cast<double>(i) || name.number_of_case != stored.start.number_of_case ||
-            name.start != stored.start.start)
-          return false;
+        if (name.number_of_case == names.cases.size() || (intact && !(*intact)[row]))
+          continue;
+        auto &list = all[{name.number_of_case, name.start}];
+        if (number == 0.) // a search that was broken off may be there, too
+          list.clear();
+        if (number == static_cast<double>(list.size()))
+          list.push_back(std::move(record));
       }
-      return true;
+      return all;
     }
   } // namespace
 
@@ -242,19 +241,21 @@ namespace crawler
     const auto done = begin_or_resume(folder, table_, parameter_file, plan_, command_line_);
     if (std::ranges::count(done, true) > 0)
     {
-      const RowReader rows(MPI_COMM_SELF, folder_ / file, group),
-        evaluations(MPI_COMM_SELF, folder_ / evaluations_file, evaluations_group);
-      Table table = rows.read(0, rows.n_rows());
+      const RowReader rows(MPI_COMM_SELF, folder_ / file, group);
+      Evaluations evaluations = read_evaluations(names_, folder_ / evaluations_file);
+      Table table             = rows.read(0, rows.n_rows());
       table.erase(table.begin()); // the index
       unsigned long n_damaged = 0;
       for (unsigned long row = 0; row < done.size(); ++row)
         if (done[row])
         {
           Fields fields(table, row);
-          Stored stored;
-          exchange(fields, names_, stored);
-          if (stored.start.number_of_case < names_.cases.size() && read_evaluations(names_, evaluations, stored))
-            starts_.push_back(std::move(stored.start));
+          StartResult start;
+          std::size_t n = 0;
+          exchange(fields, names_, start, n);
+          start.records = std::move(evaluations[{start.number_of_case, start.start}]);
+          if (start.number_of_case < names_.cases.size() && start.records.size() == n)
+            starts_.push_back(std::move(start));
           else
             ++n_damaged;
         }
@@ -288,10 +289,10 @@ namespace crawler
   }
 
   void
-  OptimizeMemory::arrange(const std::vector<StartName> &names)
+  OptimizeMemory::arrange(const std::vector<StartName> &starts)
   {
     std::vector<StartResult> arranged;
-    for (const StartName &name : names)
+    for (const StartName &name : starts)
       if (const StartResult *const start = find(name))
         arranged.push_back(*start);
     starts_ = std::move(arranged);
@@ -315,15 +316,31 @@ namespace crawler
     const std::vector<RowFile::Column> written = evaluation_columns(names_);
     std::vector<RowFile::Column> columns       = written;
     columns.insert(columns.begin(), index_column);
-    create_table(folder_, table_, plan_, command_line_);
-    const auto path = folder_ / evaluations_file;
-    RowFile::create(
-      path, evaluations_group, columns, most_evaluations_, provenance(plan_.effective, command_line_), known_index());
-    start_rows_      = std::make_unique<RowFile>(MPI_COMM_SELF, folder_ / file, group, table_.written_columns());
-    evaluation_rows_ = std::make_unique<RowFile>(MPI_COMM_SELF, path, evaluations_group, written);
+    // Beside the former files, so that a kill loses nothing.
+    const std::string fresh = ".part";
+    PointTable table        = table_;
+    table.file += fresh;
+    create_table(folder_, table, plan_, command_line_);
+    RowFile::create(folder_ / (evaluations_file + fresh),
+                    evaluations_group,
+                    columns,
+                    most_evaluations_,
+                    provenance(plan_.effective, command_line_),
+                    known_index());
+    const auto open = [&](const std::string &end) {
+      start_rows_ = std::make_unique<RowFile>(MPI_COMM_SELF, folder_ / (file + end), group, table_.written_columns());
+      evaluation_rows_ =
+        std::make_unique<RowFile>(MPI_COMM_SELF, folder_ / (evaluations_file + end), evaluations_group, written);
+    };
+    open(fresh);
     n_starts_ = n_evaluations_ = 0;
     for (const StartResult &start : starts_)
       write(start);
+    start_rows_.reset();
+    evaluation_rows_.reset();
+    for (const std::string &name : {evaluations_file, file})
+      rename_whole(folder_ / (name + fresh), folder_ / name);
+    open("");
   }
 
   void
@@ -333,10 +350,11 @@ namespace crawler
     for (const GaitRecord &record : start.records)
       rows.push_back(evaluation(names_, start, static_cast<double>(rows.size()), shown(record)).values);
     evaluation_rows_->write(n_evaluations_, rows);
-    Stored stored{start, static_cast<unsigned int>(n_evaluations_), static_cast<unsigned int>(rows.size())};
-    stored.start.best = shown(start.best);
+    StartResult written = start;
+    written.best        = shown(start.best);
+    std::size_t n       = rows.size();
     Fields fields;
-    exchange(fields, names_, stored);
+    exchange(fields, names_, written, n);
     start_rows_->write(n_starts_, {{fields.values}});
     ++n_starts_;
     n_evaluations_ += rows.size();

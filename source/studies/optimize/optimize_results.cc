@@ -72,7 +72,7 @@ namespace crawler
     const RowReader reader(MPI_COMM_SELF, folder / OptimizeMemory::file, OptimizeMemory::group);
     Table table;
     for (const Column &column : reader.read(0, reader.n_rows()))
-      if (column.name != "index" && column.name != "efficiency" && column.name != "first evaluation")
+      if (column.name != "index" && column.name != "efficiency")
       {
         const auto picked = [&](const auto &values) -> decltype(Column::values) {
           std::decay_t<decltype(values)> rows;

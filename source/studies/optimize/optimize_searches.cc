@@ -67,7 +67,6 @@ namespace crawler
     , log_(log)
     , crashes_(crashes_in(folder))
     , note_(folder)
-    , mailbox_(communicator)
   {
     for (unsigned long number = 0; number < cases.size(); ++number)
       for (unsigned long start = 0; start < cases.parameters().optimize.n_starts; ++start)
@@ -111,14 +110,15 @@ namespace crawler
         return true;
       const Part &part               = some[number];
       const auto family              = cases_.family(part.number_of_case);
-      const OptimizeParameters &own  = cases_.parameters().optimize;
-      const auto x                   = part.neighbour > 0 ? part.x : start_values(own, family->variables(), part.start);
+      const auto x                   = part.neighbour > 0 ? part.x : family->start(part.start);
       const unsigned long crash_mark = mark(part);
       note_.at_work_on(std::span(&crash_mark, 1));
       StartResult result = is_given_up(crash_mark, crashes_) ? without_gait(part, x, crash_message)
                                                                        : search(*family, part, x, state_, stops);
-      mailbox_.send(archived(result));
-      mailbox_.take([&](const std::string &text) { keep(text); });
+      if (rank_of(communicator_) == 0)
+        keep(result);
+      else
+        send_to_first_rank(archived(result), communicator_);
       note_.at_work_on({});
       see(1, result.has_converged ? 0 : 1);
       return !result.was_interrupted;
@@ -129,7 +129,14 @@ namespace crawler
                ? evaluations + ", no gait within the limits yet"
                : fmt::format("{}, best {} {:.6g}", evaluations, cases_.parameters().optimize.objective, state_.best);
     };
-    const auto take     = [&]() { mailbox_.take([&](const std::string &text) { keep(text); }); };
+    const auto take = [&]() {
+      take_from_others(communicator_, [&](const std::string &text) {
+        Archive archive(text);
+        StartResult start;
+        archive(start);
+        keep(std::move(start));
+      });
+    };
     const bool is_whole = share_work(communicator_,
                                      {some.size(),
                                       static_cast<unsigned long>(std::ranges::count(done, false)),
@@ -139,21 +146,17 @@ namespace crawler
                                       in_words,
                                       take},
                                      log_);
-    mailbox_.take_all([&](const std::string &text) { keep(text); });
     throw_on_all_ranks(communicator_, problem_);
     return is_whole;
   }
 
   void
-  OptimizeSearches::keep(const std::string &text)
+  OptimizeSearches::keep(StartResult start)
   {
     if (!problem_.empty())
       return;
     try
     {
-      Archive archive(text);
-      StartResult start;
-      archive(start);
       memory_->keep(std::move(start));
     }
     catch (const FileError &error)

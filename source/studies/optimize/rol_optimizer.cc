@@ -197,7 +197,7 @@ namespace crawler
         impossible = problem.latest_beside(*unknowns->getVector()).problem;
       const bool is_good = (end == ROL::EXITSTATUS_CONVERGED || end == ROL::EXITSTATUS_STEPTOL) && impossible.empty();
       if (!impossible.empty())
-        impossible = "better gaits are impossible: " + impossible;
+        impossible.insert(0, "better gaits are impossible: ");
       const List t     = lagrangian->forces(problem.at(*unknowns->getVector(), false).constraints);
       const double now = distance_from_complementarity(t, lagrangian->mu, lagrangian->rho);
       lagrangian->mu   = t;

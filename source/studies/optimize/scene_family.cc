@@ -1,13 +1,50 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/parameters/declarations.h>
 #include <crawler/studies/optimize/scene_family.h>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace crawler
 {
   namespace
   {
+    const std::string list_of_variables = "Optimize/Variables";
+
+    /// Is there a limit without which the displacement would have no maximum?
+    void
+    require_limit(const OptimizeParameters &p, const std::vector<Variable> &variables)
+    {
+      const auto holds = [](const LimitEntry &limit) { return limit.value && limit.name != "Largest stress rate"; };
+      if (p.objective == "cost of transport" || std::ranges::any_of(limits_of(p), holds))
+        return;
+      for (const Variable &variable : variables) // ranges are limits, but not meant as such
+        if (variable.path.starts_with("Active stress/Modes/Coefficients"))
+          throw InputError(
+            "there is no limit on strain, stress or work: the " + p.objective +
+              " has no maximum (doc/theory.md, \"Gait efficiency\"); at least one of Work, Positive work, Dissipation, "
+              "Largest strain and Smallest strain, Mean-square strain, Largest stress is expected",
+            list_of_variables);
+    }
+
+    std::vector<Variable>
+    variables_of_gait(Form &form)
+    {
+      const OptimizeParameters &p     = form.parameters.optimize;
+      std::vector<Variable> variables = read_variables(form, list_of_variables);
+      if (p.smallest_strain && p.largest_strain && *p.smallest_strain == 0. && *p.largest_strain == 0.)
+        throw InputError(
+          fmt::format("\"{}\": no strain is allowed, so no gait moves the body; a range of strain is expected",
+                      list_of_variables),
+          list_of_variables);
+      require_limit(p, variables);
+      return variables;
+    }
+
     std::vector<double>
     stress_samples(const Parameters &parameters, const bool rate)
     {
@@ -41,9 +78,22 @@ namespace crawler
     }
   } // namespace
 
-  SceneFamily::SceneFamily(Form &form, std::vector<Variable> variables)
+  std::vector<LimitEntry>
+  limits_of(const OptimizeParameters &p)
+  {
+    return {{"Work", p.work},
+            {"Positive work", p.positive_work},
+            {"Dissipation", p.dissipation},
+            {"Mean-square strain", p.mean_square_strain},
+            {"Smallest strain", p.smallest_strain},
+            {"Largest strain", p.largest_strain},
+            {"Largest stress", p.largest_stress},
+            {"Largest stress rate", p.largest_stress_rate}};
+  }
+
+  SceneFamily::SceneFamily(Form &form)
     : form_(form)
-    , variables_(std::move(variables))
+    , variables_(variables_of_gait(form))
   {
   }
 
@@ -51,6 +101,29 @@ namespace crawler
   {
     for (const Variable &variable : variables_)
       form_.declarations.set(variable.path, to_text(variable.start));
+  }
+
+  Parameters
+  SceneFamily::parameters(const std::vector<double> &x)
+  {
+    for (std::size_t i = 0; i < x.size(); ++i)
+      form_.declarations.set(variables_[i].path, to_text(x[i]));
+    return form_.parameters;
+  }
+
+  std::vector<double>
+  SceneFamily::start(const unsigned long number) const
+  {
+    const OptimizeParameters &own = form_.parameters.optimize;
+    std::mt19937_64 random(own.seed * 1000003ul + number);
+    std::vector<double> x;
+    for (const Variable &variable : variables_)
+    {
+      const double part  = static_cast<double>(random() >> 11) * 0x1p-52 - 1.; // from -1 to 1, alike on all machines
+      const double shift = number == 0 ? 0. : own.spread * part * (variable.to - variable.from);
+      x.push_back(std::clamp(variable.start + shift, variable.from, variable.to));
+    }
+    return x;
   }
 
   double

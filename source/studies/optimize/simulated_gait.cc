@@ -47,7 +47,7 @@ namespace crawler
     , wishes_(wishes)
     , interrupted_(std::move(interrupted))
   {
-    if (wishes.has(GaitNumber::mean_square))
+    if (wishes.numbers[GaitNumber::mean_square])
       throw InputError("the mean-square strain is limited at the kinematic level only; Model = kinematic, or another "
                        "limit, is expected",
                        "Optimize/Mean-square strain");
@@ -121,7 +121,7 @@ namespace crawler
     {
       tasks.emplace_back();
       tasks.back().parameters = family_.parameters(x);
-      tasks.back().gait       = wishes_.has(GaitNumber::speed);
+      tasks.back().gait       = wishes_.numbers[GaitNumber::speed];
     }
     compute_all(tasks, HUGE_VAL, interrupted_);
     if (interrupted_())
@@ -129,25 +129,24 @@ namespace crawler
     return tasks;
   }
 
-  std::array<double, n_gait_numbers>
+  ByGaitNumber<double>
   SimulatedGait::numbers(const Task &task) const
   {
     const SimulationResult &result = task.computed.result;
     const Scene &scene             = *task.scene;
-    std::array<double, n_gait_numbers> list;
+    ByGaitNumber<double> list;
     list.fill(NAN);
-    list[static_cast<std::size_t>(GaitNumber::displacement)] = result.displacement;
+    list[GaitNumber::displacement] = result.displacement;
     if (result.energy_balance)
     {
-      list[static_cast<std::size_t>(GaitNumber::work)]          = result.energy_balance->stress_work;
-      list[static_cast<std::size_t>(GaitNumber::positive_work)] = result.energy_balance->positive_work;
-      list[static_cast<std::size_t>(GaitNumber::dissipation)]   = result.energy_balance->dissipation;
+      list[GaitNumber::work]          = result.energy_balance->stress_work;
+      list[GaitNumber::positive_work] = result.energy_balance->positive_work;
+      list[GaitNumber::dissipation]   = result.energy_balance->dissipation;
     }
     if (result.gait)
-      list[static_cast<std::size_t>(GaitNumber::speed)] = result.gait->speed();
-    list[static_cast<std::size_t>(GaitNumber::efficiency)] = result.gait_efficiency.value_or(NAN);
-    list[static_cast<std::size_t>(GaitNumber::friction_time)] =
-      scene.end_time / (scene.body.friction_coefficient * scene.body.length);
+      list[GaitNumber::speed] = result.gait->speed();
+    list[GaitNumber::efficiency]    = result.gait_efficiency.value_or(NAN);
+    list[GaitNumber::friction_time] = scene.end_time / (scene.body.friction_coefficient * scene.body.length);
     return list;
   }
 
@@ -188,7 +187,7 @@ namespace crawler
         if (wishes_.strain)
           strain_jacobian_.assign(2 * x.size(), 0.);
         add_adjoint_gradients(x, task, values);
-        values.gradients[static_cast<std::size_t>(GaitNumber::friction_time)] = family_.differences(
+        values.gradients[GaitNumber::friction_time] = family_.differences(
           x,
           [](const Parameters &there) {
             return std::vector<double>(1, there.time.end_time / (there.body.friction_coefficient * there.body.length));
@@ -220,7 +219,7 @@ namespace crawler
     for (std::size_t k = 0; k < n_gait_numbers; ++k)
       if (wishes_.numbers[k] && quantities[k] && *quantities[k] != Quantity::speed)
         wanted.push_back(*quantities[k]);
-    if (wishes_.has(GaitNumber::speed))
+    if (wishes_.numbers[GaitNumber::speed])
       wanted.push_back(Quantity::stride); // the speed comes with it
     std::vector<std::vector<Scene>> scenes(x.size());
     std::vector<Variation> variations;
@@ -240,7 +239,7 @@ namespace crawler
       if (!is_similar)
         continue;
       const bool is_one_sided = around.places[0] == 0.;
-      variations.push_back({{{&scenes[i][0], &scenes[i][1], &scenes[i][2], &scenes[i][3]}},
+      variations.push_back({{{scenes[i].data(), &scenes[i][1], &scenes[i][2], &scenes[i][3]}},
                             around.places[is_one_sided ? 1 : 2],
                             is_one_sided});
       own.push_back(i);

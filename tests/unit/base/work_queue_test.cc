@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -85,4 +86,24 @@ TEST(WorkQueue, WaitsAsleep)
     for (const unsigned long before = times_asleep(process); times_asleep(process) < before + many;)
       std::this_thread::yield();
   queue.reset();
+}
+
+TEST(WorkQueue, TakesWhatOtherRanksSendWhileItServes)
+{
+  const unsigned int n_ranks = size_of(MPI_COMM_WORLD), rank = rank_of(MPI_COMM_WORLD);
+  const auto text_of = [](const unsigned int sender, const unsigned int i) { // long ones with all bytes
+    return std::string(100000, static_cast<char>(i)) + std::string(1, '\0') + std::to_string(sender);
+  };
+  constexpr unsigned int n = 20;
+  std::multiset<std::string> kept, expected;
+  const auto take = [&]() { take_from_others(MPI_COMM_WORLD, [&](const std::string &text) { kept.insert(text); }); };
+  {
+    WorkQueue queue(MPI_COMM_WORLD, 0, take);
+    for (unsigned int i = 0; rank > 0 && i < n; ++i)
+      send_to_first_rank(text_of(rank, i), MPI_COMM_WORLD);
+  }
+  for (unsigned int sender = 1; rank == 0 && sender < n_ranks; ++sender)
+    for (unsigned int i = 0; i < n; ++i)
+      expected.insert(text_of(sender, i));
+  EXPECT_TRUE(kept == expected);
 }

@@ -82,7 +82,7 @@ namespace crawler
     void
     lock();
 
-    /// MPI leaves a file beside the table, FILE-1-NUMBER.lock, where the only process of a study is killed.
+    /// MPI leaves a file beside a table, FILE-1-NUMBER.lock, where the only process of a study is killed.
     void
     remove_locks_of_mpi() const;
 

@@ -25,6 +25,24 @@ namespace crawler
   };
   inline constexpr std::size_t n_gait_numbers = 8;
 
+  /// A value for each of them.
+  template <typename Value>
+  struct ByGaitNumber : std::array<Value, n_gait_numbers>
+  {
+    using std::array<Value, n_gait_numbers>::operator[];
+
+    Value &
+    operator[](const GaitNumber one)
+    {
+      return (*this)[static_cast<std::size_t>(one)];
+    }
+    const Value &
+    operator[](const GaitNumber one) const
+    {
+      return (*this)[static_cast<std::size_t>(one)];
+    }
+  };
+
   /// Numbers that are limited at many places, and their derivatives by the variables: [place][variable].
   struct LimitedValues
   {
@@ -37,8 +55,8 @@ namespace crawler
   {
     std::string problem;              ///< in words; empty if all is well
     std::string problem_of_gradients; ///< the same, of the derivatives alone
-    std::array<double, n_gait_numbers> numbers{};
-    std::array<std::vector<double>, n_gait_numbers> gradients; ///< by the variables, if they were asked for
+    ByGaitNumber<double> numbers{};
+    ByGaitNumber<std::vector<double>> gradients; ///< by the variables, if they were asked for
     std::vector<bool> by_differences; ///< for which variables the gradients are differences of gaits; empty: for none
     std::vector<bool> strain_by_differences;   ///< the same of the extreme strains
     LimitedValues strain, stress, stress_rate; ///< of what is limited
@@ -52,30 +70,13 @@ namespace crawler
       if (!problem_of_gradients.empty())
         throw InputError("the start has no derivatives: " + problem_of_gradients, "Optimize/Variables");
     }
-
-    double
-    number(const GaitNumber one) const
-    {
-      return numbers[static_cast<std::size_t>(one)];
-    }
-    const std::vector<double> &
-    gradient(const GaitNumber one) const
-    {
-      return gradients[static_cast<std::size_t>(one)];
-    }
   };
 
   /// Which of them are wanted.
   struct GaitWishes
   {
-    std::array<bool, n_gait_numbers> numbers{};
+    ByGaitNumber<bool> numbers{};
     bool strain = false, stress = false, stress_rate = false;
-
-    bool
-    has(const GaitNumber one) const
-    {
-      return numbers[static_cast<std::size_t>(one)];
-    }
   };
 
   /// Computes gaits for the values of the variables, on some level of the model.

@@ -3,8 +3,8 @@
 
 #include <crawler/base/archive.h>
 #include <crawler/studies/core/parameters.h>
+#include <crawler/studies/core/variables.h>
 #include <crawler/studies/optimize/gait_model.h>
-#include <crawler/studies/optimize/optimize_settings.h>
 
 #include <algorithm>
 #include <functional>
@@ -34,7 +34,7 @@ namespace crawler
   {
     std::vector<double> x;
     double objective; ///< in the user's units, not a number if there is a problem
-    std::array<double, n_gait_numbers> numbers;
+    ByGaitNumber<double> numbers;
     double violation; ///< of the limit that is violated most, relative to it
     std::string problem;
     std::string worst_limit{}; ///< its name; empty: all limits are kept

@@ -54,7 +54,7 @@ namespace crawler
     look_for_linearity(const std::vector<double> &start);
     Samples
     linear_samples(const std::vector<double> &x) const;
-    std::array<double, n_gait_numbers>
+    ByGaitNumber<double>
     numbers(const State &state, const Samples &samples, const StrainFunctional::Values &values) const;
     void
     add_gradients(const std::vector<double> &x, const State &state, const Samples &samples, GaitValues &values);

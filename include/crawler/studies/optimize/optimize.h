@@ -15,7 +15,7 @@ namespace crawler
    * a row of starts.h5, so that a study that was killed goes on with --resume. Then the best gait is written as
    * optimum.prm and run with all files, into the folder "best".
    *
-   * The parts, each used by those below it: optimize_settings.h, variables and starts; scene_family.h, the scenes that
+   * The parts, each used by those below it: scene_family.h, variables, starts, and the scenes that
    * they make; kinematic_gait.h and simulated_gait.h, what a gait gives, with derivatives (gait_model.h);
    * gait_problem.h, objective and limits; rol_optimizer.h; optimize_start.h, the search from one start;
    * optimize_memory.h, rows of starts and evaluations; optimize_searches.h, the searches of all ranks;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/base/mailbox.h>
+#include <crawler/base/archive.h>
 #include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/optimize/optimize_cases.h>
 #include <crawler/studies/optimize/optimize_results.h>
@@ -64,7 +64,7 @@ namespace crawler
     std::vector<Part>
     parts_from_neighbours();
     void
-    keep(const std::string &text);
+    keep(StartResult start);
 
     const MPI_Comm communicator_;
     OptimizeCases &cases_;
@@ -75,7 +75,6 @@ namespace crawler
     SearchState state_;
     const Crashes crashes_;
     CrashNote note_;
-    Mailbox mailbox_;     ///< for the starts that other ranks than 0 have made
     std::string problem_; ///< with the files
   };
 } // namespace crawler

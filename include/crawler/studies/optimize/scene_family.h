@@ -1,19 +1,34 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/studies/core/variables.h>
 #include <crawler/studies/optimize/gait_model.h>
-#include <crawler/studies/optimize/optimize_settings.h>
 
 #include <functional>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace crawler
 {
-  /// The scenes that the variables of an optimisation make.
+  /// An entry that limits gaits, and its value if it is set.
+  struct LimitEntry
+  {
+    std::string name;
+    std::optional<double> value;
+  };
+
+  /// All of them, in the order in which results name them.
+  std::vector<LimitEntry>
+  limits_of(const OptimizeParameters &parameters);
+
+  /// The scenes that the variables of an optimisation make (Optimize/Variables).
   class SceneFamily
   {
   public:
-    /// @p form must outlive it.
-    SceneFamily(Form &form, std::vector<Variable> variables);
+    /// @p form must outlive it. Throws InputError as read_variables() does, and for an objective without maximum: one
+    /// that no limit holds.
+    explicit SceneFamily(Form &form);
     SceneFamily(const SceneFamily &) = delete;
     /// Leaves the form as it was.
     ~SceneFamily();
@@ -31,10 +46,11 @@ namespace crawler
 
     /// Throws InputError.
     Parameters
-    parameters(const std::vector<double> &x)
-    {
-      return parameters_at(form_, variables_, x);
-    }
+    parameters(const std::vector<double> &x);
+
+    /// The values where start @p number begins: those of the file for the first, others at random about them.
+    std::vector<double>
+    start(unsigned long number) const;
 
     /// By how much variable @p i changes a gait: about its value, here or at the start; between 0.01 and 1 of its
     /// range.

@@ -40,7 +40,7 @@ namespace crawler
   private:
     std::vector<Task>
     answers(const std::vector<std::vector<double>> &places);
-    std::array<double, n_gait_numbers>
+    ByGaitNumber<double>
     numbers(const Task &task) const;
     void
     add_adjoint_gradients(const std::vector<double> &x, const Task &task, GaitValues &values);
