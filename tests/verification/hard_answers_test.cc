@@ -317,6 +317,24 @@ TEST(HardAnswers, FrontsOfSteepFriction)
     }
 }
 
+/// Steps whose error is too large and for which Newton's method is slow become shorter: one was tried again and again.
+TEST(HardAnswers, StepsOfSlowNewtonBecomeShorter)
+{
+  const SimulationResult result = answer_to({{"Body/Elastic modulus", "9.15807736182125"},
+                                             {"Body/Anchoring exponent", "2.0451504463318435"},
+                                             {"Ground/Backward ratio", "2.7555937780750934"},
+                                             {"Ground/Switching velocity", "0.1480423157647445"},
+                                             {"Active stress/Generator", "travelling wave"},
+                                             {"Active stress/Travelling wave/Amplitude", "0.054180670200742756"},
+                                             {"Active stress/Travelling wave/Wave number", "1.5"},
+                                             {"Active stress/Travelling wave/Frequency", "2"},
+                                             {"Active stress/Travelling wave/Phase", "0.2821255128916549"},
+                                             {"Time/End time", "1.465263056488503"},
+                                             {"Accuracy", "1.0000000000000001e-07"}});
+  ASSERT_TRUE(result.error) << result.time.message;
+  EXPECT_NEAR(result.displacement, 0.0002795362975, result.error->total + 1e-12);
+}
+
 /// For -1 < a < 0 the last of a stretch is fed by what flows to it, and its time converges with order 1/2 to 1: 208 to
 /// 3328 cells have t = 0.046804, 0.046631, 0.046609, 0.046580, 0.046565.
 TEST(HardAnswers, TimesOfSlowInversions)

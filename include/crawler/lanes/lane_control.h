@@ -135,8 +135,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       factor = factor < radau::least_change  ? radau::least_change
                : factor > radau::most_change ? radau::most_change
                                              : factor;
-      // Newton's method converges the more slowly the longer the step is, about in proportion.
-      if (rate > 0. && factor * rate > wanted_rate)
+      // Newton's method converges the more slowly the longer the step is, about in proportion. A step that was rejected
+      // for its error is made shorter all the same.
+      if (accepted && rate > 0. && factor * rate > wanted_rate)
         factor = rate > wanted_rate ? 1. : wanted_rate / rate;
       next          = factor * h;
       just_rejected = !accepted;
