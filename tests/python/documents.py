@@ -37,7 +37,7 @@ def check_document():
     with contextlib.redirect_stdout(screen):
         exec("\n".join(blocks), {})
     printed = screen.getvalue()
-    for line in ("<crawler.Result: finished at t = 1, displacement 0.09007253", "3.0 ", "(81, 201)", "{'finished'}",
+    for line in ("<crawler.Result: finished at t = 1, displacement 0.09007253", "3 0.0555", "(81, 201)", "{'finished'}",
                  "(the numerics)", 'unknown entry "Lenght"'):
         expect(line in printed, f'doc/python.md: "{line}" is not in\n{printed}')
     expect(len(blocks) > 7, "doc/python.md has no examples")

@@ -80,7 +80,7 @@ def require_comparable(models):
 
 
 def _text(value):
-    return f"{value:g}" if isinstance(value, float) else value
+    return f"{value:g}" if isinstance(value, (int, float)) else value
 
 
 def compared(fits):

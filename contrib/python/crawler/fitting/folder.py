@@ -181,7 +181,7 @@ def bytes_of(content):
 
 
 def _text(value):
-    return f"{value:g}" if isinstance(value, float) else f'"{value}"' if value is not None else "not there"
+    return f"{value:g}" if isinstance(value, (int, float)) else f'"{value}"' if value is not None else "not there"
 
 
 def _digest(data):
