@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/form_choice.h>
+#include <crawler/equation/stretch_form.h>
 #include <crawler/run/accuracy_rule.h>
 
 #include <algorithm>
@@ -17,6 +18,18 @@ namespace crawler
       return limit * std::pow(std::min(1., accuracy / moderate), power);
     }
   } // namespace
+
+  bool
+  may_be_stretch_form(const RunParameters &parameters, const Scene &scene)
+  {
+    const DiscretizationParameters &own = parameters.discretization;
+    const TimeParameters &time          = parameters.time;
+    return own.formulation == FormulationEntry::automatic && own.mesh == MeshKind::automatic && !own.degree &&
+           !own.n_cells && !time.tolerance && time.step_control == StepControl::adaptive &&
+           time.engine == Engine::automatic &&
+           (time.integrator == "automatic" || time.integrator.starts_with("radau")) &&
+           reason_against_stretch_form(scene).empty();
+  }
 
   bool
   is_soft(const double stiffness, const double exponent, const double accuracy)

@@ -469,16 +469,10 @@ namespace crawler
           n.integrator = "radau 5";
       }
 
-      /// May the form be chosen, and can the stretch form compute this?
       bool
       may_be_stretch() const
       {
-        const DiscretizationParameters &own = parameters_.discretization;
-        return own.formulation == FormulationEntry::automatic && own.mesh == MeshKind::automatic && !own.degree &&
-               !user_cells_ && !user_tolerance_ && adaptive_steps_ && !choice_.numerics.linear &&
-               parameters_.time.engine == Engine::automatic &&
-               (parameters_.time.integrator == "automatic" || parameters_.time.integrator.starts_with("radau")) &&
-               reason_against_stretch_form(scene_).empty();
+        return !choice_.numerics.linear && may_be_stretch_form(parameters_, scene_);
       }
 
       /// Did the last pilot come near an emptied state?

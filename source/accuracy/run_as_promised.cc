@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/error_estimate.h>
+#include <crawler/accuracy/form_choice.h>
 #include <crawler/accuracy/mesh_family.h>
 #include <crawler/accuracy/moving_fronts.h>
 #include <crawler/accuracy/run_as_promised.h>
@@ -135,10 +136,7 @@ namespace crawler
                            const Simulation::Options &options,
                            const KeepGoing &keep_going)
     {
-      const DiscretizationParameters &own = parameters.discretization;
-      if (own.formulation != FormulationEntry::automatic || own.mesh != MeshKind::automatic || own.degree ||
-          parameters.time.engine != Engine::automatic || parameters.time.step_control != StepControl::adaptive ||
-          !reason_against_stretch_form(scene).empty())
+      if (!may_be_stretch_form(parameters, scene))
         return std::nullopt;
       RunParameters other              = parameters;
       other.discretization.formulation = FormulationEntry::stretch;
@@ -253,7 +251,8 @@ namespace crawler
         confirm_inversion(communicator, parameters, scene, choice, result, keep_going);
       const bool retries = std::isfinite(choice.promised_error) && !choice.is_measured &&
                            answer.refinements < most_refinements && is_for_finer_numerics(result.time);
-      if (!retries && !choice.is_users && is_for_finer_numerics(result.time) && size_of(communicator) == 1)
+      if (!retries && !choice.is_users && !choice.numerics.linear && is_for_finer_numerics(result.time) &&
+          size_of(communicator) == 1)
         if (auto other = answer_of_stretch_form(parameters, scene, options, keep_going))
           return writes ? with_files(std::move(*other), simulate) : *other;
       if (!retries && (!parameters.error_estimate || result.time.status != Status::finished))

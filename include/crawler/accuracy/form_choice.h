@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/run/run_parameters.h>
+
 /**
  * Which form is the cheaper one, as measured by `stretch_table trade` (doc/numerics.md, "Which form"): the position
  * form is of high order where the body deforms smoothly, the stretch form of second order everywhere. So the limits
@@ -8,6 +10,10 @@
  */
 namespace crawler
 {
+  /// May the form be chosen, by what the user has set, and can the stretch form compute this?
+  bool
+  may_be_stretch_form(const RunParameters &parameters, const Scene &scene);
+
   /// Is a body of this stiffness k T/(gamma L^2) for the stretch form, because of its thin layers? Steep friction, with
   /// the @p exponent a, makes them thinner.
   bool
