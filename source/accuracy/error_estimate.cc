@@ -214,9 +214,7 @@ namespace crawler
     DisplacementError &error = result.error.emplace();
     double total             = choice.promised_error;
     std::optional<double> space; // of the total, if it was measured
-    if (choice.numerics.linear)  // the centre of mass stays where it is, whatever the other errors are
-      total = 0.;
-    else if (finer != nullptr)
+    if (finer != nullptr)
     {
       if (finer->time.status != Status::finished ||
           (finer_mesh != nullptr && finer_mesh->time.status != Status::finished))
@@ -245,8 +243,9 @@ namespace crawler
       }
       total = std::max(total, choice.least_error);
       // Works of cycles that were extrapolated are so far off as the displacement is.
-      const double cycles =
-        result.cycles && result.displacement != 0. ? result.cycles->bound / std::abs(result.displacement) : 0.;
+      const double size   = std::max(std::abs(result.displacement),
+                                   std::isfinite(choice.wanted_error) ? choice.wanted_error / parameters.accuracy : 0.);
+      const double cycles = result.cycles && size > 0. ? result.cycles->bound / size : 0.;
       result.errors =
         number_errors(result, finer_mesh ? *finer_mesh : *finer, factor, part * parameters.accuracy + cycles);
       if (finer_mesh != nullptr)
@@ -257,12 +256,14 @@ namespace crawler
       }
       set_errors_of_efficiencies(scene, result);
     }
+    if (scene.keeps_its_centre()) // whatever the other errors are
+      total = 0.;
     if (!std::isfinite(total))
       return;
     const double cycles = result.cycles ? result.cycles->bound : 0.;
     const double rest   = std::max(total, round_off * scene.body.length);
     error.total         = rest + cycles;
-    error.space         = choice.numerics.linear ? 0. : space.value_or(choice.space_share * rest);
+    error.space         = scene.keeps_its_centre() ? 0. : space.value_or(choice.space_share * rest);
     error.time          = error.total - error.space;
     error.model         = 0.;
   }
@@ -275,7 +276,7 @@ namespace crawler
                   SimulationResult &result,
                   const KeepGoing &keep_going)
   {
-    if (choice.numerics.linear || choice.is_measured)
+    if (choice.is_measured)
       set_errors(choice, result, nullptr, parameters, scene);
     else
     {

@@ -24,9 +24,10 @@ namespace crawler
   {
     const DiscretizationParameters &own = parameters.discretization;
     const TimeParameters &time          = parameters.time;
-    return own.formulation == FormulationEntry::automatic && own.mesh == MeshKind::automatic && !own.degree &&
-           !own.n_cells && !time.tolerance && time.step_control == StepControl::adaptive &&
-           time.engine == Engine::automatic &&
+    // Its meshes are as fine as the displacement asks for.
+    return !scene.keeps_its_centre() && own.formulation == FormulationEntry::automatic &&
+           own.mesh == MeshKind::automatic && !own.degree && !own.n_cells && !time.tolerance &&
+           time.step_control == StepControl::adaptive && time.engine == Engine::automatic &&
            (time.integrator == "automatic" || time.integrator.starts_with("radau")) &&
            reason_against_stretch_form(scene).empty();
   }

@@ -23,23 +23,6 @@ namespace crawler
     using namespace accuracy_rule::choice;
     using accuracy_rule::displacement_floor;
 
-    /// Is this the linear level, by its own stepper? Where "auto" chooses the level but other entries ask for what that
-    /// does not have, the stepper of the nonlinear level computes it.
-    bool
-    uses_linear_stepper(const RunParameters &parameters, const Scene &scene)
-    {
-      const bool fits =
-        parameters.body.friction_exponent() == 0. && scene.is_plain() &&
-        parameters.discretization.mesh != MeshKind::adaptive &&
-        parameters.discretization.formulation != FormulationEntry::stretch &&
-        parameters.time.engine == Engine::automatic &&
-        (parameters.time.integrator == "automatic" || integrator(parameters.time.integrator).petsc_type == "radau");
-      return fits && (parameters.model == Model::linear || parameters.model == Model::automatic);
-    }
-  } // namespace
-
-  namespace
-  {
     /// A stop was requested during the pilots.
     struct Interrupted
     {
@@ -64,7 +47,6 @@ namespace crawler
         , adaptive_steps_(parameters.time.step_control == StepControl::adaptive)
       {
         Numerics &n              = choice_.numerics;
-        n.linear                 = uses_linear_stepper(parameters, scene);
         n.degree                 = parameters.discretization.degree.value_or(automatic_degree);
         n.initial_step           = parameters.time.initial_step.value_or(multistep_start * T_);
         n.step_limits            = scales_.step_limits;
@@ -98,8 +80,7 @@ namespace crawler
           choice_.explanation        = "cells and time steps as set by the user";
           return choice_;
         }
-        if (mesh == MeshKind::automatic && scales_.jumps_move && adaptive_steps_ && !user_cells_ && !user_tolerance_ &&
-            !choice_.numerics.linear)
+        if (mesh == MeshKind::automatic && scales_.jumps_move && adaptive_steps_ && !user_cells_ && !user_tolerance_)
         {
           if (with_fronts(scene_, 1.))
           {
@@ -125,16 +106,15 @@ namespace crawler
                                   is_cheaper_than_many_cells(L_ / scales_.length, accuracy_);
         bool enough = false;
         if (mesh != MeshKind::adaptive)
-          enough = uniform(mesh == MeshKind::uniform || user_cells_ || choice_.numerics.linear ? most_cells
-                                                                                               : most_uniform_cells,
+          enough = uniform(mesh == MeshKind::uniform || user_cells_ || scene_.keeps_its_centre() ? most_cells
+                                                                                                 : most_uniform_cells,
                            may_be_steep);
         if (!enough && may_be_steep && pilot_.time.reason != "inverted_at_end")
         {
           stretch_form();
           return choice_;
         }
-        if (mesh == MeshKind::adaptive ||
-            (mesh == MeshKind::automatic && !enough && !is_for_stretch() && !user_cells_ && !choice_.numerics.linear))
+        if (mesh == MeshKind::adaptive || (mesh == MeshKind::automatic && !enough && !is_for_stretch() && !user_cells_))
           adaptive();
         if (is_for_stretch())
         {
@@ -169,6 +149,9 @@ namespace crawler
           simulation.run({}, {.energy_balance = false, .resolution = resolution, .cycles = cycles_}, {}, keep_going_);
         if (result.time.status == Status::stopped && result.time.reason.empty())
           throw Interrupted();
+        // A displacement that is 0 whatever the numerics are tells nothing about them; the deformation does.
+        if (scene_.keeps_its_centre())
+          result.displacement = result.largest_u;
         return result;
       }
 
@@ -199,14 +182,12 @@ namespace crawler
         return pilot_.cycles ? steps * (1. + 1. * pilot_.cycles->extrapolated / pilot_.cycles->computed) : steps;
       }
 
-      /// The size of the displacement, of which Accuracy is a part. The linear model knows it, 0, without any effort;
-      /// there the deformation u counts.
+      /// The size of the displacement, of which Accuracy is a part.
       void
       measure_size()
       {
         const bool finished = pilot_.time.status == Status::finished;
-        size_               = std::max(finished ? std::abs(pilot_.displacement) : 0.,
-                         (choice_.numerics.linear ? 1. : displacement_floor) * pilot_.largest_u);
+        size_ = std::max(finished ? std::abs(pilot_.displacement) : 0., displacement_floor * pilot_.largest_u);
         if (size_ > 0.)
           size_ = std::max(size_, least_size());
       }
@@ -248,7 +229,7 @@ namespace crawler
         const double sudden = sudden_part * std::sqrt(accuracy_);
         return scales_.sudden > sudden && scales_.in_space <= most_graded_places &&
                (scales_.sudden_later > sudden || scales_.in_time <= most_gentle_breaks) && !user_cells_ &&
-               !choice_.numerics.linear && adaptive_steps_ && !parameters_.discretization.mesh_tolerance;
+               adaptive_steps_ && !parameters_.discretization.mesh_tolerance;
       }
 
       /// A sudden stress makes velocities like that to the power -1/2 of the time since then: so at first they are
@@ -348,7 +329,7 @@ namespace crawler
       uniform(const unsigned int most, const bool may_be_steep)
       {
         Numerics &n = choice_.numerics;
-        if (adaptive_steps_ || n.linear)
+        if (adaptive_steps_)
           n.integrator = "radau 5";
         // The stretch of a linear element has no mode that could show what is missing: one degree more shows it.
         const unsigned int pilot_degree = std::max(choice_.numerics.degree, 2u);
@@ -472,7 +453,7 @@ namespace crawler
       bool
       may_be_stretch() const
       {
-        return !choice_.numerics.linear && may_be_stretch_form(parameters_, scene_);
+        return may_be_stretch_form(parameters_, scene_);
       }
 
       /// Did the last pilot come near an emptied state?
@@ -494,7 +475,6 @@ namespace crawler
         const double m_s = scales_.stress / scales_.length;
         const double a   = std::max(1., std::abs(scene_.friction_exponent()));
         n.formulation    = Formulation::stretch;
-        n.linear         = false;
         n.degree         = 1;
         n.mesh           = {};
         n.grading        = {};
@@ -645,10 +625,6 @@ namespace crawler
           n.integrator = "radau 9";
         if (!parameters_.time.initial_step && !is_graded)
           n.initial_step = first_step(parameters_.time);
-        // The linear level has uniform meshes for layers that start suddenly. Its displacement is 0 and says nothing of
-        // the first steps, in which these layers dissipate.
-        if (!parameters_.time.initial_step && n.linear && scales_.sudden > sudden_part * std::sqrt(accuracy_))
-          n.initial_step = std::min(n.initial_step, first_step_on_graded_mesh(scene_, n));
         // The number of steps goes up as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy *
         // size.
         const double r      = 1. / (1. + estimated_order());

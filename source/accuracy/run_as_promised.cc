@@ -251,8 +251,7 @@ namespace crawler
         confirm_inversion(communicator, parameters, scene, choice, result, keep_going);
       const bool retries = std::isfinite(choice.promised_error) && !choice.is_measured &&
                            answer.refinements < most_refinements && is_for_finer_numerics(result.time);
-      if (!retries && !choice.is_users && !choice.numerics.linear && is_for_finer_numerics(result.time) &&
-          size_of(communicator) == 1)
+      if (!retries && !choice.is_users && is_for_finer_numerics(result.time) && size_of(communicator) == 1)
         if (auto other = answer_of_stretch_form(parameters, scene, options, keep_going))
           return writes ? with_files(std::move(*other), simulate) : *other;
       if (!retries && (!parameters.error_estimate || result.time.status != Status::finished))

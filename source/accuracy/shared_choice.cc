@@ -20,7 +20,8 @@ namespace crawler
     bool
     may_share(const NumericsChoice &choice, const SceneToCompute &one)
     {
-      return !choice.is_measured && !choice.is_of_several_runs() && std::isfinite(choice.promised_error) &&
+      return !choice.is_measured && !one.scene->keeps_its_centre() && // whose displacement tells nothing
+             !choice.is_of_several_runs() && std::isfinite(choice.promised_error) &&
              batch_method(*one.scene, one.parameters->time, choice.numerics);
     }
 
@@ -44,7 +45,7 @@ namespace crawler
         const Runs reference = run(n, found_.relative_tolerance);
         if (!reference.finished)
           return std::nullopt;
-        if (n.grading.levels == 0 && !n.linear)
+        if (n.grading.levels == 0)
           make_cheaper(reference);
         return found_;
       }

@@ -21,8 +21,8 @@ namespace crawler
   {
     const StretchFeedback *feedback = scene.active_stress->feedback();
     const bool is_from_here         = feedback == nullptr || !(feedback->sees_near() || feedback->delay() > 0.);
-    return !numerics.linear && numerics.formulation == Formulation::position && !numerics.jumps_move &&
-           !scene.profiles.initial_stretch && is_from_here && batch_method(scene, time, numerics) &&
+    return numerics.formulation == Formulation::position && !numerics.jumps_move && !scene.profiles.initial_stretch &&
+           is_from_here && batch_method(scene, time, numerics) &&
            (feedback == nullptr || TimeSegments(*scene.active_stress, scene.end_time).breaks().empty());
   }
 

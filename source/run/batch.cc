@@ -22,7 +22,7 @@ namespace crawler
     const Integrator &method  = integrator(name);
     const bool is_one_of_ours = method.petsc_type == "radau" && time.step_control == StepControl::adaptive;
     const bool is_stretch     = numerics.formulation == Formulation::stretch;
-    if (numerics.linear || time.engine != Engine::automatic || !is_one_of_ours || numerics.mesh.tolerance != 0. ||
+    if (time.engine != Engine::automatic || !is_one_of_ours || numerics.mesh.tolerance != 0. ||
         !(is_stretch ? reason_against_stretch_form(scene).empty() : fits_lanes(scene)))
       return std::nullopt;
     LaneMethod result = {numerics.degree,

@@ -31,32 +31,6 @@ namespace crawler
                          std::string("Time/") + name);
     }
 
-    /// The linear model has one formulation, one kind of mesh and one family of integrators.
-    void
-    require_linear(const RunParameters &p)
-    {
-      const auto require =
-        [](const bool ok, const std::string &entry, const std::string &found, const std::string &expected) {
-          if (!ok)
-            throw InputError(
-              fmt::format(
-                "Model is linear and {} is {}, but {} is expected", entry.substr(entry.find('/') + 1), found, expected),
-              entry);
-        };
-      require(p.discretization.mesh != MeshKind::adaptive,
-              "Discretization/Mesh",
-              word_of(p.discretization.mesh),
-              "automatic or uniform");
-      require(p.discretization.formulation != FormulationEntry::stretch,
-              "Discretization/Formulation",
-              word_of(p.discretization.formulation),
-              "automatic or position");
-      require(p.time.integrator == "automatic" || integrator(p.time.integrator).petsc_type == "radau",
-              "Time/Integrator",
-              p.time.integrator,
-              "automatic, radau 5 or radau 9");
-      require(p.time.engine == Engine::automatic, "Time/Engine", word_of(p.time.engine), "automatic");
-    }
     /// The stretch form has meshes and integrators of its own.
     void
     require_stretch_form(const RunParameters &p, const Scene &scene)
@@ -183,8 +157,6 @@ namespace crawler
   RunParameters::create_scene() const
   {
     time.validate();
-    if (model == Model::linear)
-      require_linear(*this);
     require_computable(time.tolerance, body.length, "Tolerance", "Length");
     require_computable(time.initial_step, time.end_time, "Initial step", "End time");
     if (discretization.smallest_cell && !(*discretization.smallest_cell < body.length))

@@ -57,7 +57,7 @@ namespace crawler
     if (scene_.active_stress->feedback() != nullptr)
       past_.delay = scene_.active_stress->feedback()->delay();
     if (time_.integrator == "automatic")
-      time_.integrator = !numerics_.integrator.empty() ? numerics_.integrator : numerics_.linear ? "radau 5" : "bdf";
+      time_.integrator = numerics_.integrator.empty() ? "bdf" : numerics_.integrator;
     build_first();
   }
 
@@ -94,8 +94,7 @@ namespace crawler
       mesh_.assembler = std::move(form);
       mesh_.position->keep_stresses(n_stages);
     }
-    mesh_.velocity =
-      std::make_unique<StateVelocity>(*mesh_.assembler, mesh_.position, numerics_.linear, is_adaptive(), n_stages);
+    mesh_.velocity = std::make_unique<StateVelocity>(*mesh_.assembler, mesh_.position, is_adaptive(), n_stages);
     if (past_.delay > 0.)
     {
       mesh_.assembler->set_history(&past_.history);
@@ -154,7 +153,6 @@ namespace crawler
                              is_watched ? numerics_.least_event : 0.));
     run_->breaks         = scene_.breaks_in_space();
     run_->n_failures     = scene_.active_stress->failures() != nullptr ? scene_.active_stress->failures()->count : 0;
-    result().model       = numerics_.linear ? Model::linear : Model::nonlinear;
     result().jumps_move  = numerics_.jumps_move;
     result().formulation = numerics_.formulation;
     mesh_.assembler->set_initial_state(y_);

@@ -22,13 +22,7 @@ namespace crawler
   void
   Simulation::choose_stepper()
   {
-    if (numerics_.linear)
-    {
-      if (!integrators_.linear)
-        build_linear_stepper();
-      integrators_.present = integrators_.linear.get();
-    }
-    else if ((!run_ || !run_->lanes_gave_up) && lanes_fit())
+    if ((!run_ || !run_->lanes_gave_up) && lanes_fit())
     {
       if (!integrators_.lanes)
         integrators_.lanes = std::make_unique<LaneStepper>(scene_, *lane_method(scene_, time_, numerics_));
@@ -53,15 +47,5 @@ namespace crawler
     run_->lanes_gave_up      = true;
     y_                       = run_->accepted.y;
     run_->accepted.next_step = std::max(std::min(outcome.step_size, numerics_.initial_step), smallest_step);
-  }
-
-  void
-  Simulation::build_linear_stepper()
-  {
-    if (scene_.body.friction_exponent() != 0. || !scene_.is_plain() || is_adaptive() || mesh_.position == nullptr ||
-        integrator(time_.integrator).petsc_type != "radau")
-      throw std::logic_error("the linear model is for a = 0, the position form, uniform meshes and radau");
-    integrators_.linear = std::make_unique<LinearStepper>(
-      *mesh_.position, integrator(time_.integrator).n_stages, time_.step_control == StepControl::adaptive);
   }
 } // namespace crawler

@@ -27,12 +27,10 @@ namespace crawler
 
   StateVelocity::StateVelocity(Assembler &assembler,
                                PositionForm *const position,
-                               const bool is_linear,
                                const bool is_adaptive,
                                const unsigned int n_stages)
     : assembler_(assembler)
     , position_(position)
-    , is_linear_(is_linear)
     , relaxation_time_(relaxation_time(assembler, is_adaptive))
     , rates_(n_stages + 1)
   {
@@ -41,14 +39,12 @@ namespace crawler
   bool
   StateVelocity::is_known_to_lanes() const
   {
-    return !is_linear_ && relaxation_time_ > fastest_relaxation;
+    return relaxation_time_ > fastest_relaxation;
   }
 
   bool
   StateVelocity::keeps_rates() const
   {
-    if (is_linear_)
-      return true;
     const Scene &scene   = assembler_.scene();
     const bool amplifies = relaxation_time_ < fast_relaxation || scene.friction_exponent() > 0.;
     return amplifies && position_ != nullptr;
@@ -83,11 +79,6 @@ namespace crawler
     });
     if (!keeps_rates() || known == rates_.end())
       return assembler_.velocity(t, y, v);
-    if (is_linear_)
-    {
-      std::copy(known->y_dot.begin(), known->y_dot.end(), v.begin());
-      return true;
-    }
     const bool is_plain = assembler_.scene().is_plain();
     std::vector<double> F(y.size()), correction(y.size());
     // Without a velocity the Jacobian is M/h + K; but friction that is not linear in it has to be that of the rate.

@@ -188,6 +188,12 @@ namespace crawler
 
   /// Asked for in every residual, and a comparison of types is faster than dynamic_cast.
   bool
+  Scene::keeps_its_centre() const
+  {
+    return is_plain() && body.friction_exponent() == 0.;
+  }
+
+  bool
   Scene::has_power_law() const
   {
     const FrictionLaw &law = *friction;

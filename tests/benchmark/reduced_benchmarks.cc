@@ -8,8 +8,6 @@
 
 #include <benchmark/benchmark.h>
 
-#include <cmath>
-#include <memory>
 
 namespace crawler::test
 {
@@ -44,48 +42,6 @@ namespace crawler::test
       }
       state.SetItemsProcessed(state.iterations());
     }
-
-    /// A body at a = 0. The displacement is 0, so errors are those of the work of its actuators.
-    struct BodyAtAZero
-    {
-      explicit BodyAtAZero(const bool linear)
-        : parameters(parameters_with({{"Body/Anchoring exponent", "1"},
-                                      {"Active stress/Generator", "expression"},
-                                      {"Active stress/Expression/Active stress", "0.3*sin(2*pi*(s+t))*exp(s)"}}))
-        , scene(parameters.create_scene())
-        , numerics({.degree = 8, .n_cells = 6, .linear = linear, .integrator = "radau 9"})
-      {
-      }
-
-      double
-      work(const double tolerance)
-      {
-        numerics.tolerance    = tolerance;
-        numerics.initial_step = 0.01;
-        return Simulation(MPI_COMM_WORLD, scene, parameters.time, numerics)
-          .run({}, {.energy_balance = true})
-          .energy_balance->stress_work;
-      }
-
-      const Parameters parameters;
-      const Scene scene;
-      Numerics numerics;
-    };
-
-    void
-    run_reduced_model(benchmark::State &state, const bool linear, const double tolerance)
-    {
-      static const double exact = BodyAtAZero(false).work(1e-13);
-      BodyAtAZero body(linear);
-      const double error = std::abs(body.work(tolerance) / exact - 1.);
-      Simulation simulation(MPI_COMM_WORLD, body.scene, body.parameters.time, body.numerics);
-      unsigned int steps = 0;
-      for (auto _ : state)
-        steps = simulation.run({}, {}).time.steps;
-      state.SetItemsProcessed(state.iterations());
-      state.counters["error"] = error;
-      state.counters["steps"] = steps;
-    }
   } // namespace
 
   void
@@ -101,11 +57,5 @@ namespace crawler::test
     benchmark::RegisterBenchmark("level/estimate/a=-1.3", estimate, fraction);
     benchmark::RegisterBenchmark("level/kinematic", level, strain, "kinematic", 1e-6);
     benchmark::RegisterBenchmark("level/kinematic/1e-10", level, strain, "kinematic", 1e-10);
-    for (const bool linear : {true, false})
-      for (const double tolerance : {1e-4, 1e-6, 1e-8})
-        benchmark::RegisterBenchmark(fmt::format("level/{}/{:.0e}", linear ? "linear" : "nonlinear", tolerance).c_str(),
-                                     run_reduced_model,
-                                     linear,
-                                     tolerance);
   }
 } // namespace crawler::test

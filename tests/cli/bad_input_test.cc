@@ -232,10 +232,6 @@ namespace
       {"StepControlMisspelt",
        in_section("Time", "set Step control = adaptiv"),
        {"\"adaptiv\"", "the nearest is \"adaptive\""}},
-      {"LinearWithBdf",
-       "set Model = linear\nsubsection Body\nset Anchoring exponent = 1\nend\nsubsection Time\nset Integrator = "
-       "bdf\nend\n",
-       {"Model is linear and Integrator is bdf", "radau 9 is expected"}},
       {"CycleStopWithSnapshots",
        in_section("Time", "set Cycle stop = on"),
        {"line 2", "snapshots until the end time are wanted", "0 is expected for Output/Number of snapshots"}},

@@ -67,7 +67,6 @@ namespace
            {test::Settings{},
             test::Settings{{"Time/Engine", "petsc"}},
             test::Settings{{"Time/Integrator", "bdf"}},
-            test::Settings{{"Model", "linear"}, {"Body/Anchoring exponent", "1"}},
             test::Settings{{"Discretization/Formulation", "stretch"}},
             test::Settings{{"Discretization/Mesh", "adaptive"}, {"Discretization/Number of cells", "automatic"}},
             test::Settings{{"Active stress/Generator", "strain feedback"},

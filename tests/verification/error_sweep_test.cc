@@ -36,7 +36,7 @@ namespace
   }
 
   test::Settings
-  wave(const char *p, const char *k, const char *chi, const char *T = "1")
+  wave_of(const char *p, const char *k, const char *chi, const char *T = "1")
   {
     return {{"Active stress/Optimal wave/Choose wave by", "wave speed"},
             {"Active stress/Optimal wave/Perturbation parameter", chi},
@@ -48,7 +48,7 @@ namespace
 
 TEST(ErrorSweep, TellsSpaceFromTime)
 {
-  const Parameters parameters = test::parameters_with(wave("2", "1", "0.4"));
+  const Parameters parameters = test::parameters_with(wave_of("2", "1", "0.4"));
   const Scene scene           = parameters.create_scene();
   const double exact          = displacement(scene, parameters.time, numerics_for(scene, "radau 9", 8, 16, 1e-13));
   const RecordedRun in_space(scene, parameters.time, numerics_for(scene, "radau 9", 4, 6, 1e-11), {});
@@ -68,12 +68,12 @@ TEST(ErrorSweep, CorrectedDisplacementsAreCovered)
 {
   unsigned int n = 0, covered = 0;
   std::vector<double> effectivities, gains, ratios;
-  for (const auto &settings : {wave("2", "1", "0.4"),
-                               wave("2", "100", "0.3"),
-                               wave("4", "1", "0.3"),
-                               wave("-1", "1", "0.3"),
-                               wave("2", "1", "0.3", "0.7"),
-                               wave("2.5", "0.1", "0.2")})
+  for (const auto &settings : {wave_of("2", "1", "0.4"),
+                               wave_of("2", "100", "0.3"),
+                               wave_of("4", "1", "0.3"),
+                               wave_of("-1", "1", "0.3"),
+                               wave_of("2", "1", "0.3", "0.7"),
+                               wave_of("2.5", "0.1", "0.2")})
   {
     const Parameters parameters = test::parameters_with(settings);
     const Scene scene           = parameters.create_scene();

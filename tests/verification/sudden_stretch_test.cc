@@ -192,8 +192,7 @@ TEST(SuddenStretch, Robots)
 }
 
 /// Energies of a stress m that is there at once, for a = 0 and k = gamma = L = 1: w - 1 = m (f - 1) with f the sine
-/// series of 1, whose terms decay. The linear level knows that the displacement is 0, which says nothing of its first
-/// steps.
+/// series of 1, whose terms decay. The displacement is 0 and says nothing of the numerics.
 TEST(SuddenStretch, EnergiesOfTheLinearLevel)
 {
   constexpr double m = 0.3, t = 0.05, pi = std::numbers::pi;

@@ -11,8 +11,8 @@ namespace crawler
   /// A run in the position form by the fused engine, with all its steps: what an adjoint goes through backwards.
   struct RecordedRun
   {
-    /// Is there one for this scene and these settings? Not for the linear level, the stretch form, an initial stretch,
-    /// jumps that move, feedback from elsewhere or to what jumps in time, and what the fused engine does not compute.
+    /// Is there one for this scene and these settings? Not for the stretch form, an initial stretch, jumps that move,
+    /// feedback from elsewhere or to what jumps in time, and what the fused engine does not compute.
     static bool
     is_possible(const Scene &scene, const TimeParameters &time, const Numerics &numerics);
 

@@ -24,7 +24,6 @@ namespace crawler
                              ///< again [force]; 0: not looked for
     Formulation formulation = Formulation::position;
     MeshLimits mesh         = {};    ///< of an adaptive mesh
-    bool linear             = false; ///< the level for a = 0: radau, position form, uniform mesh
     std::string integrator  = "";    ///< what an automatic integrator is (time/integrators.h); empty: bdf
     Grading grading         = {};    ///< of the first mesh, which has n_cells cells without it
     double layer            = 0.;    ///< of the stretch form: see layered_cell_ends() [length]; 0: none
@@ -35,8 +34,7 @@ namespace crawler
     void
     exchange(Archive &archive)
     {
-      archive(
-        degree, n_cells, tolerance, initial_step, step_limits, least_event, formulation, mesh, linear, integrator);
+      archive(degree, n_cells, tolerance, initial_step, step_limits, least_event, formulation, mesh, integrator);
       archive(grading, layer, parts, other_rule, jumps_move);
     }
   };

@@ -6,7 +6,6 @@
 #include <crawler/equation/position_form.h>
 #include <crawler/equation/stretch_form.h>
 #include <crawler/lanes/lane_stepper.h>
-#include <crawler/lanes/linear_stepper.h>
 #include <crawler/mesh/mesh_marking.h>
 #include <crawler/output/observer.h>
 #include <crawler/run/numerics.h>
@@ -87,7 +86,6 @@ namespace crawler
     {
       std::unique_ptr<TimeStepper> petsc;
       std::unique_ptr<LaneStepper> lanes;
-      std::unique_ptr<LinearStepper> linear;
       TimeIntegration *present = nullptr; ///< one of them
     };
 
@@ -164,8 +162,6 @@ namespace crawler
     lanes_fit() const;
     void
     choose_stepper();
-    void
-    build_linear_stepper();
     void
     go_on_with_petsc(const TimeOutcome &outcome);
     void

@@ -13,7 +13,7 @@ namespace crawler
    * The velocity of states that a time integration has reached. A state alone does not always tell it: where friction
    * vanishes (w -> 0 for a > 0) the error of Newton's method would be divided by the friction, and cells that are small
    * or stiff turn its round-off into velocities, by 1e-16 over their time of relaxation. The rate of the integrator
-   * has no such error, so there it is kept; that of the linear level is the velocity, exactly. Natural units.
+   * has no such error, so there it is kept. Natural units.
    */
   class StateVelocity
   {
@@ -22,8 +22,7 @@ namespace crawler
 
     /// @p assembler must outlive this; @p position is the same or null (the stretch form). @p is_adaptive: its mesh has
     /// small cells where friction is large and slows them down. @p n_stages of the method.
-    StateVelocity(
-      Assembler &assembler, PositionForm *position, bool is_linear, bool is_adaptive, unsigned int n_stages);
+    StateVelocity(Assembler &assembler, PositionForm *position, bool is_adaptive, unsigned int n_stages);
 
     /// May rates and velocities of the fused engine be used, which has no such cure?
     bool
@@ -73,7 +72,6 @@ namespace crawler
 
     Assembler &assembler_;
     PositionForm *const position_;
-    const bool is_linear_;
     double relaxation_time_; ///< of the mesh, at least
     std::vector<Rate> rates_;
   };

@@ -30,6 +30,11 @@ namespace crawler
     bool
     is_plain() const;
 
+    /// Does the centre of mass stay where it is, whatever the active stress does? At a = 0, where friction does not
+    /// depend on the stretch.
+    bool
+    keeps_its_centre() const;
+
     /// Is the friction law the power law?
     bool
     has_power_law() const;

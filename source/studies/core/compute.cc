@@ -135,7 +135,7 @@ namespace crawler
       has_finer_run() const
       {
         return task->parameters.error_estimate && std::isfinite(choice.promised_error) && !choice.is_measured &&
-               !choice.numerics.linear && batch_method(*task->scene, finer_time, finer);
+               batch_method(*task->scene, finer_time, finer);
       }
     };
 
@@ -262,8 +262,10 @@ namespace crawler
       if (task.scene && !task.error && task.computed.result.time.status != Status::stopped &&
           !task.computed.result.error)
         guarded(task, [&]() { finish(task, time_limit, interrupted); });
-      if (!task.error)
-        check_identities(task.computed.result, task.parameters);
+      if (task.error)
+        continue;
+      task.computed.result.model = task.parameters.model;
+      check_identities(task.computed.result, task.parameters);
     }
   }
 

@@ -242,7 +242,6 @@ namespace crawler
     }
     guarded([&]() {
       input.parameters.model = model->model;
-      // The linear level (a = 0) is computed by what follows, as the nonlinear one.
       WaitProgress pilots(log, pilot_runs);
       const auto goes_on_with_pilots = [&]() {
         pilots.step();
