@@ -653,11 +653,12 @@ namespace crawler
                                    ? fmt::format("adaptive mesh, tolerance {:.2g}, ", n.mesh.tolerance)
                                    : "";
         choice_.explanation    = predicts
-                                   ? fmt::format("for Accuracy {:g}: {}from {} in {:.2g} s: displacement about {:.3g}",
+                                   ? fmt::format("for Accuracy {:g}: {}from {} in {:.2g} s: {} about {:.3g}",
                                               accuracy_,
                                               kind,
                                               counted(n_pilots_, "pilot run"),
                                               seconds,
+                                              scene_.keeps_its_centre() ? "deformation" : "displacement",
                                               pilot_.displacement)
                                    : fmt::format("for Accuracy {:g}: {}the last of {}, with {} cells, ended early: {}",
                                               accuracy_,

@@ -32,6 +32,21 @@ namespace crawler
                     discretization_.communicator());
   }
 
+  double
+  Assembler::root_mean_square(const ConstVector y) const
+  {
+    std::vector<double> buffer;
+    const auto local                = discretization_.to_local<double>(displacement(y), buffer);
+    const ReferenceElement &element = discretization_.element();
+    double sum                      = 0.;
+    for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
+      for (unsigned int i = 0; i < element.n; ++i)
+        sum += discretization_.cell_size()[c] * element.node_weights[i] * std::pow(local[c * element.degree + i], 2);
+    if (discretization_.n_ranks() > 1)
+      MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
+    return std::sqrt(sum / discretization_.length());
+  }
+
   std::pair<double, double>
   Assembler::end_stretches(const double t)
   {

@@ -98,15 +98,4 @@ namespace crawler
     }
     return indicators;
   }
-
-  double
-  PositionForm::root_mean_square(const ConstVector y) const
-  {
-    double sum = 0.;
-    for (const double value : displacement(y))
-      sum += value * value;
-    if (discretization_.n_ranks() > 1)
-      MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
-    return std::sqrt(sum / static_cast<double>(discretization_.n_unknowns()));
-  }
 } // namespace crawler

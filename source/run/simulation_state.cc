@@ -113,17 +113,8 @@ namespace crawler
   Simulation::look_at_resolution(const Step &step, const std::span<const double> y)
   {
     SimulationResult &result = this->result();
-    if (mesh_.stretch != nullptr)
-    {
-      const auto u  = mesh_.assembler->displacement(y);
-      double square = 0.;
-      for (const double value : u)
-        square += value * value;
-      result.largest_u = std::max(result.largest_u, std::sqrt(square / static_cast<double>(u.size())));
-      return;
-    }
-    result.largest_u = std::max(result.largest_u, mesh_.position->root_mean_square(y));
-    if (run_->options.resolution != ResolutionWish::all)
+    result.largest_u         = std::max(result.largest_u, mesh_.assembler->root_mean_square(y));
+    if (mesh_.stretch != nullptr || run_->options.resolution != ResolutionWish::all)
       return;
     if (!is_adaptive() && mesh_.velocity->compute(step.time, step.size, y, v_))
     {

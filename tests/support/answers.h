@@ -19,15 +19,21 @@ namespace crawler::test
 
   /// What `crawler run` computes, without files.
   inline Computed
-  computed(const Settings &settings)
+  computed(const Parameters &parameters)
   {
     Task task;
-    task.parameters = parameters_with(settings);
+    task.parameters = parameters;
     task.gait       = true;
     compute_all({&task, 1}, HUGE_VAL, never);
     if (task.error)
       std::rethrow_exception(task.error);
     return task.computed;
+  }
+
+  inline Computed
+  computed(const Settings &settings)
+  {
+    return computed(parameters_with(settings));
   }
 
   inline SimulationResult

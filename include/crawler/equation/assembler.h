@@ -104,6 +104,10 @@ namespace crawler
     std::vector<double>
     displacement_at(unsigned int n_pieces, ConstVector y);
 
+    /// The square root of the mean of u^2 over the body, the same on all ranks [length].
+    double
+    root_mean_square(ConstVector y) const;
+
     /// The stretches that the end conditions prescribe, 1 - m/k at s = 0 and s = L. A body with feedback makes its own:
     /// then they are not known, and has_known_ends() is false.
     std::pair<double, double>

@@ -104,10 +104,6 @@ namespace crawler
     std::vector<double>
     error_indicators(double t, ConstVector y, ConstVector v);
 
-    /// Root mean square of the displacement over the nodes of all ranks [length].
-    double
-    root_mean_square(ConstVector y) const;
-
   protected:
     /// Local arrays of the displacement @p u and the velocity @p v (may be empty), with m of the time @p t.
     CellInput
