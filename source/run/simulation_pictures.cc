@@ -9,20 +9,21 @@
 namespace crawler
 {
   /// An accepted step: examined, and shown to the observers if its state may be used.
-  bool
-  Simulation::sees(const Step &step,
-                   const std::span<const double> y,
-                   const std::vector<std::unique_ptr<Observer>> &observers)
+  Simulation::Ending
+  Simulation::see(const Step &step,
+                  const std::span<const double> y,
+                  const std::vector<std::unique_ptr<Observer>> &observers)
   {
-    const bool is_good  = examine(step, y);
+    Ending ending       = examine(step, y);
     const double before = now();
-    bool is_shown       = is_good && show_pictures_within(step, step.time, observers);
-    if (is_shown)
+    if (ending == Ending::none && !show_pictures_within(step, step.time, observers))
+      ending = Ending::lost;
+    if (ending == Ending::none)
       show_step(step, y, observers);
     else if (!observers.empty() && run_->diagnosis && run_->diagnosis->status == Status::inverted)
       show_pictures_before_inversion(step, observers);
     result().output_seconds += now() - before;
-    return is_shown;
+    return ending;
   }
 
   /// The end of a step, or the initial state, with v_ and what run_ has of it.

@@ -14,7 +14,7 @@
 #include <crawler/run/run_journal.h>
 #include <crawler/run/state_velocity.h>
 #include <crawler/run/step_limiter.h>
-#include <crawler/time/time_stepper.h>
+#include <crawler/time/petsc_stepper.h>
 
 #include <functional>
 #include <memory>
@@ -60,13 +60,17 @@ namespace crawler
     }
 
   private:
-    /// Why a run is interrupted.
-    enum class Request
+    /// Why a part of a run ends.
+    enum class Ending
     {
-      none,
-      mesh,   ///< change the mesh
-      retry,  ///< the active stress did something within the step
-      restart ///< the active stress jumps
+      none,    ///< it does not
+      stepper, ///< there is no other step: at the end time, or where the integration failed
+      lost,    ///< the state must not be used, and the diagnosis says why
+      cycles,  ///< they repeat
+      stopped, ///< on request
+      mesh,    ///< the mesh has to be changed
+      retry,   ///< the active stress did something within the step
+      jump     ///< the active stress jumps
     };
 
     /// The equation on the present mesh.
@@ -84,9 +88,9 @@ namespace crawler
     /// Who integrates; built when they are needed.
     struct Integrators
     {
-      std::unique_ptr<TimeStepper> petsc;
+      std::unique_ptr<PetscStepper> petsc;
       std::unique_ptr<LaneStepper> lanes;
-      TimeIntegration *present = nullptr; ///< one of them
+      Stepper *present = nullptr; ///< one of them
     };
 
     /// What a feedback with delay sees.
@@ -140,7 +144,6 @@ namespace crawler
       TimeOutcome before{};         ///< counts of the parts of the run before the last change of mesh
       Step latest{};                ///< that was tried, with the counts of the whole run
       std::optional<Diagnosis> diagnosis;
-      Request request         = Request::none;
       unsigned int tiny_steps = 0;
       std::vector<CellChange> changes;
       std::vector<double> indicators;   ///< of all cells, for the present state of an adaptive mesh
@@ -174,11 +177,11 @@ namespace crawler
     settle();
     bool
     stress_failed();
-    bool
-    sees(const Step &step, std::span<const double> y, const std::vector<std::unique_ptr<Observer>> &observers);
-    bool
-    may_end_after(const Step &step, std::span<const double> y);
-    bool
+    Ending
+    see(const Step &step, std::span<const double> y, const std::vector<std::unique_ptr<Observer>> &observers);
+    Ending
+    ending_after(const Step &step, std::span<const double> y);
+    Ending
     examine(const Step &step, std::span<const double> y);
     bool
     finds_velocity(double t, double size, std::span<const double> y, std::vector<double> &v);
@@ -190,8 +193,6 @@ namespace crawler
     leads_nowhere(const Step &step);
     bool
     mesh_is_good(const Step &step, std::span<const double> y);
-    bool
-    passed_over_event(const Step &step);
     bool
     compute_integrals(const Step &step, std::span<const double> y);
     Rates
@@ -214,8 +215,8 @@ namespace crawler
     keep_history(const Step &step, std::span<const double> y);
     void
     look_at_extremes(double t, const StretchRange &range);
-    void
-    look_for_coarser_mesh(const Step &step);
+    bool
+    wants_coarser_mesh(const Step &step);
     double
     lost_stretch() const;
     bool
@@ -234,10 +235,14 @@ namespace crawler
     under_resolved(double value, double s, double t);
     TimeOutcome
     integrate(const std::vector<std::unique_ptr<Observer>> &observers, const KeepGoing &keep_going);
-    TimeOutcome
+    Ending
     integrate_part(const std::vector<std::unique_ptr<Observer>> &observers, const KeepGoing &keep_going);
+    Step
+    with_counts_before(Step step) const;
+    TimeOutcome
+    outcome_of_parts() const;
     bool
-    goes_on_after(TimeOutcome &outcome);
+    goes_on_after(Ending ending, TimeOutcome &outcome);
     TimeOutcome
     failure_while_integrating();
     std::string
