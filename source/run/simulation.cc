@@ -106,20 +106,10 @@ namespace crawler
     choose_stepper(); // options of PETSc are read now
   }
 
-  Simulation::Run::Run(
-    const Options &options, const bool has_observers, Recorder recorder, OutputTimes output_times, StepLimiter limiter)
-    : options(options)
-    , has_observers(has_observers)
-    , recorder(std::move(recorder))
-    , output_times(std::move(output_times))
-    , limiter(std::move(limiter))
-  {
-  }
-
   SimulationResult
   Simulation::run(const PictureTimes &pictures,
                   const Options &options,
-                  const std::vector<std::unique_ptr<Observer>> &observers,
+                  const Observers &observers,
                   const KeepGoing &keep_going)
   {
     const double start = now();
@@ -143,32 +133,34 @@ namespace crawler
     if (mesh_.position != nullptr && !is_adaptive())
       recorder.set_smallest_cell(std::ranges::min_element(mesh_.discretization->cells(), {}, &Cell::size)->size);
     OutputTimes output_times(pictures, recorder.step_ends(), !integrators_.present->stage_places().empty());
-    run_.emplace(options,
-                 !observers.empty(),
-                 std::move(recorder),
-                 std::move(output_times),
-                 StepLimiter(numerics_.step_limits,
-                             past_.delay > 0. ? past_.delay : HUGE_VAL,
-                             *scene_.active_stress,
-                             is_watched ? numerics_.least_event : 0.));
-    run_->breaks         = scene_.breaks_in_space();
-    run_->n_failures     = scene_.active_stress->failures() != nullptr ? scene_.active_stress->failures()->count : 0;
+    run_.emplace(
+      Run{.options      = options,
+          .observers    = observers,
+          .keep_going   = keep_going,
+          .journal      = journal,
+          .recorder     = std::move(recorder),
+          .output_times = std::move(output_times),
+          .limiter      = StepLimiter(numerics_.step_limits,
+                                 past_.delay > 0. ? past_.delay : HUGE_VAL,
+                                 *scene_.active_stress,
+                                 is_watched ? numerics_.least_event : 0.),
+          .breaks       = scene_.breaks_in_space(),
+          .n_failures   = scene_.active_stress->failures() != nullptr ? scene_.active_stress->failures()->count : 0});
     result().jumps_move  = numerics_.jumps_move;
     result().formulation = numerics_.formulation;
     mesh_.assembler->set_initial_state(y_);
     run_->accepted = {y_, 0., numerics_.initial_step, false};
-    if (journal != nullptr)
-      take_up(*journal, observers);
+    take_up();
 
     try
     {
-      result().time = integrate(observers, keep_going);
+      result().time = integrate();
     }
     catch (...)
     {
       result().time = failure_while_integrating();
     }
-    SimulationResult answer = finish(observers);
+    SimulationResult answer = finish();
     answer.solve_seconds    = now() - start - answer.output_seconds;
     if (journal != nullptr)
       journal->end(answer);
@@ -177,7 +169,7 @@ namespace crawler
 
   /// What the end of the integration means, and the result in the user's units.
   SimulationResult
-  Simulation::finish(const std::vector<std::unique_ptr<Observer>> &observers)
+  Simulation::finish()
   {
     SimulationResult &result = this->result();
     const bool ends_early    = run_->recorder.cycles_repeat();
@@ -204,13 +196,13 @@ namespace crawler
       if (run_->accepted.is_there)
         result.time.time = run_->accepted.time; // not that of the state that was lost
     }
-    else if (!run_->options.energy_balance && observers.empty())
+    else if (!run_->options.energy_balance && run_->observers.empty())
       result.displacement = mesh_.assembler->integrals(run_->accepted.time, y_, v_).displacement;
     // Where the lanes have looked, steps have not asked for it.
-    if (integrators_.lanes && run_->options.energy_balance && !run_->has_observers && run_->accepted.is_there)
+    if (integrators_.lanes && run_->options.energy_balance && run_->observers.empty() && run_->accepted.is_there)
       result.displacement = mesh_.assembler->integrals(run_->accepted.time, run_->accepted.y, v_).displacement;
     const double before = now();
-    for (const auto &observer : observers)
+    for (const auto &observer : run_->observers)
       observer->end();
     result.output_seconds += now() - before;
     if (mesh_.assembler) // not if the next mesh could not be built
@@ -227,7 +219,7 @@ namespace crawler
 
   /// From the first state to the end, with changes of mesh on the way.
   TimeOutcome
-  Simulation::integrate(const std::vector<std::unique_ptr<Observer>> &observers, const KeepGoing &keep_going)
+  Simulation::integrate()
   {
     for (;;)
     {
@@ -236,11 +228,11 @@ namespace crawler
       {
         begin_segment();
         if (!run_->diagnosis)
-          show_row_after_jump(observers);
+          show_row_after_jump();
       }
       if (run_->diagnosis)
         return run_->before;
-      const Ending ending = integrate_part(observers, keep_going);
+      const Ending ending = integrate_part();
       TimeOutcome outcome = outcome_of_parts();
       result().most_cells = std::max(result().most_cells, mesh_.discretization->n_cells());
       if (!goes_on_after(ending, outcome))
@@ -250,7 +242,7 @@ namespace crawler
 
   /// To the end, or to where something has to be changed.
   Simulation::Ending
-  Simulation::integrate_part(const std::vector<std::unique_ptr<Observer>> &observers, const KeepGoing &keep_going)
+  Simulation::integrate_part()
   {
     if (!run_->goes_on)
       run_->part_start = run_->accepted.time;
@@ -273,42 +265,43 @@ namespace crawler
       course.ends.push_back(1.);
     stepper.begin(y_, course);
 
-    RunJournal *const journal = run_->options.steps == nullptr ? keep_going.journal() : nullptr;
-    const auto after          = [&](const Step &part, const Step &step) {
-      if (const Ending ending = see(step, stepper.state(), observers); ending != Ending::none)
-        return ending;
-      if (const Ending ending = ending_after(step, stepper.state()); ending != Ending::none)
-        return ending;
-      if (run_->options.steps != nullptr && step.size > 0. && &stepper == integrators_.lanes.get())
-        run_->options.steps->add(integrators_.lanes->lane_step(),
-                                 integrators_.lanes->tables().setup.n_stages,
-                                 stepper.state().size(),
-                                 part.number == 1);
-      if (wants_coarser_mesh(step))
-        return Ending::mesh;
-      if (!segments_.is_last() && part.time == segments_.end())
-        return Ending::jump;
-      const bool stops = keep_going && !keep_going();
-      if (journal != nullptr)
-        keep_state(*journal, stops, step, observers);
-      return stops ? Ending::stopped : Ending::none;
-    };
     Ending ending = Ending::none;
     if (!run_->accepted.is_there)
     {
       const Step start = {run_->part_start, 0., 0, false, 0, 0};
-      ending           = after(start, start);
+      ending           = look_at(start, start);
     }
     while (ending == Ending::none)
       if (const Step *const part = stepper.next())
       {
         run_->latest = with_counts_before(*part);
-        ending       = after(*part, run_->latest);
+        ending       = look_at(*part, run_->latest);
       }
       else
         ending = Ending::stepper;
     y_.assign(stepper.state().begin(), stepper.state().end());
     return ending;
+  }
+
+  /// A step of the present part, which is @p step of the whole run, or the start of both.
+  Simulation::Ending
+  Simulation::look_at(const Step &part, const Step &step)
+  {
+    const std::span<const double> y = integrators_.present->state();
+    if (const Ending ending = see(step, y); ending != Ending::none)
+      return ending;
+    if (const Ending ending = ending_after(step, y); ending != Ending::none)
+      return ending;
+    if (run_->options.steps != nullptr && step.size > 0. && integrators_.present == integrators_.lanes.get())
+      run_->options.steps->add(
+        integrators_.lanes->lane_step(), integrators_.lanes->tables().setup.n_stages, y.size(), part.number == 1);
+    if (wants_coarser_mesh(step))
+      return Ending::mesh;
+    if (!segments_.is_last() && part.time == segments_.end())
+      return Ending::jump;
+    const bool stops = run_->keep_going && !run_->keep_going();
+    keep_state(stops, step);
+    return stops ? Ending::stopped : Ending::none;
   }
 
   Step

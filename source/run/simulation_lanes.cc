@@ -50,7 +50,7 @@ namespace crawler
     auto [smallest, largest] =
       LaneExtremes(lanes.tables())
         .look(lanes.lane_step(), i, record.min_stretch.value, record.max_stretch.value, run_->breaks);
-    if (run_->has_observers && i + 1 == lanes.tables().setup.n_stages)
+    if (!run_->observers.empty() && i + 1 == lanes.tables().setup.n_stages)
     {
       const auto &[min, max] = run_->stretch;
       smallest               = {min.value, min.s, smallest.t, smallest.jump};

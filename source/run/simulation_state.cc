@@ -29,7 +29,7 @@ namespace crawler
   {
     if (stress_failed())
       return Ending::lost;
-    const bool lanes_look = !run_->has_observers && takes_looks_of_lanes(step);
+    const bool lanes_look = run_->observers.empty() && takes_looks_of_lanes(step);
     StretchRange &stretch = run_->stretch = lanes_look ? stretch_of_lanes() : mesh_.assembler->stretch_range(y);
     if (!std::isfinite(stretch.min.value) || !std::isfinite(stretch.max.value))
     {
@@ -54,7 +54,8 @@ namespace crawler
       return Ending::lost;
     }
     // Pictures need the velocity at output times only, the energy balance and adaptive meshes always.
-    const bool is_shown = run_->has_observers && run_->output_times.next() <= step.time + least_time_between_breaks;
+    const bool is_shown =
+      !run_->observers.empty() && run_->output_times.next() <= step.time + least_time_between_breaks;
     if ((run_->options.energy_balance || is_adaptive() || is_shown) && !lanes_look &&
         !finds_velocity(step.time, step.size, y, v_))
       return Ending::lost;
@@ -238,7 +239,7 @@ namespace crawler
   bool
   Simulation::compute_integrals(const Step &step, const std::span<const double> y)
   {
-    if (!run_->options.energy_balance && !run_->has_observers)
+    if (!run_->options.energy_balance && run_->observers.empty())
       return true;
     const CellIntegrals &integrals = run_->integrals = mesh_.assembler->integrals(step.time, y, v_);
     result().displacement                            = integrals.displacement;

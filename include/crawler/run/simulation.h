@@ -32,8 +32,9 @@ namespace crawler
   class Simulation
   {
   public:
-    using GaitWish = crawler::GaitWish;
-    using Options  = RecordOptions;
+    using GaitWish  = crawler::GaitWish;
+    using Options   = RecordOptions;
+    using Observers = std::vector<std::unique_ptr<Observer>>;
 
     Simulation(MPI_Comm communicator, const Scene &scene, const TimeParameters &time, const Numerics &numerics);
     ~Simulation();
@@ -44,8 +45,8 @@ namespace crawler
     SimulationResult
     run(const PictureTimes &pictures,
         const Options &options,
-        const std::vector<std::unique_ptr<Observer>> &observers = {},
-        const KeepGoing &keep_going                             = {});
+        const Observers &observers  = {},
+        const KeepGoing &keep_going = {});
 
     /// The present mesh, of length 1.
     const Discretization &
@@ -125,31 +126,31 @@ namespace crawler
     /// One run().
     struct Run
     {
-      Run(const Options &options, bool has_observers, Recorder recorder, OutputTimes output_times, StepLimiter limiter);
-
-      const Options options;
-      const bool has_observers;
+      Options options;
+      const Observers &observers;
+      const KeepGoing &keep_going;
+      RunJournal *journal; ///< null: there is none
       Recorder recorder;
       OutputTimes output_times;
       StepLimiter limiter;
-      Accepted accepted;
+      Accepted accepted = {};
       StretchRange stretch{};     ///< of the state that is looked at
       std::vector<double> breaks; ///< in space
       CellIntegrals integrals{};
-      bool lanes_look    = false; ///< what they see in the stages of steps is taken
-      bool lanes_gave_up = false;
-      RateQuadrature quadrature;    ///< of works
-      EnergyBalance balance_before; ///< at the start of the latest step
-      Resolution largest{};         ///< over time, if looked at
-      TimeOutcome before{};         ///< counts of the parts of the run before the last change of mesh
-      Step latest{};                ///< that was tried, with the counts of the whole run
-      std::optional<Diagnosis> diagnosis;
-      unsigned int tiny_steps = 0;
-      std::vector<CellChange> changes;
-      std::vector<double> indicators;   ///< of all cells, for the present state of an adaptive mesh
-      unsigned long n_failures = 0;     ///< of the active stress before this run
-      double part_start        = 0.;    ///< where the present integrator has started
-      bool goes_on             = false; ///< within a part that was left
+      bool lanes_look              = false; ///< what they see in the stages of steps is taken
+      bool lanes_gave_up           = false;
+      RateQuadrature quadrature    = {}; ///< of works
+      EnergyBalance balance_before = {}; ///< at the start of the latest step
+      Resolution largest{};              ///< over time, if looked at
+      TimeOutcome before{};              ///< counts of the parts of the run before the last change of mesh
+      Step latest{};                     ///< that was tried, with the counts of the whole run
+      std::optional<Diagnosis> diagnosis = {};
+      unsigned int tiny_steps            = 0;
+      std::vector<CellChange> changes    = {};
+      std::vector<double> indicators     = {};    ///< of all cells, for the present state of an adaptive mesh
+      unsigned long n_failures           = 0;     ///< of the active stress before this run
+      double part_start                  = 0.;    ///< where the present integrator has started
+      bool goes_on                       = false; ///< within a part that was left
     };
 
     void
@@ -178,7 +179,7 @@ namespace crawler
     bool
     stress_failed();
     Ending
-    see(const Step &step, std::span<const double> y, const std::vector<std::unique_ptr<Observer>> &observers);
+    see(const Step &step, std::span<const double> y);
     Ending
     ending_after(const Step &step, std::span<const double> y);
     Ending
@@ -234,9 +235,11 @@ namespace crawler
     void
     under_resolved(double value, double s, double t);
     TimeOutcome
-    integrate(const std::vector<std::unique_ptr<Observer>> &observers, const KeepGoing &keep_going);
+    integrate();
     Ending
-    integrate_part(const std::vector<std::unique_ptr<Observer>> &observers, const KeepGoing &keep_going);
+    integrate_part();
+    Ending
+    look_at(const Step &part, const Step &step);
     Step
     with_counts_before(Step step) const;
     TimeOutcome
@@ -246,9 +249,9 @@ namespace crawler
     TimeOutcome
     failure_while_integrating();
     std::string
-    identity(const Options &options, bool has_observers) const;
+    identity(const Options &options, bool has_pictures) const;
     void
-    exchange(Archive &archive, const std::vector<std::unique_ptr<Observer>> &observers);
+    exchange(Archive &archive);
     void
     exchange_mesh(Archive &archive);
     std::string
@@ -256,14 +259,11 @@ namespace crawler
     std::string
     own_part(const std::string &together) const;
     void
-    take_up(const RunJournal &journal, const std::vector<std::unique_ptr<Observer>> &observers);
+    take_up();
     void
-    keep_state(RunJournal &journal,
-               bool stops,
-               const Step &step,
-               const std::vector<std::unique_ptr<Observer>> &observers);
+    keep_state(bool stops, const Step &step);
     SimulationResult
-    finish(const std::vector<std::unique_ptr<Observer>> &observers);
+    finish();
     /// A state that observers see.
     struct Shown
     {
@@ -276,15 +276,15 @@ namespace crawler
       const PictureTimes::Time *picture; ///< null: it is none
     };
     void
-    show_step(const Step &step, std::span<const double> y, const std::vector<std::unique_ptr<Observer>> &observers);
+    show_step(const Step &step, std::span<const double> y);
     bool
-    show_pictures_within(const Step &step, double until, const std::vector<std::unique_ptr<Observer>> &observers);
+    show_pictures_within(const Step &step, double until);
     void
-    show_pictures_before_inversion(const Step &step, const std::vector<std::unique_ptr<Observer>> &observers);
+    show_pictures_before_inversion(const Step &step);
     void
-    show_row_after_jump(const std::vector<std::unique_ptr<Observer>> &observers);
+    show_row_after_jump();
     void
-    show(const Shown &shown, const std::vector<std::unique_ptr<Observer>> &observers);
+    show(const Shown &shown);
     SimulationResult &
     result()
     {
