@@ -10,7 +10,7 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/formula_input.h>
 #include <crawler/scene/active_stress/library.h>
-#include <crawler/time/time_stepper.h>
+#include <crawler/time/petsc_stepper.h>
 
 namespace crawler
 {
@@ -30,27 +30,41 @@ namespace crawler
       "before an inversion, an adaptive mesh or a coupling of distant places)";
   }
 
-  struct TimeStepper::Implementation
+  struct PetscStepper::Implementation
   {
   };
-  TimeStepper::TimeStepper(MPI_Comm, ImplicitSystem &, const TimeParameters &)
+  PetscStepper::PetscStepper(MPI_Comm, ImplicitSystem &, const TimeParameters &)
   {
     refuse(petsc);
   }
-  TimeStepper::~TimeStepper() = default;
+  PetscStepper::~PetscStepper() = default;
+  void
+  PetscStepper::begin(ConstVector, const Course &)
+  {
+    refuse(petsc);
+  }
+  const Step *
+  PetscStepper::next()
+  {
+    refuse(petsc);
+  }
+  Stepper::ConstVector
+  PetscStepper::state() const
+  {
+    refuse(petsc);
+  }
   TimeOutcome
-  TimeStepper::solve(
-    std::vector<double> &, const std::vector<double> &, double, double, std::span<const StepLimit>, double)
+  PetscStepper::outcome()
   {
     refuse(petsc);
   }
   void
-  TimeStepper::interpolate(double, Vector)
+  PetscStepper::interpolate(double, Vector)
   {
     refuse(petsc);
   }
   bool
-  TimeStepper::exchange(Archive &)
+  PetscStepper::exchange(Archive &)
   {
     refuse(petsc);
   }

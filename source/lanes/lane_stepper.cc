@@ -34,59 +34,69 @@ namespace crawler
       stage_places_.push_back(tableau_.c[i]);
   }
 
-  TimeOutcome
-  LaneStepper::solve(std::vector<double> &y,
-                     const std::vector<double> &output_times,
-                     const double tolerance,
-                     const double initial_step,
-                     const std::span<const StepLimit> limits,
-                     const double start_time)
+  void
+  LaneStepper::begin(const ConstVector y, const Course &course)
   {
-    constexpr double end_time = 1.;
-    output_times_             = output_times;
-    if (output_times_.empty() || output_times_.back() < end_time)
-      output_times_.push_back(end_time);
-    job_                = {.k         = scene_.body.elastic_modulus,
-                           .a         = scene_.body.friction_exponent(),
-                           .tolerance = tolerance,
-                           // On a stiff body an error of the stretch is one of the forces, k times as large.
-                           .newton_factor = setup_.is_stretch ? std::min(1., 10. / scene_.body.elastic_modulus) : 1.,
-                           .initial_step  = initial_step,
-                           .limits        = limits.data(),
-                           .n_limits      = static_cast<unsigned int>(limits.size()),
-                           .most_steps    = std::numeric_limits<unsigned int>::max(), // the monitor's business
-                           // Cells may be empty where friction then holds them.
-                           .least_stretch  = setup_.is_stretch && scene_.friction_exponent() < 0. ? -HUGE_VAL : 0.,
-                           .is_last_resort = setup_.is_stretch,
-                           .start_time     = start_time,
-                           .start          = y.data(),
-                           .output_times   = output_times_.data(),
-                           .n_output_times = static_cast<unsigned int>(output_times_.size()),
-                           .restarts       = nullptr, // a solve for each piece
-                           .progress       = goes_on_ ? &progress_ : nullptr,
-                           .old_z          = goes_on_ ? old_z_.data() : nullptr};
-    const bool is_first = !goes_on_;
-    goes_on_            = false;
+    course_ = course;
+    y_.assign(y.begin(), y.end());
+    job_ = {.k         = scene_.body.elastic_modulus,
+            .a         = scene_.body.friction_exponent(),
+            .tolerance = course_.tolerance,
+            // On a stiff body an error of the stretch is one of the forces, k times as large.
+            .newton_factor = setup_.is_stretch ? std::min(1., 10. / scene_.body.elastic_modulus) : 1.,
+            .initial_step  = course_.initial_step,
+            .limits        = course_.limits.data(),
+            .n_limits      = static_cast<unsigned int>(course_.limits.size()),
+            .most_steps    = std::numeric_limits<unsigned int>::max(), // whoever asks for the next one decides
+            // Cells may be empty where friction then holds them.
+            .least_stretch  = setup_.is_stretch && scene_.friction_exponent() < 0. ? -HUGE_VAL : 0.,
+            .is_last_resort = setup_.is_stretch,
+            .start_time     = course_.start,
+            .start          = y_.data(),
+            .output_times   = course_.ends.data(),
+            .n_output_times = static_cast<unsigned int>(course_.ends.size()),
+            .restarts       = nullptr, // a course for each piece
+            .progress       = goes_on_ ? &progress_ : nullptr,
+            .old_z          = goes_on_ ? old_z_.data() : nullptr};
     if (laws_)
       laws_->set(job_);
-    started_ = false;
+    started_ = goes_on_ = false;
     bad_friction_.reset();
-    y_       = &y;
-    outcome_ = {};
-    if (is_first && monitor && !monitor({start_time, 0., 0, false, 0, 0}, y))
-    {
-      outcome_.status    = Status::stopped;
-      outcome_.time      = start_time;
-      outcome_.step_size = initial_step;
-      return outcome_;
-    }
-    const LaneHost host = {this, next, stress, accepted, done, looks_inside_, laws, cell_laws_ ? cell_laws : nullptr};
-    single_engine().run(setup_, host, memory_.get());
-    return outcome_;
+    lane_step_ = {};
+    end_.reset();
+    host_ = {this, take, stress, accepted, done, looks_inside_, laws, cell_laws_ ? cell_laws : nullptr};
+    single_engine().start(setup_, host_, memory_.get());
+  }
+
+  const Step *
+  LaneStepper::next()
+  {
+    has_step_ = false;
+    while (!has_step_ && !end_)
+      single_engine().advance(setup_, memory_.get());
+    return has_step_ ? &step_ : nullptr;
+  }
+
+  TimeOutcome
+  LaneStepper::outcome()
+  {
+    if (end_)
+      return *end_;
+    TimeOutcome so_far;
+    so_far.time      = course_.start;
+    so_far.step_size = course_.initial_step;
+    if (lane_step_.progress == nullptr)
+      return so_far;
+    so_far.time              = lane_step_.time;
+    so_far.step_size         = lane_step_.next_size;
+    so_far.steps             = lane_step_.number;
+    so_far.rejected_steps    = lane_step_.rejected;
+    so_far.newton_iterations = lane_step_.newton_iterations;
+    return so_far;
   }
 
   bool
-  LaneStepper::next(void *context, unsigned int, LaneJob &job)
+  LaneStepper::take(void *context, unsigned int, LaneJob &job)
   {
     auto &self         = *static_cast<LaneStepper *>(context);
     const bool is_next = !self.started_;
@@ -133,29 +143,27 @@ namespace crawler
   bool
   LaneStepper::accepted(void *context, unsigned int, const LaneStep &step)
   {
-    auto &self = *static_cast<LaneStepper *>(context);
-    self.step_ = step;
-    std::copy_n(step.y, self.y_->size(), self.y_->begin());
+    auto &self      = *static_cast<LaneStepper *>(context);
+    self.lane_step_ = step;
+    self.step_      = {step.time, step.size, step.number, step.is_output_time, step.rejected, step.newton_iterations};
+    self.has_step_  = true;
+    std::copy_n(step.y, self.y_.size(), self.y_.begin());
     if (self.stage_rates)
       self.show_rates();
-    return !self.monitor ||
-           self.monitor({step.time, step.size, step.number, step.is_output_time, step.rejected, step.newton_iterations},
-                        *self.y_);
+    return true;
   }
 
   void
   LaneStepper::done(void *context, unsigned int, const LaneOutcome &outcome)
   {
-    auto &self                      = *static_cast<LaneStepper *>(context);
-    self.outcome_.status            = outcome.status == LaneOutcome::finished  ? Status::finished
-                                      : outcome.status == LaneOutcome::stopped ? Status::stopped
-                                                                               : Status::failed;
-    self.outcome_.reason            = outcome.status == LaneOutcome::gave_up ? gave_up : "";
-    self.outcome_.time              = outcome.time;
-    self.outcome_.step_size         = outcome.step_size;
-    self.outcome_.steps             = outcome.steps;
-    self.outcome_.rejected_steps    = outcome.rejected;
-    self.outcome_.newton_iterations = outcome.newton_iterations;
+    TimeOutcome &end      = static_cast<LaneStepper *>(context)->end_.emplace();
+    end.status            = outcome.status == LaneOutcome::finished ? Status::finished : Status::failed;
+    end.reason            = outcome.status == LaneOutcome::gave_up ? gave_up : "";
+    end.time              = outcome.time;
+    end.step_size         = outcome.step_size;
+    end.steps             = outcome.steps;
+    end.rejected_steps    = outcome.rejected;
+    end.newton_iterations = outcome.newton_iterations;
   }
 
   bool
@@ -163,8 +171,8 @@ namespace crawler
   {
     if (!archive.reads())
     {
-      progress_ = *step_.progress;
-      old_z_.assign(step_.z, step_.z + tableau_.n * y_->size());
+      progress_ = *lane_step_.progress;
+      old_z_.assign(lane_step_.z, lane_step_.z + tableau_.n * y_.size());
     }
     archive(progress_, old_z_);
     goes_on_ = archive.reads();
@@ -174,23 +182,23 @@ namespace crawler
   void
   LaneStepper::show_rates()
   {
-    rate_.resize(y_->size());
+    rate_.resize(y_.size());
     for (unsigned int i = 0; i < tableau_.n; ++i)
     {
       radau::stage_rate(static_cast<int>(tableau_.n),
                         tableau_.inverse.data(),
                         static_cast<int>(i),
-                        1. / step_.size,
-                        step_.z,
+                        1. / lane_step_.size,
+                        lane_step_.z,
                         static_cast<int>(rate_.size()),
                         rate_.data());
-      stage_rates(step_.time - (1. - tableau_.c[i]) * step_.size, rate_);
+      stage_rates(lane_step_.time - (1. - tableau_.c[i]) * lane_step_.size, rate_);
     }
   }
 
   void
   LaneStepper::interpolate(const double time, const Vector y)
   {
-    state_within(step_, setup_, time, y);
+    state_within(lane_step_, setup_, time, y);
   }
 } // namespace crawler

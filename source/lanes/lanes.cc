@@ -8,39 +8,38 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 {
   namespace
   {
-    template <typename Pack, template <typename, int> class System>
-    std::size_t
-    memory_of(const LaneSetup &setup)
+    /// What @p use gives for the engine of a setup, as the type of a null pointer.
+    template <typename Pack, typename Use>
+    auto
+    with_engine(const LaneSetup &setup, const Use &use)
     {
-      return setup.n_stages == 3 ? RadauLanes<Pack, 3, System>::memory(setup)
-                                 : RadauLanes<Pack, 5, System>::memory(setup);
-    }
-
-    template <typename Pack, template <typename, int> class System>
-    void
-    run_in(const LaneSetup &setup, const LaneHost &host, double *memory)
-    {
-      if (setup.n_stages == 3)
-        RadauLanes<Pack, 3, System>(setup, host, memory).run();
-      else
-        RadauLanes<Pack, 5, System>(setup, host, memory).run();
+      if (setup.is_stretch)
+        return setup.n_stages == 3 ? use(static_cast<RadauLanes<Pack, 3, StretchSystem> *>(nullptr))
+                                   : use(static_cast<RadauLanes<Pack, 5, StretchSystem> *>(nullptr));
+      return setup.n_stages == 3 ? use(static_cast<RadauLanes<Pack, 3, PositionSystem> *>(nullptr))
+                                 : use(static_cast<RadauLanes<Pack, 5, PositionSystem> *>(nullptr));
     }
 
     template <typename Pack>
     std::size_t
     memory(const LaneSetup &setup)
     {
-      return setup.is_stretch ? memory_of<Pack, StretchSystem>(setup) : memory_of<Pack, PositionSystem>(setup);
+      return with_engine<Pack>(setup, [&](auto *lanes) { return lanes->memory(setup); });
     }
 
     template <typename Pack>
     void
-    run(const LaneSetup &setup, const LaneHost &host, double *memory)
+    start(const LaneSetup &setup, const LaneHost &host, double *memory)
     {
-      if (setup.is_stretch)
-        run_in<Pack, StretchSystem>(setup, host, memory);
-      else
-        run_in<Pack, PositionSystem>(setup, host, memory);
+      with_engine<Pack>(setup, [&](auto *lanes) { lanes->start(setup, host, memory); });
+    }
+
+    template <typename Pack>
+    bool
+    advance(const LaneSetup &setup, double *memory)
+    {
+      return with_engine<Pack>(setup,
+                               [memory](auto *lanes) { return reinterpret_cast<decltype(lanes)>(memory)->advance(); });
     }
 
     template <typename Pack>
@@ -70,7 +69,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     constexpr LaneEngine engine = {CRAWLER_TEXT(CRAWLER_INSTRUCTION_SET),
                                    PackTraits<Pack>::size,
                                    memory<Pack>,
-                                   run<Pack>,
+                                   start<Pack>,
+                                   advance<Pack>,
                                    adjoint_memory<Pack>,
                                    adjoint<Pack>};
   } // namespace

@@ -79,7 +79,9 @@ namespace crawler
         lanes_.resize(engine.lanes);
         const LaneHost host = {this, next, stress, accepted, done, options_.energy_balance, laws};
         const auto memory   = lane_storage(engine.memory(tables_.setup));
-        engine.run(tables_.setup, host, memory.get());
+        engine.start(tables_.setup, host, memory.get());
+        while (engine.advance(tables_.setup, memory.get()))
+          ;
         return !interrupted_;
       }
 

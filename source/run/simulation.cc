@@ -106,20 +106,10 @@ namespace crawler
     choose_stepper(); // options of PETSc are read now
   }
 
-  Simulation::Run::Run(
-    const Options &options, const bool has_observers, Recorder recorder, OutputTimes output_times, StepLimiter limiter)
-    : options(options)
-    , has_observers(has_observers)
-    , recorder(std::move(recorder))
-    , output_times(std::move(output_times))
-    , limiter(std::move(limiter))
-  {
-  }
-
   SimulationResult
   Simulation::run(const PictureTimes &pictures,
                   const Options &options,
-                  const std::vector<std::unique_ptr<Observer>> &observers,
+                  const Observers &observers,
                   const KeepGoing &keep_going)
   {
     const double start = now();
@@ -143,32 +133,34 @@ namespace crawler
     if (mesh_.position != nullptr && !is_adaptive())
       recorder.set_smallest_cell(std::ranges::min_element(mesh_.discretization->cells(), {}, &Cell::size)->size);
     OutputTimes output_times(pictures, recorder.step_ends(), !integrators_.present->stage_places().empty());
-    run_.emplace(options,
-                 !observers.empty(),
-                 std::move(recorder),
-                 std::move(output_times),
-                 StepLimiter(numerics_.step_limits,
-                             past_.delay > 0. ? past_.delay : HUGE_VAL,
-                             *scene_.active_stress,
-                             is_watched ? numerics_.least_event : 0.));
-    run_->breaks         = scene_.breaks_in_space();
-    run_->n_failures     = scene_.active_stress->failures() != nullptr ? scene_.active_stress->failures()->count : 0;
+    run_.emplace(
+      Run{.options      = options,
+          .observers    = observers,
+          .keep_going   = keep_going,
+          .journal      = journal,
+          .recorder     = std::move(recorder),
+          .output_times = std::move(output_times),
+          .limiter      = StepLimiter(numerics_.step_limits,
+                                 past_.delay > 0. ? past_.delay : HUGE_VAL,
+                                 *scene_.active_stress,
+                                 is_watched ? numerics_.least_event : 0.),
+          .breaks       = scene_.breaks_in_space(),
+          .n_failures   = scene_.active_stress->failures() != nullptr ? scene_.active_stress->failures()->count : 0});
     result().jumps_move  = numerics_.jumps_move;
     result().formulation = numerics_.formulation;
     mesh_.assembler->set_initial_state(y_);
     run_->accepted = {y_, 0., numerics_.initial_step, false};
-    if (journal != nullptr)
-      take_up(*journal, observers);
+    take_up();
 
     try
     {
-      result().time = integrate(observers, keep_going);
+      result().time = integrate();
     }
     catch (...)
     {
       result().time = failure_while_integrating();
     }
-    SimulationResult answer = finish(observers);
+    SimulationResult answer = finish();
     answer.solve_seconds    = now() - start - answer.output_seconds;
     if (journal != nullptr)
       journal->end(answer);
@@ -177,7 +169,7 @@ namespace crawler
 
   /// What the end of the integration means, and the result in the user's units.
   SimulationResult
-  Simulation::finish(const std::vector<std::unique_ptr<Observer>> &observers)
+  Simulation::finish()
   {
     SimulationResult &result = this->result();
     const bool ends_early    = run_->recorder.cycles_repeat();
@@ -204,13 +196,13 @@ namespace crawler
       if (run_->accepted.is_there)
         result.time.time = run_->accepted.time; // not that of the state that was lost
     }
-    else if (!run_->options.energy_balance && observers.empty())
+    else if (!run_->options.energy_balance && run_->observers.empty())
       result.displacement = mesh_.assembler->integrals(run_->accepted.time, y_, v_).displacement;
     // Where the lanes have looked, steps have not asked for it.
-    if (integrators_.lanes && run_->options.energy_balance && !run_->has_observers && run_->accepted.is_there)
+    if (integrators_.lanes && run_->options.energy_balance && run_->observers.empty() && run_->accepted.is_there)
       result.displacement = mesh_.assembler->integrals(run_->accepted.time, run_->accepted.y, v_).displacement;
     const double before = now();
-    for (const auto &observer : observers)
+    for (const auto &observer : run_->observers)
       observer->end();
     result.output_seconds += now() - before;
     if (mesh_.assembler) // not if the next mesh could not be built
@@ -227,85 +219,117 @@ namespace crawler
 
   /// From the first state to the end, with changes of mesh on the way.
   TimeOutcome
-  Simulation::integrate(const std::vector<std::unique_ptr<Observer>> &observers, const KeepGoing &keep_going)
+  Simulation::integrate()
   {
     for (;;)
     {
-      run_->request = Request::none;
       choose_stepper();
       if (!segments_.is_last() && run_->accepted.time >= segments_.end())
       {
         begin_segment();
         if (!run_->diagnosis)
-          show_row_after_jump(observers);
+          show_row_after_jump();
       }
       if (run_->diagnosis)
         return run_->before;
-      TimeOutcome outcome = integrate_part(observers, keep_going);
-      if (!goes_on_after(outcome))
+      const Ending ending = integrate_part();
+      TimeOutcome outcome = outcome_of_parts();
+      result().most_cells = std::max(result().most_cells, mesh_.discretization->n_cells());
+      if (!goes_on_after(ending, outcome))
         return outcome;
     }
   }
 
   /// To the end, or to where something has to be changed.
-  TimeOutcome
-  Simulation::integrate_part(const std::vector<std::unique_ptr<Observer>> &observers, const KeepGoing &keep_going)
+  Simulation::Ending
+  Simulation::integrate_part()
   {
-    bool resumed = run_->accepted.is_there && !run_->goes_on;
     if (!run_->goes_on)
       run_->part_start = run_->accepted.time;
-    run_->goes_on                  = false;
-    const std::vector<double> ends = run_->output_times.of_segment(segments_, run_->part_start);
-    run_->lanes_look               = may_take_looks_of_lanes();
-    RunJournal *const journal      = run_->options.steps == nullptr ? keep_going.journal() : nullptr;
+    run_->goes_on    = false;
+    run_->lanes_look = may_take_looks_of_lanes();
     if (integrators_.lanes)
       integrators_.lanes->look_inside(run_->lanes_look);
-    integrators_.present->stage_rates = nullptr;
+    Stepper &stepper    = *integrators_.present;
+    stepper.stage_rates = nullptr;
     if (mesh_.velocity->keeps_rates() || run_->output_times.next() < HUGE_VAL)
-      integrators_.present->stage_rates = [this](const double t, const std::span<const double> y_dot) {
+      stepper.stage_rates = [this](const double t, const std::span<const double> y_dot) {
         mesh_.velocity->see_rate(t, y_dot);
       };
-    integrators_.present->monitor = [&](const Step &part, const std::span<const double> y) {
-      if (resumed) // the state from which this part starts has been seen already
+    Course course = {run_->part_start,
+                     run_->output_times.of_segment(segments_, run_->part_start),
+                     numerics_.tolerance,
+                     run_->accepted.next_step,
+                     run_->limiter.limits()};
+    if (course.ends.empty() || course.ends.back() < 1.)
+      course.ends.push_back(1.);
+    stepper.begin(y_, course);
+
+    Ending ending = Ending::none;
+    if (!run_->accepted.is_there)
+    {
+      const Step start = {run_->part_start, 0., 0, false, 0, 0};
+      ending           = look_at(start, start);
+    }
+    while (ending == Ending::none)
+      if (const Step *const part = stepper.next())
       {
-        resumed = false;
-        return true;
+        run_->latest = with_counts_before(*part);
+        ending       = look_at(*part, run_->latest);
       }
-      Step step = part;
-      step.number += run_->before.steps;
-      step.rejected += run_->before.rejected_steps;
-      step.newton_iterations += run_->before.newton_iterations;
-      run_->latest              = step;
-      const bool at_end_of_part = !segments_.is_last() && part.time == segments_.end();
-      if (!sees(step, y, observers) || may_end_after(step, y))
-        return false;
-      if (run_->options.steps != nullptr && step.size > 0. && integrators_.present == integrators_.lanes.get())
-        run_->options.steps->add(
-          integrators_.lanes->step(), integrators_.lanes->tables().setup.n_stages, y.size(), part.number == 1);
-      look_for_coarser_mesh(step);
-      if (at_end_of_part && run_->request == Request::none)
-        run_->request = Request::restart;
-      if (run_->request != Request::none) // the next step is asked
-        return false;
-      const bool stops = keep_going && !keep_going();
-      if (journal != nullptr)
-        keep_state(*journal, stops, step, observers);
-      return !stops;
-    };
-    TimeOutcome outcome = integrators_.present->solve(
-      y_, ends, numerics_.tolerance, run_->accepted.next_step, run_->limiter.limits(), run_->part_start);
-    integrators_.present->monitor = nullptr;
+      else
+        ending = Ending::stepper;
+    y_.assign(stepper.state().begin(), stepper.state().end());
+    return ending;
+  }
+
+  /// A step of the present part, which is @p step of the whole run, or the start of both.
+  Simulation::Ending
+  Simulation::look_at(const Step &part, const Step &step)
+  {
+    const std::span<const double> y = integrators_.present->state();
+    if (const Ending ending = see(step, y); ending != Ending::none)
+      return ending;
+    if (const Ending ending = ending_after(step, y); ending != Ending::none)
+      return ending;
+    if (run_->options.steps != nullptr && step.size > 0. && integrators_.present == integrators_.lanes.get())
+      run_->options.steps->add(
+        integrators_.lanes->lane_step(), integrators_.lanes->tables().setup.n_stages, y.size(), part.number == 1);
+    if (wants_coarser_mesh(step))
+      return Ending::mesh;
+    if (!segments_.is_last() && part.time == segments_.end())
+      return Ending::jump;
+    const bool stops = run_->keep_going && !run_->keep_going();
+    keep_state(stops, step);
+    return stops ? Ending::stopped : Ending::none;
+  }
+
+  Step
+  Simulation::with_counts_before(Step step) const
+  {
+    step.number += run_->before.steps;
+    step.rejected += run_->before.rejected_steps;
+    step.newton_iterations += run_->before.newton_iterations;
+    return step;
+  }
+
+  /// How the present part has ended, with the counts of all.
+  TimeOutcome
+  Simulation::outcome_of_parts() const
+  {
+    TimeOutcome outcome = integrators_.present->outcome();
+    if (outcome.status == Status::none)
+      outcome.status = Status::stopped;
     outcome.steps += run_->before.steps;
     outcome.rejected_steps += run_->before.rejected_steps;
     outcome.newton_iterations += run_->before.newton_iterations;
     outcome.linear_iterations += run_->before.linear_iterations;
-    result().most_cells = std::max(result().most_cells, mesh_.discretization->n_cells());
     return outcome;
   }
 
   /// Do the cycles repeat, or are there too many steps?
-  bool
-  Simulation::may_end_after(const Step &step, const std::span<const double> y)
+  Simulation::Ending
+  Simulation::ending_after(const Step &step, const std::span<const double> y)
   {
     y_inside_.resize(y_.size());
     std::vector<double> u;
@@ -321,18 +345,18 @@ namespace crawler
     };
     if (run_->recorder.see_step(
           step.time, step.is_output_time, run_->stretch.min.value, run_->stretch.max.value, sample))
-      return true;
+      return Ending::cycles;
     if (step.number < time_.max_steps || step.time >= 1.)
-      return false;
+      return Ending::none;
     run_->diagnosis = {Status::stopped, "step_limit", "the maximum number of steps is reached"};
-    return true;
+    return Ending::lost;
   }
 
   /// A part of the run has ended. Is there another one?
   bool
-  Simulation::goes_on_after(TimeOutcome &outcome)
+  Simulation::goes_on_after(const Ending ending, TimeOutcome &outcome)
   {
-    if (!run_->diagnosis && run_->request == Request::none && outcome.reason == LaneStepper::gave_up)
+    if (ending == Ending::stepper && outcome.reason == LaneStepper::gave_up)
     {
       if (mesh_.position != nullptr)
       {
@@ -348,20 +372,20 @@ namespace crawler
         outcome.domain_error = true;
       }
     }
+    const bool wants_change = ending == Ending::mesh || ending == Ending::retry || ending == Ending::jump;
     // The step to the end is done again like any other if its state was thrown away.
-    if (run_->request == Request::none || run_->diagnosis || run_->accepted.time >= 1. ||
-        run_->recorder.cycles_repeat())
+    if (!wants_change || run_->accepted.time >= 1.)
       return false;
     count_part(outcome);
     run_->accepted.next_step = outcome.step_size;
-    if (run_->request == Request::retry)
+    if (ending == Ending::retry)
     {
       y_ = run_->accepted.y;
       return true;
     }
     if (time_.integrator == "bdf") // starts anew with order 1
       run_->accepted.next_step = std::min(run_->accepted.next_step, numerics_.initial_step);
-    if (run_->request != Request::restart)
+    if (ending == Ending::mesh)
       change();
     return true;
   }
@@ -374,8 +398,6 @@ namespace crawler
     TimeOutcome outcome = failure_of(std::current_exception());
     if (outcome.reason != "nonfinite" && size_of(communicator_) > 1)
       throw;
-    if (integrators_.present != nullptr)
-      integrators_.present->monitor = nullptr;
     outcome.time              = run_->latest.time;
     outcome.step_size         = run_->latest.size;
     outcome.steps             = run_->latest.number;

@@ -34,7 +34,7 @@ namespace crawler
 
   /// The state of this rank.
   void
-  Simulation::exchange(Archive &archive, const std::vector<std::unique_ptr<Observer>> &observers)
+  Simulation::exchange(Archive &archive)
   {
     Run &run = *run_;
     exchange_mesh(archive);
@@ -55,7 +55,7 @@ namespace crawler
       run.before.newton_iterations = run.latest.newton_iterations;
       run.accepted.next_step       = std::min(run.latest.size, numerics_.initial_step);
     }
-    for (const auto &observer : observers)
+    for (const auto &observer : run.observers)
       observer->exchange(archive);
   }
 
@@ -117,36 +117,36 @@ namespace crawler
     return states[rank_of(communicator_)];
   }
 
-  /// Goes on from the state that the journal has.
+  /// Goes on from the state that the journal has, if there is one.
   void
-  Simulation::take_up(const RunJournal &journal, const std::vector<std::unique_ptr<Observer>> &observers)
+  Simulation::take_up()
   {
-    if (journal.state() == nullptr)
+    if (run_->journal == nullptr || run_->journal->state() == nullptr)
       return;
-    Archive archive(own_part(*journal.state()));
-    exchange(archive, observers);
+    Archive archive(own_part(*run_->journal->state()));
+    exchange(archive);
   }
 
   /// Gives the journal the state, if it is time for one or if the run @p stops.
   void
-  Simulation::keep_state(RunJournal &journal,
-                         const bool stops,
-                         const Step &step,
-                         const std::vector<std::unique_ptr<Observer>> &observers)
+  Simulation::keep_state(const bool stops, const Step &step)
   {
-    int is_wanted = stops ? journal.writes() : journal.is_due();
+    RunJournal *const journal = run_->journal;
+    if (journal == nullptr)
+      return;
+    int is_wanted = stops ? journal->writes() : journal->is_due();
     if (size_of(communicator_) > 1)
       MPI_Bcast(&is_wanted, 1, MPI_INT, 0, communicator_);
     const bool is_between = step.size > 0. && step.time < 1.; // not at the start of a part, nor at the end
     if (is_wanted != 0 && is_between)
     {
       Archive archive;
-      exchange(archive, observers);
-      journal.keep(together(archive));
+      exchange(archive);
+      journal->keep(together(archive));
     }
     else if (stops)
-      journal.write();
+      journal->write();
     if (stops)
-      journal.close();
+      journal->close();
   }
 } // namespace crawler

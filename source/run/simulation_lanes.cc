@@ -25,7 +25,7 @@ namespace crawler
   {
     if (!run_->lanes_look || step.size == 0.)
       return false;
-    const LaneStep &seen = integrators_.lanes->step();
+    const LaneStep &seen = integrators_.lanes->lane_step();
     const std::span<const LaneStage> stages(seen.stages, integrators_.lanes->tables().setup.n_stages);
     return seen.is_settled &&
            std::ranges::all_of(stages, [](const LaneStage &stage) { return stage.min_stretch > small_stretch; });
@@ -36,7 +36,7 @@ namespace crawler
   Simulation::stretch_of_lanes() const
   {
     const LaneStepper &lanes = *integrators_.lanes;
-    const LaneStage &end     = lanes.step().stages[lanes.tables().setup.n_stages - 1];
+    const LaneStage &end     = lanes.lane_step().stages[lanes.tables().setup.n_stages - 1];
     return {{end.min_stretch, lanes.tables().place_of_sample(end.min_sample)},
             {end.max_stretch, lanes.tables().place_of_sample(end.max_sample)}};
   }
@@ -49,8 +49,8 @@ namespace crawler
     const SimulationResult &record = result();
     auto [smallest, largest] =
       LaneExtremes(lanes.tables())
-        .look(lanes.step(), i, record.min_stretch.value, record.max_stretch.value, run_->breaks);
-    if (run_->has_observers && i + 1 == lanes.tables().setup.n_stages)
+        .look(lanes.lane_step(), i, record.min_stretch.value, record.max_stretch.value, run_->breaks);
+    if (!run_->observers.empty() && i + 1 == lanes.tables().setup.n_stages)
     {
       const auto &[min, max] = run_->stretch;
       smallest               = {min.value, min.s, smallest.t, smallest.jump};
@@ -64,7 +64,7 @@ namespace crawler
   Simulation::take_stage_of_lanes(const Step &step, const unsigned int i)
   {
     const LaneStepper &lanes = *integrators_.lanes;
-    const LaneStage &stage   = lanes.step().stages[i];
+    const LaneStage &stage   = lanes.lane_step().stages[i];
     const double place       = lanes.tables().setup.c[i];
     see_stretch_of_lanes(i);
     if (!mesh_.end_power)
@@ -81,7 +81,7 @@ namespace crawler
   void
   Simulation::take_looks_of_lanes(const Step &step)
   {
-    const LaneStep &seen    = integrators_.lanes->step();
+    const LaneStep &seen    = integrators_.lanes->lane_step();
     const unsigned int last = integrators_.lanes->tables().setup.n_stages - 1;
     run_->quadrature.begin_step(step.size);
     for (unsigned int i = 0; i <= last; ++i)

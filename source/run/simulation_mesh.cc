@@ -82,7 +82,7 @@ namespace crawler
     }
   }
 
-  /// Is the sum of the error indicators admissible? If not, and if cells can be divided, asks for that.
+  /// Is the sum of the error indicators admissible, or may no cell be divided?
   bool
   Simulation::mesh_is_good(const Step &step, const std::span<const double> y)
   {
@@ -92,23 +92,17 @@ namespace crawler
     if (sum > numerics_.mesh.tolerance)
       run_->changes = mark_for_division(run_->indicators, *mesh_.discretization, numerics_.mesh);
     if (run_->changes.empty())
-    {
       result().largest_indicator = std::max(result().largest_indicator, sum);
-      return true;
-    }
-    run_->request = Request::mesh;
-    return false;
+    return run_->changes.empty();
   }
 
-  void
-  Simulation::look_for_coarser_mesh(const Step &step)
+  bool
+  Simulation::wants_coarser_mesh(const Step &step)
   {
     constexpr unsigned int most_joins_every = 10;
-    if (!is_adaptive() || run_->request != Request::none || step.number == 0 || step.number % most_joins_every != 0 ||
-        step.time >= 1.)
-      return;
+    if (!is_adaptive() || step.number == 0 || step.number % most_joins_every != 0 || step.time >= 1.)
+      return false;
     run_->changes = mark_for_joining(run_->indicators, *mesh_.discretization, numerics_.mesh);
-    if (!run_->changes.empty())
-      run_->request = Request::mesh;
+    return !run_->changes.empty();
   }
 } // namespace crawler

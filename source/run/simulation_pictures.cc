@@ -9,27 +9,24 @@
 namespace crawler
 {
   /// An accepted step: examined, and shown to the observers if its state may be used.
-  bool
-  Simulation::sees(const Step &step,
-                   const std::span<const double> y,
-                   const std::vector<std::unique_ptr<Observer>> &observers)
+  Simulation::Ending
+  Simulation::see(const Step &step, const std::span<const double> y)
   {
-    const bool is_good  = examine(step, y);
+    Ending ending       = examine(step, y);
     const double before = now();
-    bool is_shown       = is_good && show_pictures_within(step, step.time, observers);
-    if (is_shown)
-      show_step(step, y, observers);
-    else if (!observers.empty() && run_->diagnosis && run_->diagnosis->status == Status::inverted)
-      show_pictures_before_inversion(step, observers);
+    if (ending == Ending::none && !show_pictures_within(step, step.time))
+      ending = Ending::lost;
+    if (ending == Ending::none)
+      show_step(step, y);
+    else if (!run_->observers.empty() && run_->diagnosis && run_->diagnosis->status == Status::inverted)
+      show_pictures_before_inversion(step);
     result().output_seconds += now() - before;
-    return is_shown;
+    return ending;
   }
 
   /// The end of a step, or the initial state, with v_ and what run_ has of it.
   void
-  Simulation::show_step(const Step &step,
-                        const std::span<const double> y,
-                        const std::vector<std::unique_ptr<Observer>> &observers)
+  Simulation::show_step(const Step &step, const std::span<const double> y)
   {
     const bool is_picture = run_->output_times.next() <= step.time + least_time_between_breaks;
     const EnergyBalance none;
@@ -40,8 +37,7 @@ namespace crawler
           run_->stretch,
           result().energy_balance ? *result().energy_balance : none,
           /*is_step_end=*/true,
-          is_picture ? &run_->output_times.picture() : nullptr},
-         observers);
+          is_picture ? &run_->output_times.picture() : nullptr});
     if (is_picture)
       run_->output_times.pass();
   }
@@ -49,9 +45,7 @@ namespace crawler
   /// The pictures within the step that has just been made, before the time @p until. Returns false if one of these
   /// states has no velocity.
   bool
-  Simulation::show_pictures_within(const Step &step,
-                                   const double until,
-                                   const std::vector<std::unique_ptr<Observer>> &observers)
+  Simulation::show_pictures_within(const Step &step, const double until)
   {
     for (; run_->output_times.next() < until - least_time_between_breaks; run_->output_times.pass())
     {
@@ -82,8 +76,7 @@ namespace crawler
             stretch,
             energies,
             /*is_step_end=*/false,
-            &run_->output_times.picture()},
-           observers);
+            &run_->output_times.picture()});
     }
     return true;
   }
@@ -91,7 +84,7 @@ namespace crawler
   /// The step has lost the body's stretch, but the dense output that told when knows what was before, too. The works
   /// until then follow from some times, since the stages may be later.
   void
-  Simulation::show_pictures_before_inversion(const Step &step, const std::vector<std::unique_ptr<Observer>> &observers)
+  Simulation::show_pictures_before_inversion(const Step &step)
   {
     const Diagnosis inverted = *run_->diagnosis;
     // What an end prescribes may be known to come a little later than the step ends.
@@ -112,13 +105,13 @@ namespace crawler
                                    rates(t, mesh_.assembler->integrals(t, y_inside_, v_inside_), y_inside_, v_inside_));
       }
     }
-    show_pictures_within(step, end, observers);
+    show_pictures_within(step, end);
     run_->diagnosis = inverted;
   }
 
   /// The active stress has just jumped: the row of the kymograph at this time, once more, since a jump is not a ramp.
   void
-  Simulation::show_row_after_jump(const std::vector<std::unique_ptr<Observer>> &observers)
+  Simulation::show_row_after_jump()
   {
     const double t                    = run_->accepted.time;
     const PictureTimes::Time *picture = run_->output_times.passed_at(t);
@@ -136,15 +129,14 @@ namespace crawler
           run_->stretch,
           result().energy_balance ? *result().energy_balance : none,
           /*is_step_end=*/false,
-          &row},
-         observers);
+          &row});
     result().output_seconds += now() - before;
   }
 
   void
-  Simulation::show(const Shown &shown, const std::vector<std::unique_ptr<Observer>> &observers)
+  Simulation::show(const Shown &shown)
   {
-    if (observers.empty())
+    if (run_->observers.empty())
       return;
     Step physical = shown.step;
     // Pictures are shown as they were asked for, exactly.
@@ -161,7 +153,7 @@ namespace crawler
     sums.abs_friction *= units_.force;
     const StretchRange range{{shown.stretch.min.value, shown.stretch.min.s * units_.length},
                              {shown.stretch.max.value, shown.stretch.max.s * units_.length}};
-    for (const auto &observer : observers)
+    for (const auto &observer : run_->observers)
       observer->observe({physical,
                          shown.is_step_end,
                          /*is_in_lost_step=*/run_->diagnosis.has_value(),

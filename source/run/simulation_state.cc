@@ -23,13 +23,13 @@ namespace crawler
     constexpr double nearly_zero              = 1e-6;
   } // namespace
 
-  /// Looks at a state that the time stepper has accepted; returns false if it must not be used.
-  bool
+  /// Looks at a state that the time stepper has accepted; and says why the run ends if it must not be used.
+  Simulation::Ending
   Simulation::examine(const Step &step, const std::span<const double> y)
   {
     if (stress_failed())
-      return false;
-    const bool lanes_look = !run_->has_observers && takes_looks_of_lanes(step);
+      return Ending::lost;
+    const bool lanes_look = run_->observers.empty() && takes_looks_of_lanes(step);
     StretchRange &stretch = run_->stretch = lanes_look ? stretch_of_lanes() : mesh_.assembler->stretch_range(y);
     if (!std::isfinite(stretch.min.value) || !std::isfinite(stretch.max.value))
     {
@@ -38,30 +38,35 @@ namespace crawler
                          fmt::format("the stretch at s = {:.6g}, t = {:.6g} is not a finite number",
                                      stretch.min.s * units_.length,
                                      step.time * units_.time)};
-      return false;
+      return Ending::lost;
     }
-    if (end_inverts(step.time - step.size, step.time) || passed_over_event(step))
-      return false;
+    if (end_inverts(step.time - step.size, step.time))
+      return Ending::lost;
+    // What the active stress did within the step its ends do not show: it is made again, by shorter ones.
+    if (run_->limiter.passed_over_event(step.time - step.size, step.time))
+      return Ending::retry;
     if (stretch.min.value <= lost_stretch())
     {
       // A mesh that is too coarse can lose it, too, so that is mended first.
-      if (!is_adaptive() || !mesh_.velocity->compute(step.time, step.size, y, v_) || mesh_is_good(step, y))
-        locate_inversion(step);
-      return false;
+      if (is_adaptive() && mesh_.velocity->compute(step.time, step.size, y, v_) && !mesh_is_good(step, y))
+        return Ending::mesh;
+      locate_inversion(step);
+      return Ending::lost;
     }
     // Pictures need the velocity at output times only, the energy balance and adaptive meshes always.
-    const bool is_shown = run_->has_observers && run_->output_times.next() <= step.time + least_time_between_breaks;
+    const bool is_shown =
+      !run_->observers.empty() && run_->output_times.next() <= step.time + least_time_between_breaks;
     if ((run_->options.energy_balance || is_adaptive() || is_shown) && !lanes_look &&
         !finds_velocity(step.time, step.size, y, v_))
-      return false;
+      return Ending::lost;
     if (is_adaptive() && !mesh_is_good(step, y))
-      return false;
+      return Ending::mesh;
     if (lanes_look)
       take_looks_of_lanes(step);
     else
     {
       if (!compute_integrals(step, y))
-        return false;
+        return Ending::lost;
       if (takes_looks_of_lanes(step))
         see_stretch_of_lanes(integrators_.lanes->tables().setup.n_stages - 1);
       else
@@ -70,12 +75,12 @@ namespace crawler
     if (run_->options.resolution != ResolutionWish::none)
       look_at_resolution(step, y);
     if (leads_nowhere(step))
-      return false;
+      return Ending::lost;
     keep_history(step, y);
     run_->accepted.y.assign(y.begin(), y.end());
     run_->accepted.time     = step.time;
     run_->accepted.is_there = true;
-    return true;
+    return Ending::none;
   }
 
   /// The velocity of a state, or the diagnosis why there is none.
@@ -96,17 +101,6 @@ namespace crawler
         Status::failed,
         "linear_failed",
         fmt::format("the velocity at t = {:.6g} cannot be computed: the friction matrix is singular", t * units_.time)};
-  }
-
-  /// Did the active stress do something within the step that its ends do not show? Then the step is made again, by
-  /// shorter ones.
-  bool
-  Simulation::passed_over_event(const Step &step)
-  {
-    if (!run_->limiter.passed_over_event(step.time - step.size, step.time))
-      return false;
-    run_->request = Request::retry;
-    return true;
   }
 
   void
@@ -236,7 +230,7 @@ namespace crawler
   bool
   Simulation::compute_integrals(const Step &step, const std::span<const double> y)
   {
-    if (!run_->options.energy_balance && !run_->has_observers)
+    if (!run_->options.energy_balance && run_->observers.empty())
       return true;
     const CellIntegrals &integrals = run_->integrals = mesh_.assembler->integrals(step.time, y, v_);
     result().displacement                            = integrals.displacement;

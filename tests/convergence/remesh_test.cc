@@ -33,7 +33,7 @@ namespace
 
     std::unique_ptr<Discretization> mesh;
     std::unique_ptr<PositionForm> form;
-    TimeStepper stepper;
+    PetscStepper stepper;
   };
 
   /// What a run took, its interruptions included.
@@ -59,12 +59,15 @@ namespace
     double time = 0., size = first_step;
     for (;;)
     {
-      part->stepper.monitor     = [&](const Step &step, auto) { return step.number < steps_on_a_mesh; };
-      const TimeOutcome outcome = part->stepper.solve(y, {}, tolerance, size, {}, time);
+      part->stepper.begin(y, {time, {1.}, tolerance, size, {}});
+      for (const Step *step = part->stepper.next(); step != nullptr && step->number < steps_on_a_mesh;)
+        step = part->stepper.next();
+      y.assign(part->stepper.state().begin(), part->stepper.state().end());
+      const TimeOutcome outcome = part->stepper.outcome();
       count.steps += outcome.steps;
       count.rejected += outcome.rejected_steps;
       count.newton_iterations += outcome.newton_iterations;
-      if (outcome.status != Status::stopped)
+      if (outcome.status != Status::none)
       {
         EXPECT_EQ(outcome.status, Status::finished) << name;
         const std::vector<double> at_rest(part->mesh->n_owned(), 0.);

@@ -59,7 +59,7 @@ namespace
     std::vector<Seen> &seen_;
   };
 
-  struct Course
+  struct Compared
   {
     SimulationResult result;
     NumericsChoice choice;
@@ -76,12 +76,12 @@ namespace
   };
 
   /// As `crawler run` does it, but for the error bound.
-  Course
+  Compared
   run(const Settings &settings, const std::optional<Numerics> &numerics = {}, const bool has_pictures = true)
   {
     const Parameters parameters = test::parameters_with(settings);
     const Scene scene           = parameters.create_scene();
-    Course run;
+    Compared run;
     run.choice = *choose_numerics(MPI_COMM_SELF, parameters, scene);
     prepare_for_pictures(run.choice, parameters);
     if (numerics)
@@ -119,7 +119,7 @@ TEST(Pictures, ChangeNeitherStepsNorResults)
 {
   for (Settings settings : {test::wave(-1., 0.4), test::wave(2., 0.2, 1., 3.), robot(1.)})
   {
-    const Course with = run(settings), without = run(settings, with.choice.numerics, /*has_pictures=*/false);
+    const Compared with = run(settings), without = run(settings, with.choice.numerics, /*has_pictures=*/false);
     EXPECT_EQ(with.result.displacement, without.result.displacement);
     EXPECT_EQ(with.result.time.steps, without.result.time.steps);
     EXPECT_EQ(with.result.energy_balance->dissipation, without.result.energy_balance->dissipation);
@@ -142,10 +142,10 @@ TEST(Pictures, AreAsAccurateAsWanted)
     {
       Settings settings = scene;
       settings.emplace_back("Accuracy", accuracy);
-      const Course coarse = run(settings);
-      Numerics fine       = coarse.choice.numerics;
-      fine.tolerance      = 1e-4 * fine.tolerance;
-      const Course exact  = run(settings, fine);
+      const Compared coarse = run(settings);
+      Numerics fine         = coarse.choice.numerics;
+      fine.tolerance        = 1e-4 * fine.tolerance;
+      const Compared exact  = run(settings, fine);
       const auto some = coarse.pictures(), all = exact.pictures();
       ASSERT_EQ(some.size(), all.size());
       double u = 0., v = 0., largest_v = 0., dissipation = 0., residual = 0.;
@@ -183,8 +183,8 @@ TEST(Pictures, AreAsAccurateAsWanted)
 /// A row on each side of each jump of the active stress, with its two values and the same stretch.
 TEST(Pictures, ShowBothSidesOfAJump)
 {
-  const Course robots = run(robot(1.));
-  unsigned int n      = 0;
+  const Compared robots = run(robot(1.));
+  unsigned int n        = 0;
   for (std::size_t i = 1; i < robots.seen.size(); ++i)
   {
     const Seen &before = robots.seen[i - 1], &after = robots.seen[i];
@@ -202,7 +202,7 @@ TEST(Pictures, AreThereUntilTheBodyInverts)
 {
   Settings settings = test::wave(1., 0.9);
   settings.emplace_back("Output/Number of snapshots", "200");
-  const Course lost = run(settings);
+  const Compared lost = run(settings);
   ASSERT_EQ(lost.result.time.status, Status::inverted);
   ASSERT_TRUE(lost.result.inversion);
   const Seen last = lost.pictures().back(); // a copy: the pictures are a temporary

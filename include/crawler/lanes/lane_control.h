@@ -29,7 +29,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   struct Lane : LaneProgress
   {
     LaneJob job;
-    bool busy = false, iterating = false, failed = false, accepted = false;
+    bool busy = false, is_idle = false; ///< has a body, or there is none left for it
+    bool iterating = false, failed = false, accepted = false;
     double error = 0.; ///< of the step, relative to the tolerance
 
     /// The size wanted, but steps end at output times.

@@ -121,7 +121,7 @@ namespace crawler
     double end_stretch[2], end_rate[2];
   };
 
-  /// An accepted step of a lane. The pointers are good until the host returns; element i is at [i*stride].
+  /// An accepted step of a lane. The pointers are good until the next advance(); element i is at [i*stride].
   struct LaneStep
   {
     double time, size;
@@ -230,9 +230,13 @@ namespace crawler
   {
     const char *instruction_set;
     unsigned int lanes;
-    /// Doubles of scratch memory that run() needs, aligned to 64 bytes.
+    /// Doubles of memory that start() and advance() need, aligned to 64 bytes.
     std::size_t (*memory)(const LaneSetup &setup);
-    void (*run)(const LaneSetup &setup, const LaneHost &host, double *memory);
+    /// Begins with the bodies of a host. All that is given must outlive the last advance().
+    void (*start)(const LaneSetup &setup, const LaneHost &host, double *memory);
+    /// Tries one step of all bodies in the lanes, after lanes without a body took the next one; false if there is none
+    /// left. What the host got to see of a step is good until then.
+    bool (*advance)(const LaneSetup &setup, double *memory);
     /// The same for the adjoint of runs in the position form.
     std::size_t (*adjoint_memory)(const LaneSetup &setup);
     void (*adjoint)(const LaneSetup &setup, const LaneAdjointHost &host, double *memory);

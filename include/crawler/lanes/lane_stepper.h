@@ -4,7 +4,7 @@
 #include <crawler/equation/stretch_form.h>
 #include <crawler/lanes/host_laws.h>
 #include <crawler/lanes/lane_tables.h>
-#include <crawler/time/time_integration.h>
+#include <crawler/time/stepper.h>
 
 namespace crawler
 {
@@ -13,7 +13,7 @@ namespace crawler
    * it cannot solve it gives up, with the reason `gave_up` and the last accepted state: then the time stepper of PETSc
    * goes on from there, or finds out what is wrong.
    */
-  class LaneStepper : public TimeIntegration
+  class LaneStepper : public Stepper
   {
   public:
     static constexpr const char *gave_up = "gave_up";
@@ -21,29 +21,33 @@ namespace crawler
     /// @p scene is in natural units; it must fit (fits_lanes, reason_against_stretch_form) and outlive the stepper.
     LaneStepper(const Scene &scene, const LaneMethod &method);
 
+    void
+    begin(ConstVector y, const Course &course) override;
+    const Step *
+    next() override;
+    ConstVector
+    state() const override
+    {
+      return y_;
+    }
     TimeOutcome
-    solve(std::vector<double> &y,
-          const std::vector<double> &output_times,
-          double tolerance,
-          double initial_step,
-          std::span<const StepLimit> limits,
-          double start_time) override;
+    outcome() override;
     void
     interpolate(double time, Vector y) override;
     bool
     exchange(Archive &archive) override;
 
-    /// Is what the stages of the position form give wanted (LaneStage)? For the next solve().
+    /// Is what the stages of the position form give wanted (LaneStage)? From the next begin() on.
     void
     look_inside(const bool wanted)
     {
       looks_inside_ = wanted;
     }
-    /// Within the monitor: the step that has just been accepted.
+    /// The last step, until the next one.
     const LaneStep &
-    step() const
+    lane_step() const
     {
-      return step_;
+      return lane_step_;
     }
     const LaneTables &
     tables() const
@@ -51,7 +55,7 @@ namespace crawler
       return tables_;
     }
 
-    /// Stretch and friction where a friction law was not positive, of the last solve(), if one was not.
+    /// Stretch and friction where a friction law was not positive, since begin(), if one was not.
     const std::optional<std::pair<double, double>> &
     bad_friction() const
     {
@@ -60,7 +64,7 @@ namespace crawler
 
   private:
     static bool
-    next(void *context, unsigned int lane, LaneJob &job);
+    take(void *context, unsigned int lane, LaneJob &job);
     static void
     stress(void *context, unsigned int lane, double t, double *m);
     static bool
@@ -84,15 +88,17 @@ namespace crawler
     const std::unique_ptr<ActiveStressAtPoints> stress_;
     LaneStorage memory_;
 
-    // The state of one solve().
+    // Since begin().
     std::optional<std::pair<double, double>> bad_friction_;
+    Course course_;
     LaneJob job_;
-    bool started_ = false, looks_inside_ = false, goes_on_ = false;
+    LaneHost host_{};
+    bool started_ = false, looks_inside_ = false, goes_on_ = false, has_step_ = false;
     LaneProgress progress_; ///< if it goes on, and the last step's stages:
     std::vector<double> old_z_;
-    std::vector<double> *y_ = nullptr;
-    LaneStep step_;
-    TimeOutcome outcome_;
-    std::vector<double> output_times_, rate_;
+    std::vector<double> y_, rate_;
+    LaneStep lane_step_;
+    Step step_;
+    std::optional<TimeOutcome> end_; ///< if it has ended
   };
 } // namespace crawler

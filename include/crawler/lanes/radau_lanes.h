@@ -26,6 +26,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static constexpr int lanes = PackTraits<Pack>::size, pairs = (s - 1) / 2, middle = s / 2;
     using Number = Complex<Pack>;
 
+    /// @p host and @p setup must outlive it.
     RadauLanes(const LaneSetup &setup, const LaneHost &host, double *memory)
       : setup_(setup)
       , host_(host)
@@ -44,27 +45,36 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     memory(const LaneSetup &setup)
     {
       const LaneHost none{};
-      return RadauLanes(setup, none, nullptr).memory_.size();
+      return own_size() + RadauLanes(setup, none, nullptr).memory_.size();
     }
 
-    void
-    run()
+    /// Makes one at the beginning of @p memory, which holds all that it needs.
+    static void
+    start(const LaneSetup &setup, const LaneHost &host, double *memory)
+    {
+      new (memory) RadauLanes(setup, host, memory + own_size());
+    }
+
+    /// Tries a step of all bodies, after lanes that have none took one; false if there is none left.
+    bool
+    advance()
     {
       for (int l = 0; l < lanes; ++l)
-        take_next(l);
-      while (any(lanes_, &Lane::busy))
-      {
-        if (friction_changed_)
-          system_.sort_bodies();
-        friction_changed_ = false;
-        begin_step();
-        guess();
-        states_.go_to_stage(middle, inverse_h_);
-        system_.factorize(times_[middle], states_.u, states_.v, m_ + middle * n_points_, inverse_h_);
-        newton();
-        estimate_error();
-        decide();
-      }
+        if (!lanes_[l].busy && !lanes_[l].is_idle)
+          take_next(l);
+      if (!any(lanes_, &Lane::busy))
+        return false;
+      if (friction_changed_)
+        system_.sort_bodies();
+      friction_changed_ = false;
+      begin_step();
+      guess();
+      states_.go_to_stage(middle, inverse_h_);
+      system_.factorize(times_[middle], states_.u, states_.v, m_ + middle * n_points_, inverse_h_);
+      newton();
+      estimate_error();
+      decide();
+      return true;
     }
 
   private:
@@ -86,10 +96,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     take_next(const int l)
     {
-      Lane &lane = lanes_[l];
-      lane       = Lane();
-      lane.busy  = host_.next(host_.context, static_cast<unsigned int>(l), lane.job);
-      if (!lane.busy)
+      Lane &lane   = lanes_[l];
+      lane         = Lane();
+      lane.busy    = host_.next(host_.context, static_cast<unsigned int>(l), lane.job);
+      lane.is_idle = !lane.busy;
+      if (lane.is_idle)
         lane.job = {1., 0., 1., 1., 1., nullptr, 0, 0, 0., false, 0., nullptr, nullptr, 0, nullptr};
       lane.t    = lane.job.start_time;
       lane.next = lane.job.initial_step;
@@ -350,7 +361,20 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         host_.context,
         static_cast<unsigned int>(l),
         {status, lane.t, lane.next, lane.steps, lane.rejected, lane.newton, get_lane(system_.integral(states_.y), l)});
-      take_next(l);
+      lanes_[l].busy = false;
+    }
+
+    /// Doubles that the object itself takes.
+    static std::size_t
+    own_size()
+    {
+      return (sizeof(RadauLanes) + 63) / 64 * 8;
+    }
+
+    static void *
+    operator new(std::size_t, void *place)
+    {
+      return place;
     }
 
     const LaneSetup &setup_;

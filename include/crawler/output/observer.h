@@ -5,7 +5,7 @@
 #include <crawler/equation/assembler.h>
 #include <crawler/equation/energy_balance.h>
 #include <crawler/output/picture_times.h>
-#include <crawler/time/time_stepper.h>
+#include <crawler/time/stepper.h>
 
 namespace crawler
 {

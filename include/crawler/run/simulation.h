@@ -14,7 +14,7 @@
 #include <crawler/run/run_journal.h>
 #include <crawler/run/state_velocity.h>
 #include <crawler/run/step_limiter.h>
-#include <crawler/time/time_stepper.h>
+#include <crawler/time/petsc_stepper.h>
 
 #include <functional>
 #include <memory>
@@ -32,8 +32,9 @@ namespace crawler
   class Simulation
   {
   public:
-    using GaitWish = crawler::GaitWish;
-    using Options  = RecordOptions;
+    using GaitWish  = crawler::GaitWish;
+    using Options   = RecordOptions;
+    using Observers = std::vector<std::unique_ptr<Observer>>;
 
     Simulation(MPI_Comm communicator, const Scene &scene, const TimeParameters &time, const Numerics &numerics);
     ~Simulation();
@@ -44,8 +45,8 @@ namespace crawler
     SimulationResult
     run(const PictureTimes &pictures,
         const Options &options,
-        const std::vector<std::unique_ptr<Observer>> &observers = {},
-        const KeepGoing &keep_going                             = {});
+        const Observers &observers  = {},
+        const KeepGoing &keep_going = {});
 
     /// The present mesh, of length 1.
     const Discretization &
@@ -60,13 +61,17 @@ namespace crawler
     }
 
   private:
-    /// Why a run is interrupted.
-    enum class Request
+    /// Why a part of a run ends.
+    enum class Ending
     {
-      none,
-      mesh,   ///< change the mesh
-      retry,  ///< the active stress did something within the step
-      restart ///< the active stress jumps
+      none,    ///< it does not
+      stepper, ///< there is no other step: at the end time, or where the integration failed
+      lost,    ///< the state must not be used, and the diagnosis says why
+      cycles,  ///< they repeat
+      stopped, ///< on request
+      mesh,    ///< the mesh has to be changed
+      retry,   ///< the active stress did something within the step
+      jump     ///< the active stress jumps
     };
 
     /// The equation on the present mesh.
@@ -84,9 +89,9 @@ namespace crawler
     /// Who integrates; built when they are needed.
     struct Integrators
     {
-      std::unique_ptr<TimeStepper> petsc;
+      std::unique_ptr<PetscStepper> petsc;
       std::unique_ptr<LaneStepper> lanes;
-      TimeIntegration *present = nullptr; ///< one of them
+      Stepper *present = nullptr; ///< one of them
     };
 
     /// What a feedback with delay sees.
@@ -121,32 +126,31 @@ namespace crawler
     /// One run().
     struct Run
     {
-      Run(const Options &options, bool has_observers, Recorder recorder, OutputTimes output_times, StepLimiter limiter);
-
-      const Options options;
-      const bool has_observers;
+      Options options;
+      const Observers &observers;
+      const KeepGoing &keep_going;
+      RunJournal *journal; ///< null: there is none
       Recorder recorder;
       OutputTimes output_times;
       StepLimiter limiter;
-      Accepted accepted;
+      Accepted accepted = {};
       StretchRange stretch{};     ///< of the state that is looked at
       std::vector<double> breaks; ///< in space
       CellIntegrals integrals{};
-      bool lanes_look    = false; ///< what they see in the stages of steps is taken
-      bool lanes_gave_up = false;
-      RateQuadrature quadrature;    ///< of works
-      EnergyBalance balance_before; ///< at the start of the latest step
-      Resolution largest{};         ///< over time, if looked at
-      TimeOutcome before{};         ///< counts of the parts of the run before the last change of mesh
-      Step latest{};                ///< that was tried, with the counts of the whole run
-      std::optional<Diagnosis> diagnosis;
-      Request request         = Request::none;
-      unsigned int tiny_steps = 0;
-      std::vector<CellChange> changes;
-      std::vector<double> indicators;   ///< of all cells, for the present state of an adaptive mesh
-      unsigned long n_failures = 0;     ///< of the active stress before this run
-      double part_start        = 0.;    ///< where the present integrator has started
-      bool goes_on             = false; ///< within a part that was left
+      bool lanes_look              = false; ///< what they see in the stages of steps is taken
+      bool lanes_gave_up           = false;
+      RateQuadrature quadrature    = {}; ///< of works
+      EnergyBalance balance_before = {}; ///< at the start of the latest step
+      Resolution largest{};              ///< over time, if looked at
+      TimeOutcome before{};              ///< counts of the parts of the run before the last change of mesh
+      Step latest{};                     ///< that was tried, with the counts of the whole run
+      std::optional<Diagnosis> diagnosis = {};
+      unsigned int tiny_steps            = 0;
+      std::vector<CellChange> changes    = {};
+      std::vector<double> indicators     = {};    ///< of all cells, for the present state of an adaptive mesh
+      unsigned long n_failures           = 0;     ///< of the active stress before this run
+      double part_start                  = 0.;    ///< where the present integrator has started
+      bool goes_on                       = false; ///< within a part that was left
     };
 
     void
@@ -174,11 +178,11 @@ namespace crawler
     settle();
     bool
     stress_failed();
-    bool
-    sees(const Step &step, std::span<const double> y, const std::vector<std::unique_ptr<Observer>> &observers);
-    bool
-    may_end_after(const Step &step, std::span<const double> y);
-    bool
+    Ending
+    see(const Step &step, std::span<const double> y);
+    Ending
+    ending_after(const Step &step, std::span<const double> y);
+    Ending
     examine(const Step &step, std::span<const double> y);
     bool
     finds_velocity(double t, double size, std::span<const double> y, std::vector<double> &v);
@@ -190,8 +194,6 @@ namespace crawler
     leads_nowhere(const Step &step);
     bool
     mesh_is_good(const Step &step, std::span<const double> y);
-    bool
-    passed_over_event(const Step &step);
     bool
     compute_integrals(const Step &step, std::span<const double> y);
     Rates
@@ -214,8 +216,8 @@ namespace crawler
     keep_history(const Step &step, std::span<const double> y);
     void
     look_at_extremes(double t, const StretchRange &range);
-    void
-    look_for_coarser_mesh(const Step &step);
+    bool
+    wants_coarser_mesh(const Step &step);
     double
     lost_stretch() const;
     bool
@@ -233,17 +235,23 @@ namespace crawler
     void
     under_resolved(double value, double s, double t);
     TimeOutcome
-    integrate(const std::vector<std::unique_ptr<Observer>> &observers, const KeepGoing &keep_going);
+    integrate();
+    Ending
+    integrate_part();
+    Ending
+    look_at(const Step &part, const Step &step);
+    Step
+    with_counts_before(Step step) const;
     TimeOutcome
-    integrate_part(const std::vector<std::unique_ptr<Observer>> &observers, const KeepGoing &keep_going);
+    outcome_of_parts() const;
     bool
-    goes_on_after(TimeOutcome &outcome);
+    goes_on_after(Ending ending, TimeOutcome &outcome);
     TimeOutcome
     failure_while_integrating();
     std::string
-    identity(const Options &options, bool has_observers) const;
+    identity(const Options &options, bool has_pictures) const;
     void
-    exchange(Archive &archive, const std::vector<std::unique_ptr<Observer>> &observers);
+    exchange(Archive &archive);
     void
     exchange_mesh(Archive &archive);
     std::string
@@ -251,14 +259,11 @@ namespace crawler
     std::string
     own_part(const std::string &together) const;
     void
-    take_up(const RunJournal &journal, const std::vector<std::unique_ptr<Observer>> &observers);
+    take_up();
     void
-    keep_state(RunJournal &journal,
-               bool stops,
-               const Step &step,
-               const std::vector<std::unique_ptr<Observer>> &observers);
+    keep_state(bool stops, const Step &step);
     SimulationResult
-    finish(const std::vector<std::unique_ptr<Observer>> &observers);
+    finish();
     /// A state that observers see.
     struct Shown
     {
@@ -271,15 +276,15 @@ namespace crawler
       const PictureTimes::Time *picture; ///< null: it is none
     };
     void
-    show_step(const Step &step, std::span<const double> y, const std::vector<std::unique_ptr<Observer>> &observers);
+    show_step(const Step &step, std::span<const double> y);
     bool
-    show_pictures_within(const Step &step, double until, const std::vector<std::unique_ptr<Observer>> &observers);
+    show_pictures_within(const Step &step, double until);
     void
-    show_pictures_before_inversion(const Step &step, const std::vector<std::unique_ptr<Observer>> &observers);
+    show_pictures_before_inversion(const Step &step);
     void
-    show_row_after_jump(const std::vector<std::unique_ptr<Observer>> &observers);
+    show_row_after_jump();
     void
-    show(const Shown &shown, const std::vector<std::unique_ptr<Observer>> &observers);
+    show(const Shown &shown);
     SimulationResult &
     result()
     {

@@ -9,7 +9,7 @@
 #include <crawler/run/displacement_error.h>
 #include <crawler/run/gait.h>
 #include <crawler/run/number_errors.h>
-#include <crawler/time/time_integration.h>
+#include <crawler/time/stepper.h>
 
 #include <limits>
 #include <optional>

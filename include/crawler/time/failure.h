@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/time/time_integration.h>
+#include <crawler/time/stepper.h>
 
 #include <exception>
 

@@ -31,7 +31,7 @@ namespace crawler
   PetscErrorCode
   radau_get_stages(TS ts, unsigned int *n_stages);
 
-  /// What the type knows between two steps besides the solution, for TimeIntegration::exchange().
+  /// What the type knows between two steps besides the solution, for Stepper::exchange().
   void
   radau_exchange(TS ts, Archive &archive);
 } // namespace crawler

@@ -12,7 +12,7 @@
 
 namespace crawler
 {
-  /// An accepted step, as the monitor sees it.
+  /// An accepted step.
   struct Step
   {
     double time;
@@ -30,7 +30,7 @@ namespace crawler
     finished,
     inverted, ///< the body did, where the model ends
     failed,
-    stopped ///< on request, by the monitor or a limit
+    stopped ///< on request, or by a limit
   };
   template <>
   struct Words<Status>
@@ -46,7 +46,7 @@ namespace crawler
     std::string message;
     bool domain_error  = false; ///< failed because every state tried was refused
     double time        = 0.;    ///< of the last accepted state
-    double step_size   = 0.;    ///< that was tried last; if the monitor stopped: that would come next
+    double step_size   = 0.;    ///< that was tried last; without a status: that would come next
     unsigned int steps = 0, rejected_steps = 0;
     unsigned long newton_iterations = 0, linear_iterations = 0;
 
@@ -58,46 +58,54 @@ namespace crawler
     }
   };
 
-  /// Integrates a state over time: by PETSc (time_stepper.h) or by the fused engine (lanes/lane_stepper.h).
-  class TimeIntegration
+  /// An integration over time: where it starts and ends, and how exact it is.
+  struct Course
+  {
+    double start;                      ///< [time]
+    std::vector<double> ends;          ///< ascending times behind it where steps end exactly; the last one is the end
+    double tolerance;                  ///< of the error of a step [the unit of y]
+    double initial_step;               ///< [time]
+    std::span<const StepLimit> limits; ///< of adaptive steps; must outlive the integration
+  };
+
+  /// Integrates a state over time, step by step: by PETSc (petsc_stepper.h) or by the fused engine
+  /// (lanes/lane_stepper.h).
+  class Stepper
   {
   public:
     using Vector      = std::span<double>;
     using ConstVector = std::span<const double>;
 
-    virtual ~TimeIntegration() = default;
+    virtual ~Stepper() = default;
 
-    /// Sees the initial state and each accepted one; false stops the integration.
-    std::function<bool(const Step &step, ConstVector y)> monitor;
-
-    /// If set: sees the rates y' in the stages of each step before the monitor sees the step. PETSc shows those of
-    /// every residual; the last one of a time counts.
+    /// If set: sees the rates y' in the stages of each step before next() returns it. PETSc shows those of every
+    /// residual; the last one of a time counts.
     std::function<void(double time, ConstVector y_dot)> stage_rates;
 
-    /**
-     * Integrates from @p start_time to the end time. @p y is the first state on entry and the last accepted
-     * state on return. Steps end exactly on @p output_times (ascending, within (start_time, end_time]) and on the end
-     * time. The same object can solve again and again; that costs microseconds. @p tolerance [the unit of y] and @p
-     * initial_step [time] replace the parameters' automatic values. Adaptive steps keep the @p limits.
-     */
-    virtual TimeOutcome
-    solve(std::vector<double> &y,
-          const std::vector<double> &output_times,
-          double tolerance,
-          double initial_step,
-          std::span<const StepLimit> limits,
-          double start_time) = 0;
+    /// Starts from the state @p y. The same object can begin again and again; that costs microseconds.
+    virtual void
+    begin(ConstVector y, const Course &course) = 0;
 
-    /// Within the monitor: the state at a time of the step that has just been accepted, by the integrator's own
-    /// interpolation.
+    /// Makes the next step; null at the end of the course, or if there is none. Throws what the system throws.
+    virtual const Step *
+    next() = 0;
+
+    /// Behind the last step that was made.
+    virtual ConstVector
+    state() const = 0;
+
+    /// How the integration ended; without a status if it did not. The counts are those since begin().
+    virtual TimeOutcome
+    outcome() = 0;
+
+    /// The state at a time of the last step, by the integrator's own interpolation.
     virtual void
     interpolate(double time, Vector y) = 0;
 
     /**
-     * All that solve() knows between two steps besides its arguments, if the integrator can tell. Written within the
-     * monitor; read before a solve() with the same arguments, but with the state of then as @p y, which goes on from
-     * there as if it had not been left. Returns false, and does nothing, if it cannot: then a run has to start anew at
-     * that state.
+     * All that is known between two steps besides the course. Read before begin() with the same course, but with the
+     * state of then as y, which goes on from there as if it had not been left. Returns false, and does nothing, if the
+     * integrator cannot tell: then a run has to start anew at that state.
      */
     virtual bool
     exchange(Archive &)

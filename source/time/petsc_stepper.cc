@@ -3,16 +3,17 @@
 #include <crawler/base/petsc_object.h>
 #include <crawler/base/petsc_releases.h>
 #include <crawler/time/integrators.h>
+#include <crawler/time/petsc_stepper.h>
 #include <crawler/time/radau.h>
 #include <crawler/time/radau_loops.h>
 #include <crawler/time/radau_tableau.h>
-#include <crawler/time/time_stepper.h>
 #include <crawler/time/vec_access.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <petsc/private/tsimpl.h>
 #include <set>
 
 namespace crawler
@@ -38,11 +39,14 @@ namespace crawler
   } // namespace
 
 
-  struct TimeStepper::Implementation
+  struct PetscStepper::Implementation
   {
-    Implementation(TimeStepper &owner, MPI_Comm communicator, ImplicitSystem &system, const TimeParameters &parameters);
+    Implementation(PetscStepper &owner,
+                   MPI_Comm communicator,
+                   ImplicitSystem &system,
+                   const TimeParameters &parameters);
 
-    TimeStepper &owner;
+    PetscStepper &owner;
     ImplicitSystem &system;
     const TimeParameters parameters;
 
@@ -51,13 +55,15 @@ namespace crawler
     PetscOwner<Mat> jacobian;
     PetscOwner<TS> ts;
 
-    // The state of one solve().
-    std::vector<double> output_times;
-    std::size_t next_output_time = 0;
-    double tolerance             = 0.;
-    double fixed_step            = 0.;
-    bool stopped                 = false;
-    std::optional<Archive> goes_on; ///< where solve() is to go on
+    // Since begin().
+    std::vector<double> ends; ///< of the course
+    std::size_t next_end = 0;
+    double tolerance     = 0.;
+    double fixed_step    = 0.;
+    Step step{};
+    std::vector<double> y;          ///< behind it
+    std::optional<TimeOutcome> end; ///< if it has ended
+    std::optional<Archive> goes_on; ///< where begin() is to go on
     bool jacobian_ok    = true;
     double refused_at   = -1.; ///< time of the last state that was refused
     double nonfinite_at = -1.; ///< time of the last residual that was not a finite number
@@ -79,10 +85,18 @@ namespace crawler
     apply_user_options();
     void
     use_krylov_method();
-    bool
-    report(double time, double size);
+    void
+    choose_step();
+    PetscErrorCode
+    make_step();
+    const Step *
+    arrive();
+    void
+    show();
     TimeOutcome
-    outcome(PetscErrorCode code);
+    counts() const;
+    TimeOutcome
+    failure(PetscErrorCode code);
 
     static PetscErrorCode
     function(TS ts, PetscReal t, Vec y, Vec y_dot, Vec F, void *context);
@@ -102,16 +116,12 @@ namespace crawler
                      PetscReal F_norm,
                      SNESConvergedReason *reason,
                      void *context);
-    static PetscErrorCode
-    before_step(TS ts);
-    static PetscErrorCode
-    after_step(TS ts);
   };
 
-  TimeStepper::Implementation::Implementation(TimeStepper &owner,
-                                              MPI_Comm communicator,
-                                              ImplicitSystem &system,
-                                              const TimeParameters &parameters)
+  PetscStepper::Implementation::Implementation(PetscStepper &owner,
+                                               MPI_Comm communicator,
+                                               ImplicitSystem &system,
+                                               const TimeParameters &parameters)
     : owner(owner)
     , system(system)
     , parameters(parameters)
@@ -140,14 +150,13 @@ namespace crawler
     petsc(TSSetApplicationContext(stepper, this));
     petsc(TSSetIFunction(stepper, residual.get(), function, this));
     petsc(TSSetIJacobian(stepper, mat, mat, jacobian_function, this));
-    petsc(TSSetPreStep(stepper, before_step));
-    petsc(TSSetPostStep(stepper, after_step));
+    petsc(TSSetSolution(stepper, solution.get()));
     set_options();
   }
 
   /// The choices of the program first, then the user's options after "--".
   void
-  TimeStepper::Implementation::set_options()
+  PetscStepper::Implementation::set_options()
   {
     const Integrator &method = integrator(parameters.integrator);
     TS stepper               = ts.get();
@@ -163,7 +172,7 @@ namespace crawler
     petsc(TSAdaptSetType(adapt, parameters.step_control == StepControl::fixed ? TSADAPTNONE : TSADAPTBASIC));
     if (method.petsc_type == radau_type)
       petsc(TSAdaptSetClip(adapt, radau::least_change, radau::most_change));
-    petsc(TSSetExactFinalTime(stepper, TS_EXACTFINALTIME_STEPOVER)); // before_step() makes steps end where they must
+    petsc(TSSetExactFinalTime(stepper, TS_EXACTFINALTIME_STEPOVER)); // choose_step() makes steps end where they must
     petsc(TSSetMaxSNESFailures(stepper, -1));
     petsc(TSSetMaxStepRejections(stepper, 30));
     petsc(TSSetErrorIfStepFails(stepper, PETSC_FALSE));
@@ -175,7 +184,7 @@ namespace crawler
 
   /// Newton's method with exact elimination.
   void
-  TimeStepper::Implementation::set_newton()
+  PetscStepper::Implementation::set_newton()
   {
     TS stepper                 = ts.get();
     SNES snes                  = nullptr;
@@ -202,7 +211,7 @@ namespace crawler
 
   /// What the user says behind "--"; it must be one of the integrators.
   void
-  TimeStepper::Implementation::apply_user_options()
+  PetscStepper::Implementation::apply_user_options()
   {
     TS stepper          = ts.get();
     PetscErrorCode code = 0;
@@ -215,7 +224,7 @@ namespace crawler
     if (code != 0)
       throw InputError("PETSc refuses an option behind \"--\": " + words);
 
-    // solve() sets these anew each time.
+    // begin() sets these anew each time.
     const auto option = [&](const char *option_name) {
       PetscReal value = 0.;
       PetscBool found = PETSC_FALSE;
@@ -251,7 +260,7 @@ namespace crawler
 
   /// The elimination becomes a preconditioner from the right, so that residuals are the true ones.
   void
-  TimeStepper::Implementation::use_krylov_method()
+  PetscStepper::Implementation::use_krylov_method()
   {
     constexpr double relative_tolerance_of_krylov = 1e-6;
     PetscBool chosen                              = PETSC_FALSE;
@@ -268,7 +277,7 @@ namespace crawler
   }
 
   PetscErrorCode
-  TimeStepper::Implementation::function(TS ts, const PetscReal t, Vec y, Vec y_dot, Vec F, void *context)
+  PetscStepper::Implementation::function(TS ts, const PetscReal t, Vec y, Vec y_dot, Vec F, void *context)
   {
     auto &self                = *static_cast<Implementation *>(context);
     bool accepted             = true;
@@ -295,7 +304,7 @@ namespace crawler
   }
 
   PetscErrorCode
-  TimeStepper::Implementation::jacobian_function(
+  PetscStepper::Implementation::jacobian_function(
     TS, const PetscReal t, Vec y, Vec y_dot, const PetscReal shift, Mat A, Mat, void *context)
   {
     auto &self                = *static_cast<Implementation *>(context);
@@ -310,7 +319,7 @@ namespace crawler
   }
 
   PetscErrorCode
-  TimeStepper::Implementation::multiply(Mat A, Vec x, Vec y)
+  PetscStepper::Implementation::multiply(Mat A, Vec x, Vec y)
   {
     void *context = nullptr;
     MatShellGetContext(A, &context);
@@ -323,7 +332,7 @@ namespace crawler
   }
 
   PetscErrorCode
-  TimeStepper::Implementation::set_up_preconditioner(PC pc)
+  PetscStepper::Implementation::set_up_preconditioner(PC pc)
   {
     void *context = nullptr;
     PCShellGetContext(pc, &context);
@@ -332,7 +341,7 @@ namespace crawler
   }
 
   PetscErrorCode
-  TimeStepper::Implementation::precondition(PC pc, Vec x, Vec y)
+  PetscStepper::Implementation::precondition(PC pc, Vec x, Vec y)
   {
     void *context = nullptr;
     PCShellGetContext(pc, &context);
@@ -349,13 +358,13 @@ namespace crawler
    * about C d^2. C is taken from the last solve that needed two corrections; until there is one, two are made.
    */
   PetscErrorCode
-  TimeStepper::Implementation::newton_converged(SNES,
-                                                const PetscInt it,
-                                                const PetscReal x_norm,
-                                                const PetscReal dx_norm,
-                                                const PetscReal F_norm,
-                                                SNESConvergedReason *reason,
-                                                void *context)
+  PetscStepper::Implementation::newton_converged(SNES,
+                                                 const PetscInt it,
+                                                 const PetscReal x_norm,
+                                                 const PetscReal dx_norm,
+                                                 const PetscReal F_norm,
+                                                 SNESConvergedReason *reason,
+                                                 void *context)
   {
     auto &self = *static_cast<Implementation *>(context);
     *reason    = SNES_CONVERGED_ITERATING;
@@ -384,208 +393,177 @@ namespace crawler
     return 0;
   }
 
-  /// Shortens the step such that it, or the one after it, ends on the next output time.
-  PetscErrorCode
-  TimeStepper::Implementation::before_step(TS ts)
+  /// Shortens the step such that it, or the one after it, ends where a step must end.
+  void
+  PetscStepper::Implementation::choose_step()
   {
-    void *context = nullptr;
-    TSGetApplicationContext(ts, &context);
-    auto &self     = *static_cast<Implementation *>(context);
     PetscReal time = 0., size = 0.;
-    TSGetTime(ts, &time);
-    TSGetTimeStep(ts, &size);
-    if (self.fixed_step > 0.)
-      size = self.fixed_step;
+    petsc(TSGetTime(ts.get(), &time));
+    petsc(TSGetTimeStep(ts.get(), &size));
+    if (fixed_step > 0.)
+      size = fixed_step;
     else
-      size = admitted_step(self.limits.data(), static_cast<unsigned int>(self.limits.size()), self.limit, time, size);
-    const double remaining = self.output_times[self.next_output_time] - time;
+      size = admitted_step(limits.data(), static_cast<unsigned int>(limits.size()), limit, time, size);
+    const double remaining = ends[next_end] - time;
     if (size >= remaining * (1. - 1e-9))
       size = remaining;
-    else if (self.fixed_step == 0. && size > 0.5 * remaining)
+    else if (fixed_step == 0. && size > 0.5 * remaining)
       size = 0.5 * remaining;
-    return TSSetTimeStep(ts, size);
+    petsc(TSSetTimeStep(ts.get(), size));
   }
 
+  /// Errors come back as codes, not printed.
   PetscErrorCode
-  TimeStepper::Implementation::after_step(TS ts)
+  PetscStepper::Implementation::make_step()
   {
-    void *context = nullptr;
-    TSGetApplicationContext(ts, &context);
-    auto &self = *static_cast<Implementation *>(context);
-    TSConvergedReason reason;
-    TSGetConvergedReason(ts, &reason);
-    if (reason < 0)
-      return 0; // PETSc calls this after a step that failed, too: there is no new state
+    petsc(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
+    const PetscErrorCode code = TSStep(ts.get());
+    petsc(PetscPopErrorHandler());
+    return code;
+  }
+
+  /// At the end of an accepted step; null if it was none.
+  const Step *
+  PetscStepper::Implementation::arrive()
+  {
     PetscReal time = 0., previous = 0.;
-    TSGetTime(ts, &time);
-    TSGetPrevTime(ts, &previous);
-    const double output_time = self.output_times[self.next_output_time];
-    if (std::abs(time - output_time) <= 1e-13 * std::max(output_time - previous, std::abs(output_time)))
+    petsc(TSGetTime(ts.get(), &time));
+    petsc(TSGetPrevTime(ts.get(), &previous));
+    const bool is_end = std::abs(time - ends[next_end]) <= 1e-13 * std::max(ends[next_end] - previous, ends[next_end]);
+    if (is_end)
     {
-      time = output_time;
-      TSSetTime(ts, output_time);
+      time = ends[next_end++];
+      petsc(TSSetTime(ts.get(), time));
     }
     const double size = time - previous;
     if (!(size > 4. * std::numeric_limits<double>::epsilon() * time))
     {
-      self.underflow = true; // nothing can be gained, and this is no divisor
-      return TSSetConvergedReason(ts, TS_DIVERGED_STEP_REJECTED);
+      underflow = true; // nothing can be gained, and this is no divisor
+      return nullptr;
     }
-    bool go_on                = true;
-    const PetscErrorCode code = self.guarded([&]() { go_on = self.report(time, size); });
-    if (code != 0)
-      return code;
-    if (time == output_time)
-      ++self.next_output_time;
-    if (self.next_output_time == self.output_times.size())
-      return TSSetConvergedReason(ts, TS_CONVERGED_TIME);
-    if (!go_on)
-    {
-      self.stopped = true;
-      return TSSetConvergedReason(ts, TS_CONVERGED_USER);
-    }
-    return 0;
+    const TimeOutcome so_far = counts();
+    step                     = {time, size, so_far.steps, is_end, so_far.rejected_steps, so_far.newton_iterations};
+    const ReadAccess access(solution.get());
+    std::copy(access.span.begin(), access.span.end(), y.begin());
+    return &step;
   }
 
-  bool
-  TimeStepper::Implementation::report(const double time, const double size)
+  /// The state to the monitors of PETSc's options.
+  void
+  PetscStepper::Implementation::show()
   {
-    if (!owner.monitor)
-      return true;
-    PetscInt steps = 0, rejected = 0, newton = 0;
+    PetscInt steps = 0;
+    PetscReal time = 0.;
+    petsc(TSGetStepNumber(ts.get(), &steps));
+    petsc(TSGetTime(ts.get(), &time));
+    petsc(TSMonitor(ts.get(), steps, time, solution.get()));
+  }
+
+  TimeOutcome
+  PetscStepper::Implementation::counts() const
+  {
+    TimeOutcome result;
+    PetscInt steps = 0, rejected = 0, newton = 0, linear = 0;
+    PetscReal time = 0., size = 0.;
     TSGetStepNumber(ts.get(), &steps);
     TSGetStepRejections(ts.get(), &rejected);
     TSGetSNESIterations(ts.get(), &newton);
-    const ReadAccess y(solution.get());
-    const bool is_output_time = size > 0. && time == output_times[next_output_time];
-    return owner.monitor({time,
-                          size,
-                          static_cast<unsigned int>(steps),
-                          is_output_time,
-                          static_cast<unsigned int>(rejected),
-                          static_cast<unsigned long>(newton)},
-                         y.span);
-  }
-
-  /// Gives what PETSc says a name.
-  TimeOutcome
-  TimeStepper::Implementation::outcome(const PetscErrorCode code)
-  {
-    TimeOutcome result;
-    TS stepper = ts.get();
-    TSConvergedReason reason;
-    PetscInt steps = 0, rejected = 0, newton = 0, linear = 0;
-    PetscReal time = 0., size = 0.;
-    TSGetConvergedReason(stepper, &reason);
-    TSGetStepNumber(stepper, &steps);
-    TSGetStepRejections(stepper, &rejected);
-    TSGetSNESIterations(stepper, &newton);
-    TSGetKSPIterations(stepper, &linear);
-    TSGetTime(stepper, &time);
-    TSGetTimeStep(stepper, &size);
+    TSGetKSPIterations(ts.get(), &linear);
+    TSGetTime(ts.get(), &time);
+    TSGetTimeStep(ts.get(), &size);
     result.time              = time;
     result.step_size         = size;
     result.steps             = static_cast<unsigned int>(steps);
     result.rejected_steps    = static_cast<unsigned int>(rejected);
     result.newton_iterations = static_cast<unsigned long>(newton);
     result.linear_iterations = static_cast<unsigned long>(linear);
-    result.status            = Status::failed;
-    if (code == 0 && reason == TS_CONVERGED_TIME)
-      result.status = Status::finished;
-    else if (code == 0 && stopped)
-      result.status = Status::stopped;
-    else if (code == 0 && reason == TS_CONVERGED_ITS)
+    return result;
+  }
+
+  /// Gives what PETSc says a name.
+  TimeOutcome
+  PetscStepper::Implementation::failure(const PetscErrorCode code)
+  {
+    TimeOutcome result = counts();
+    TS stepper         = ts.get();
+    SNES snes          = nullptr;
+    SNESConvergedReason newton_reason;
+    TSGetSNES(stepper, &snes);
+    SNESGetConvergedReason(snes, &newton_reason);
+    // Refused states and residuals on the way to this one count if they were close: the steps became small because of
+    // them. Each rank knows of its own.
+    double latest[2] = {refused_at, nonfinite_at};
+    MPI_Allreduce(
+      MPI_IN_PLACE, latest, 2, MPI_DOUBLE, MPI_MAX, PetscObjectComm(reinterpret_cast<PetscObject>(stepper)));
+    const double close  = result.time - 1e-6 * parameters.end_time;
+    result.status       = Status::failed;
+    result.domain_error = latest[0] >= close;
+    if (code != 0)
     {
-      result.status  = Status::stopped;
-      result.reason  = "step_limit";
-      result.message = "the maximum number of steps is reached";
+      const char *text = nullptr;
+      PetscErrorMessage(code, &text, nullptr);
+      result.reason  = "petsc_error";
+      result.message = std::string("PETSc stopped with the error: ") + (text != nullptr ? text : "unknown");
+    }
+    else if (latest[1] >= close)
+    {
+      result.reason  = "nonfinite";
+      result.message = "the residual is not a finite number";
+    }
+    else if (newton_reason == SNES_DIVERGED_LINEAR_SOLVE)
+    {
+      result.reason  = "linear_failed";
+      result.message = "the linear system of Newton's method is singular or could not be solved";
+    }
+    else if (underflow || result.step_size < 1e-13 * parameters.end_time)
+    {
+      result.reason  = "step_underflow";
+      result.message = "the step size fell below the resolution of the time";
+    }
+    else if (newton_reason < 0)
+    {
+      result.reason  = "newton_diverged";
+      result.message = std::string("Newton's method did not converge (") + SNESConvergedReasons[newton_reason] + ")";
     }
     else
     {
-      SNES snes = nullptr;
-      SNESConvergedReason newton_reason;
-      TSGetSNES(stepper, &snes);
-      SNESGetConvergedReason(snes, &newton_reason);
-      // Refused states and residuals on the way to this one count if they were close: the steps became small because
-      // of them. Each rank knows of its own.
-      double latest[2] = {refused_at, nonfinite_at};
-      MPI_Allreduce(
-        MPI_IN_PLACE, latest, 2, MPI_DOUBLE, MPI_MAX, PetscObjectComm(reinterpret_cast<PetscObject>(stepper)));
-      const double close  = time - 1e-6 * parameters.end_time;
-      result.domain_error = latest[0] >= close;
-      if (code != 0)
-      {
-        const char *text = nullptr;
-        PetscErrorMessage(code, &text, nullptr);
-        result.reason  = "petsc_error";
-        result.message = std::string("PETSc stopped with the error: ") + (text != nullptr ? text : "unknown");
-      }
-      else if (latest[1] >= close)
-      {
-        result.reason  = "nonfinite";
-        result.message = "the residual is not a finite number";
-      }
-      else if (newton_reason == SNES_DIVERGED_LINEAR_SOLVE)
-      {
-        result.reason  = "linear_failed";
-        result.message = "the linear system of Newton's method is singular or could not be solved";
-      }
-      else if (underflow || size < 1e-13 * parameters.end_time)
-      {
-        result.reason  = "step_underflow";
-        result.message = "the step size fell below the resolution of the time";
-      }
-      else if (newton_reason < 0)
-      {
-        result.reason  = "newton_diverged";
-        result.message = std::string("Newton's method did not converge (") + SNESConvergedReasons[newton_reason] + ")";
-      }
-      else
-      {
-        result.reason  = "rejection_limit";
-        result.message = "a step was rejected too many times, its error stays above the tolerance";
-      }
+      result.reason  = "rejection_limit";
+      result.message = "a step was rejected too many times, its error stays above the tolerance";
     }
     return result;
   }
 
 
-  TimeStepper::TimeStepper(MPI_Comm communicator, ImplicitSystem &system, const TimeParameters &parameters)
+  PetscStepper::PetscStepper(MPI_Comm communicator, ImplicitSystem &system, const TimeParameters &parameters)
     : implementation_(std::make_unique<Implementation>(*this, communicator, system, parameters))
   {
   }
 
-  TimeStepper::~TimeStepper() = default;
+  PetscStepper::~PetscStepper() = default;
 
-  TimeOutcome
-  TimeStepper::solve(std::vector<double> &y,
-                     const std::vector<double> &output_times,
-                     const double tolerance,
-                     const double initial_step,
-                     const std::span<const StepLimit> limits,
-                     const double start_time)
+  void
+  PetscStepper::begin(const ConstVector y, const Course &course)
   {
-    Implementation &self = *implementation_;
-    TS ts                = self.ts.get();
-    self.output_times    = output_times;
-    if (self.output_times.empty() || self.output_times.back() < self.parameters.end_time)
-      self.output_times.push_back(self.parameters.end_time);
-    self.next_output_time     = 0;
-    self.stopped              = false;
+    Implementation &self      = *implementation_;
+    TS ts                     = self.ts.get();
+    self.ends                 = course.ends;
+    self.next_end             = 0;
+    self.step                 = {};
+    self.end                  = std::nullopt;
     self.refused_at           = -1.;
     self.nonfinite_at         = -1.;
-    self.limits               = limits;
+    self.limits               = course.limits;
     self.limit                = 0;
     self.underflow            = false;
-    self.tolerance            = self.user_tolerance.value_or(tolerance);
-    const double first_step   = self.user_step.value_or(initial_step);
+    self.tolerance            = self.user_tolerance.value_or(course.tolerance);
+    const double first_step   = self.user_step.value_or(course.initial_step);
     self.fixed_step           = self.parameters.step_control == StepControl::fixed ? first_step : 0.;
     self.last_correction      = 0.;
     self.convergence_constant = std::numeric_limits<double>::infinity();
-    double time               = start_time;
-    const bool is_first       = !self.goes_on;
-    if (!is_first)
-      (*self.goes_on)(time, self.next_output_time, self.limit, self.refused_at, self.nonfinite_at);
+    double time               = course.start;
+    if (self.goes_on)
+      (*self.goes_on)(time, self.next_end, self.limit, self.refused_at, self.nonfinite_at);
+    self.y.assign(y.begin(), y.end());
     {
       const WriteAccess access(self.solution.get());
       std::copy(y.begin(), y.end(), access.span.begin());
@@ -595,36 +573,63 @@ namespace crawler
     petsc(TSSetTolerances(ts, self.tolerance, nullptr, self.relative_tolerance, nullptr));
     petsc(TSSetTime(ts, time));
     petsc(TSSetStepNumber(ts, 0));
-    petsc(TSSetMaxTime(ts, self.parameters.end_time));
+    ts->reject = ts->snes_its = ts->ksp_its = 0;
+    petsc(TSSetMaxTime(ts, self.ends.back()));
     petsc(TSSetTimeStep(ts, first_step));
     petsc(TSRestartStep(ts));
-    if (!is_first)
+    if (self.goes_on)
       radau_exchange(ts, *self.goes_on);
     self.goes_on.reset();
+    self.show();
+  }
 
-    PetscErrorCode code = 0;
-    bool go_on          = !is_first || self.report(start_time, 0.);
-    if (go_on)
-    {
-      petsc(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
-      code = TSSolve(ts, self.solution.get());
-      petsc(PetscPopErrorHandler());
-    }
-    else
-      self.stopped = true;
-    {
-      const ReadAccess access(self.solution.get());
-      std::copy(access.span.begin(), access.span.end(), y.begin());
-    }
+  const Step *
+  PetscStepper::next()
+  {
+    Implementation &self = *implementation_;
+    if (self.end)
+      return nullptr;
+    self.choose_step();
+    const PetscErrorCode code = self.make_step();
     self.guarded.rethrow();
-    TimeOutcome result = self.outcome(code);
-    if (!go_on)
-      result.status = Status::stopped;
-    return result;
+    TSConvergedReason reason;
+    petsc(TSGetConvergedReason(self.ts.get(), &reason));
+    const Step *const made = code == 0 && reason >= 0 ? self.arrive() : nullptr;
+    if (made == nullptr)
+      self.end = self.failure(code);
+    else if (self.next_end == self.ends.size())
+    {
+      self.end         = self.counts();
+      self.end->status = Status::finished;
+    }
+    else if (reason == TS_CONVERGED_ITS)
+    {
+      self.end          = self.counts();
+      self.end->status  = Status::stopped;
+      self.end->reason  = "step_limit";
+      self.end->message = "the maximum number of steps is reached";
+    }
+    if (made != nullptr)
+      self.show();
+    if (self.end)
+      petsc(PetscObjectViewFromOptions(reinterpret_cast<PetscObject>(self.ts.get()), nullptr, "-ts_view"));
+    return made;
+  }
+
+  Stepper::ConstVector
+  PetscStepper::state() const
+  {
+    return implementation_->y;
+  }
+
+  TimeOutcome
+  PetscStepper::outcome()
+  {
+    return implementation_->end ? *implementation_->end : implementation_->counts();
   }
 
   bool
-  TimeStepper::exchange(Archive &archive)
+  PetscStepper::exchange(Archive &archive)
   {
     Implementation &self = *implementation_;
     if (stage_places_.empty())
@@ -639,11 +644,7 @@ namespace crawler
     Archive own;
     PetscReal time = 0.;
     TSGetTime(self.ts.get(), &time);
-    // The monitor sees the step before it is counted among the output times.
-    std::size_t next = self.next_output_time;
-    if (time == self.output_times[next])
-      ++next;
-    own(time, next, self.limit, self.refused_at, self.nonfinite_at);
+    own(time, self.next_end, self.limit, self.refused_at, self.nonfinite_at);
     radau_exchange(self.ts.get(), own);
     std::string bytes = own.bytes();
     archive(bytes);
@@ -651,7 +652,7 @@ namespace crawler
   }
 
   void
-  TimeStepper::interpolate(const double time, const Vector y)
+  PetscStepper::interpolate(const double time, const Vector y)
   {
     if (!implementation_->interpolated)
     {

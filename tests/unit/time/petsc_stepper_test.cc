@@ -6,12 +6,13 @@
 
 #include <crawler/base/exceptions.h>
 #include <crawler/time/integrators.h>
-#include <crawler/time/time_stepper.h>
+#include <crawler/time/petsc_stepper.h>
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <tuple>
 
@@ -23,15 +24,9 @@ namespace
   {
   public:
     explicit ScalarEquation(const TimeParameters &parameters)
-      : stepper(MPI_COMM_SELF, *this, parameters)
+      : end_time(parameters.end_time)
+      , stepper(MPI_COMM_SELF, *this, parameters)
     {
-      stepper.monitor = [this](const Step &step, auto y) {
-        steps.push_back(step);
-        states.push_back(y[0]);
-        if (throw_at > 0. && step.time >= throw_at)
-          throw FileError("from the monitor");
-        return step.time < stop_at;
-      };
     }
 
     std::size_t
@@ -43,6 +38,8 @@ namespace
     residual(double t, ConstVector y, ConstVector y_dot, Vector F) override
     {
       ++evaluations;
+      if (throw_at > 0. && t >= throw_at)
+        throw FileError("from the system");
       F[0] = (1. + y[0] * y[0]) * y_dot[0] - (1. + std::sin(t) * std::sin(t)) * std::cos(t) + added_to_residual;
       return y[0] < largest_admissible;
     }
@@ -92,13 +89,29 @@ namespace
     TimeOutcome
     solve(const double tolerance, const double step, const std::vector<double> &output_times = {})
     {
-      steps.clear();
-      states.clear();
-      y = {0.};
-      return stepper.solve(y, output_times, tolerance, step, /*limits=*/{}, /*start_time=*/0.);
+      y                        = {0.};
+      steps                    = {{0., 0., 0, false, 0, 0}};
+      states                   = y;
+      std::vector<double> ends = output_times;
+      if (ends.empty() || ends.back() < end_time)
+        ends.push_back(end_time);
+      stepper.begin(y, {0., ends, tolerance, step, /*limits=*/{}});
+      while (const Step *made = stepper.next())
+      {
+        y.assign(stepper.state().begin(), stepper.state().end());
+        steps.push_back(*made);
+        states.push_back(y[0]);
+        if (seen)
+          seen(*made);
+        if (made->time >= stop_at)
+          break;
+      }
+      return stepper.outcome();
     }
 
-    TimeStepper stepper;
+    const double end_time;
+    PetscStepper stepper;
+    std::function<void(const Step &)> seen;
     std::vector<double> y, states;
     std::vector<Step> steps;
     double jacobian = 1., largest_admissible = 10., stop_at = 1e9, throw_at = 0., added_to_residual = 0.;
@@ -120,7 +133,7 @@ namespace
 } // namespace
 
 /// bdf starts with steps of lower order: its orders are in convergence/time_test.cc.
-TEST(TimeStepper, RadauReachesItsOrder)
+TEST(PetscStepper, RadauReachesItsOrder)
 {
   for (const auto &[name, order, steps] : {std::tuple("radau 5", 5., std::vector<double>{12, 24, 48}),
                                            std::tuple("radau 9", 9., std::vector<double>{2, 3, 4})})
@@ -136,7 +149,7 @@ TEST(TimeStepper, RadauReachesItsOrder)
   }
 }
 
-TEST(TimeStepper, StepsEndExactlyAtOutputTimes)
+TEST(PetscStepper, StepsEndExactlyAtOutputTimes)
 {
   for (const StepControl control : {StepControl::adaptive, StepControl::fixed})
   {
@@ -155,7 +168,7 @@ TEST(TimeStepper, StepsEndExactlyAtOutputTimes)
 }
 
 /// Also where the end of a step less its size is not its start to the last bit, as in steps that grow.
-TEST(TimeStepper, KnowsStatesFromStartToEndOfEachStep)
+TEST(PetscStepper, KnowsStatesFromStartToEndOfEachStep)
 {
   unsigned int n_below = 0;
   for (unsigned int i = 1; i <= 50; ++i)
@@ -163,25 +176,21 @@ TEST(TimeStepper, KnowsStatesFromStartToEndOfEachStep)
     ScalarEquation equation(parameters_for("bdf"));
     std::vector<double> y(1);
     double before = 0., start = 0.;
-    equation.stepper.monitor = [&](const Step &step, auto state) {
-      if (step.size > 0.)
-      {
-        n_below += step.time - step.size < start;
-        equation.stepper.interpolate(step.time - step.size, y);
-        EXPECT_NEAR(y[0], before, 1e-6);
-        equation.stepper.interpolate(step.time, y);
-        EXPECT_NEAR(y[0], state[0], 1e-12);
-      }
-      before = state[0];
+    equation.seen = [&](const Step &step) {
+      n_below += step.time - step.size < start;
+      equation.stepper.interpolate(step.time - step.size, y);
+      EXPECT_NEAR(y[0], before, 1e-6);
+      equation.stepper.interpolate(step.time, y);
+      EXPECT_NEAR(y[0], equation.y[0], 1e-12);
+      before = equation.y[0];
       start  = step.time;
-      return true;
     };
     EXPECT_EQ(equation.solve(1e-3, 1e-5 / i).status, Status::finished);
   }
   EXPECT_GT(n_below, 0u); // else nothing was tested
 }
 
-TEST(TimeStepper, SolvesAgainWithTheSameResult)
+TEST(PetscStepper, SolvesAgainWithTheSameResult)
 {
   ScalarEquation equation(parameters_for("bdf"));
   const auto first = equation.solve(1e-9, 1e-5);
@@ -193,18 +202,18 @@ TEST(TimeStepper, SolvesAgainWithTheSameResult)
   EXPECT_EQ(again.newton_iterations, first.newton_iterations);
 }
 
-TEST(TimeStepper, TheMonitorCanStop)
+TEST(PetscStepper, TheCallerCanStop)
 {
   ScalarEquation equation(parameters_for("bdf"));
   equation.stop_at   = 0.5;
   const auto outcome = equation.solve(1e-8, 1e-4);
-  EXPECT_EQ(outcome.status, Status::stopped);
+  EXPECT_EQ(outcome.status, Status::none);
   EXPECT_GE(outcome.time, 0.5);
   EXPECT_LT(outcome.time, 0.7);
   EXPECT_NEAR(equation.y[0], std::sin(outcome.time), 1e-6);
 }
 
-TEST(TimeStepper, AnExceptionOfACallbackComesThrough)
+TEST(PetscStepper, AnExceptionOfTheSystemComesThrough)
 {
   ScalarEquation equation(parameters_for("bdf"));
   equation.throw_at = 0.5;
@@ -212,7 +221,7 @@ TEST(TimeStepper, AnExceptionOfACallbackComesThrough)
 }
 
 /// y = sin t would pass 0.5 at t = 0.5236: no step, however small, goes on from there.
-TEST(TimeStepper, ARefusedStateIsADomainError)
+TEST(PetscStepper, ARefusedStateIsADomainError)
 {
   ScalarEquation equation(parameters_for("bdf"));
   equation.largest_admissible = 0.5;
@@ -223,7 +232,7 @@ TEST(TimeStepper, ARefusedStateIsADomainError)
   EXPECT_LT(equation.y[0], 0.5);
 }
 
-TEST(TimeStepper, FailuresHaveNames)
+TEST(PetscStepper, FailuresHaveNames)
 {
   {
     ScalarEquation equation(parameters_for("bdf"));
@@ -254,7 +263,7 @@ TEST(TimeStepper, FailuresHaveNames)
 }
 
 /// Radau's complex systems are only made if the real one could be factored; otherwise none of them may be solved.
-TEST(TimeStepper, FactorsThatAreNotThereAreNotUsed)
+TEST(PetscStepper, FactorsThatAreNotThereAreNotUsed)
 {
   for (const std::string name : {"radau 5", "radau 9"})
   {
@@ -266,7 +275,7 @@ TEST(TimeStepper, FactorsThatAreNotThereAreNotUsed)
   }
 }
 
-TEST(TimeStepper, UnsoundIntegratorsAreRefusedWithTheReason)
+TEST(PetscStepper, UnsoundIntegratorsAreRefusedWithTheReason)
 {
   for (const char *name : {"rosw", "irk", "glle", "cn", "rk"})
   {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <crawler/time/implicit_system.h>
-#include <crawler/time/time_integration.h>
+#include <crawler/time/stepper.h>
 #include <crawler/time/time_parameters.h>
 
 #include <mpi.h>
@@ -14,28 +14,29 @@
 namespace crawler
 {
   /**
-   * Integrates an implicit system with PETSc's TS, Newton's method by SNES, and KSP. An exception that the system or
-   * the monitor throws ends solve() with it.
+   * Integrates an implicit system with PETSc's TS, Newton's method by SNES, and KSP. An exception that the system
+   * throws comes out of next().
    *
    * Errors are controlled absolutely, with the root mean square of the estimated error of a step over all unknowns,
    * so y should be a displacement from rest. Newton's method stops when the estimated
    * remaining error is below 1% of that.
    */
-  class TimeStepper : public TimeIntegration
+  class PetscStepper : public Stepper
   {
   public:
     /// @p system must outlive the stepper.
-    TimeStepper(MPI_Comm communicator, ImplicitSystem &system, const TimeParameters &parameters);
-    ~TimeStepper() override;
-    TimeStepper(const TimeStepper &) = delete;
+    PetscStepper(MPI_Comm communicator, ImplicitSystem &system, const TimeParameters &parameters);
+    ~PetscStepper() override;
+    PetscStepper(const PetscStepper &) = delete;
 
+    void
+    begin(ConstVector y, const Course &course) override;
+    const Step *
+    next() override;
+    ConstVector
+    state() const override;
     TimeOutcome
-    solve(std::vector<double> &y,
-          const std::vector<double> &output_times,
-          double tolerance,
-          double initial_step,
-          std::span<const StepLimit> limits,
-          double start_time) override;
+    outcome() override;
     void
     interpolate(double time, Vector y) override;
     /// Only the radau methods can.
