@@ -30,7 +30,12 @@ namespace crawler
                            fit.data.empty() ? "the file that --data names" : fit.data));
     const ModelChoice model = choose_model(input);
     if (!model.needs_mesh())
-      return check_reduced_model(input, model, log);
+    {
+      report_plan(log, input, model, nullptr);
+      log.line("No mesh and no time steps are needed.");
+      log.line(input.file.name() + " is in order; nothing was run, and nothing was written.");
+      return ExitCode::finished;
+    }
     WaitProgress pilots(log, pilot_runs);
     NumericsChoice choice = *choose_numerics(MPI_COMM_SELF, input.parameters, input.scene, [&]() {
       pilots.step();
@@ -39,7 +44,7 @@ namespace crawler
     if (input.parameters.output.has_snapshots())
       prepare_for_pictures(choice, input.parameters);
     const Simulation simulation(MPI_COMM_SELF, input.scene, input.parameters.time, choice.numerics);
-    report_plan(log, input, model, choice);
+    report_plan(log, input, model, &choice);
     log.line(
       fmt::format("Output: {} snapshots{}{}{}, to \"{}\" unless --output is given.",
                   picture_times(input.parameters.output, input.scene).n_snapshots(),

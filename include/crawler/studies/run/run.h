@@ -20,24 +20,11 @@ namespace crawler
   ExitCode
   run_input(MPI_Comm communicator, const CommandOptions &options, ParameterFile file);
 
-  /// The lines that say what will be computed.
+  /// Mesh and steps, for the user.
+  std::string
+  in_words(const Numerics &numerics, const Input &input);
+
+  /// The lines that say what will be computed. @p choice: null on a level that needs no mesh.
   void
-  report_plan(Log &log, const Input &input, const ModelChoice &model, const NumericsChoice &choice);
-
-  class StopSignal;
-
-  /// What `crawler run` does on a level that needs no mesh (collective; the first rank computes and writes all files,
-  /// whose names and contents are those of any run). @p begin (base/clock.h) is when the program began.
-  ExitCode
-  run_reduced_model(MPI_Comm communicator,
-                    const CommandOptions &options,
-                    const Input &input,
-                    const ModelChoice &choice,
-                    const StopSignal &stop_signal,
-                    double begin,
-                    Log &log);
-
-  /// The same for `crawler check`.
-  ExitCode
-  check_reduced_model(const Input &input, const ModelChoice &choice, Log &log);
+  report_plan(Log &log, const Input &input, const ModelChoice &model, const NumericsChoice *choice);
 } // namespace crawler
