@@ -170,7 +170,7 @@ namespace crawler::accuracy_rule
   } // namespace family
 
   // Jumps that move, as the limit of fronts (moving_fronts.cc; doc/numerics.md, "Jumps that move"). Measured by
-  // tests/verification/front_study.cc.
+  // tests/verification/square_actuation_test.cc.
   namespace fronts
   {
     /// Widths of fronts, relative to the widest that fit: the first, each next one half of it, and the last.

@@ -14,6 +14,7 @@
 #include <crawler/studies/core/run_files.h>
 #include <crawler/studies/run/reduced_pictures.h>
 #include <crawler/studies/run/run.h>
+#include <crawler/studies/run/run_plan.h>
 #include <crawler/studies/run/run_study.h>
 #include <crawler/studies/run/sensitivity_files.h>
 #include <crawler/time/failure.h>
@@ -484,5 +485,17 @@ namespace crawler
     write_checkpoint(folder_, checkpoint_);
     reach(StopPlace::state);
     return true;
+  }
+
+  ExitCode
+  run(MPI_Comm communicator, const CommandOptions &options)
+  {
+    return run_input(communicator, options, read_file(communicator, options.file, options.overrides));
+  }
+
+  ExitCode
+  run_input(MPI_Comm communicator, const CommandOptions &options, ParameterFile file)
+  {
+    return RunStudy(communicator, options, std::move(file)).run();
   }
 } // namespace crawler

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/run/batch.h>
 #include <crawler/studies/core/run_files.h>
-#include <crawler/studies/run/run.h>
-#include <crawler/studies/run/run_study.h>
+#include <crawler/studies/run/run_plan.h>
 
 #include <fmt/format.h>
 
@@ -40,17 +39,5 @@ namespace crawler
     }
     for (const std::string &note : notes_on_choice(input, model.model, choice ? &choice->numerics : nullptr))
       log.line(note);
-  }
-
-  ExitCode
-  run(MPI_Comm communicator, const CommandOptions &options)
-  {
-    return run_input(communicator, options, read_file(communicator, options.file, options.overrides));
-  }
-
-  ExitCode
-  run_input(MPI_Comm communicator, const CommandOptions &options, ParameterFile file)
-  {
-    return RunStudy(communicator, options, std::move(file)).run();
   }
 } // namespace crawler
