@@ -201,6 +201,169 @@ namespace crawler
     return answer_with(*choice, parameters, scene, options, keep_going);
   }
 
+  namespace
+  {
+    /// One run after the other, each with finer numerics, until one is as good as it should be.
+    class Tries
+    {
+    public:
+      Tries(MPI_Comm communicator,
+            const RunParameters &parameters,
+            const Scene &scene,
+            const NumericsChoice &choice,
+            const std::function<SimulationResult(const NumericsChoice &)> &simulate,
+            const KeepGoing &keep_going)
+        : communicator_(communicator)
+        , parameters_(parameters)
+        , scene_(scene)
+        , first_(choice)
+        , simulate_(simulate)
+        , keep_going_(keep_going)
+      {
+        answer_.choice = choice;
+      }
+
+      Answer
+      answer()
+      {
+        result_ = simulate_(first_);
+        do
+        {
+          if (result_.time.status == Status::finished)
+            answer_.choice.set_size(result_.displacement, parameters_.accuracy);
+          if (result_.time.status == Status::inverted && result_.time.reason == "inverted_inside" && first_.is_users)
+            confirm_inversion(communicator_, parameters_, scene_, first_, result_, keep_going_);
+        } while (tries_again());
+        return std::move(answer_);
+      }
+
+    private:
+      bool
+      tries_again()
+      {
+        // What has been measured on one mesh after the other is not tried again.
+        const bool has_tries = !first_.is_measured && answer_.refinements < most_refinements;
+        if (is_for_finer_numerics(result_.time))
+        {
+          if (!std::isfinite(first_.promised_error) || !has_tries)
+            return false;
+          make_finer(refined_cells);
+          return true;
+        }
+        if (!parameters_.error_estimate || result_.time.status != Status::finished)
+          return false;
+        const Stopwatch watch;
+        estimate_errors(communicator_, parameters_, scene_, answer_.choice, result_, keep_going_);
+        answer_.estimate_seconds += watch.seconds();
+        if (is_good() && (closes() || std::isnan(wanted())))
+          return false;
+        std::string problem;
+        if (has_tries && first_.least_error <= wanted())
+          try
+          {
+            // A smooth solution needs few more; where that has not helped errors go with a power of the size of cells.
+            const double total = result_.error->total;
+            make_finer(answer_.refinements == 0 || !(total > wanted())
+                         ? refined_cells
+                         : std::clamp(std::cbrt(total / wanted()), refined_cells, most_refined_cells));
+            return true;
+          }
+          catch (...) // the answer that is there stays
+          {
+            problem = "; the next try failed: " + failure_of(std::current_exception()).message;
+            if (size_of(communicator_) > 1) // the other ranks may be waiting
+              throw;
+          }
+        if (!is_good())
+          name_shortfall(problem);
+        return false;
+      }
+
+      void
+      make_finer(const double cells)
+      {
+        const NumericsChoice next = refined(answer_.choice, scene_, cells);
+        result_                   = simulate_(next);
+        answer_.choice            = next;
+        ++answer_.refinements;
+      }
+
+      double
+      wanted() const
+      {
+        return answer_.choice.wanted_error;
+      }
+
+      bool
+      is_good() const
+      {
+        const double total = result_.error->total;
+        const bool stopped = std::isnan(total) && keep_going_ && !keep_going_();
+        return std::isnan(wanted()) || total <= wanted() || stopped;
+      }
+
+      /// An energy balance that does not asks for a finer run, too; if that does not help it is the self-check's
+      /// business.
+      bool
+      closes() const
+      {
+        return !result_.energy_balance ||
+               result_.energy_balance->residual() <= energy_balance_tolerance(result_, parameters_);
+      }
+
+      void
+      name_shortfall(const std::string &problem)
+      {
+        const double total   = result_.error->total;
+        result_.time.status  = Status::failed;
+        result_.time.reason  = accuracy_not_met;
+        result_.time.message = std::isnan(total)
+                                 ? "the error of the displacement is not known: a finer run did not finish"
+                                 : fmt::format("the error of the displacement is about {:.2g}, but Accuracy asks for "
+                                               "{:.2g}",
+                                               total,
+                                               wanted());
+        result_.time.message += problem;
+        if (!answer_.choice.advice.empty())
+          result_.time.message += "; " + answer_.choice.advice;
+      }
+
+      MPI_Comm communicator_;
+      const RunParameters &parameters_;
+      const Scene &scene_;
+      const NumericsChoice &first_;
+      const std::function<SimulationResult(const NumericsChoice &)> &simulate_;
+      const KeepGoing &keep_going_;
+      Answer answer_;
+      SimulationResult &result_ = answer_.result;
+    };
+
+    /// Of the family, or of the position form if it has a smaller error where the family does not meet Accuracy.
+    Answer
+    better_of_both_forms(const RunParameters &parameters,
+                         const Scene &scene,
+                         const NumericsChoice &choice,
+                         const Simulation::Options &options,
+                         const KeepGoing &keep_going)
+    {
+      Answer answer = answer_of_family(parameters, scene, choice, options, keep_going);
+      if (answer.result.time.reason != accuracy_not_met)
+        return answer;
+      try
+      {
+        auto other = answer_of_position_form(parameters, scene, options, keep_going);
+        if (other && !(answer.result.error && other->result.error->total >= answer.result.error->total))
+          return std::move(*other);
+      }
+      catch (...) // the answer that is there stays
+      {
+        answer.result.time.message +=
+          "; the position form failed, too: " + failure_of(std::current_exception()).message;
+      }
+      return answer;
+    }
+  } // namespace
+
   Answer
   run_as_promised(MPI_Comm communicator,
                   const RunParameters &parameters,
@@ -211,103 +374,18 @@ namespace crawler
                   const bool writes,
                   const KeepGoing &keep_going)
   {
+    const auto in_files = [&](Answer answer) { return writes ? with_files(std::move(answer), simulate) : answer; };
     if (choice.has_fronts)
-    {
-      Answer answer =
+      return in_files(
         answer_of_fronts(parameters, scene, [&](const RunParameters &its_parameters, const Scene &its_scene) {
           return answer_in_memory(its_parameters, its_scene, options, keep_going);
-        });
-      return writes ? with_files(std::move(answer), simulate) : answer;
-    }
+        }));
     if (choice.is_family)
-    {
-      Answer answer = answer_of_family(parameters, scene, choice, options, keep_going);
-      if (answer.result.time.reason == accuracy_not_met)
-        try
-        {
-          auto other = answer_of_position_form(parameters, scene, options, keep_going);
-          if (other && !(answer.result.error && other->result.error->total >= answer.result.error->total))
-            answer = std::move(*other);
-        }
-        catch (...) // the answer that is there stays
-        {
-          answer.result.time.message +=
-            "; the position form failed, too: " + failure_of(std::current_exception()).message;
-        }
-      return writes ? with_files(std::move(answer), simulate) : answer;
-    }
-    Answer answer;
-    answer.choice = choice;
-    answer.result = simulate(choice);
-    for (;;)
-    {
-      SimulationResult &result = answer.result;
-      if (result.time.status == Status::finished)
-        answer.choice.set_size(result.displacement, parameters.accuracy);
-      const double wanted = answer.choice.wanted_error;
-      // What has been measured on one mesh after the other is not tried again.
-      const bool may_refine = !choice.is_measured && choice.least_error <= wanted;
-      if (result.time.status == Status::inverted && result.time.reason == "inverted_inside" && choice.is_users)
-        confirm_inversion(communicator, parameters, scene, choice, result, keep_going);
-      const bool retries = std::isfinite(choice.promised_error) && !choice.is_measured &&
-                           answer.refinements < most_refinements && is_for_finer_numerics(result.time);
-      if (!retries && !choice.is_users && is_for_finer_numerics(result.time) && size_of(communicator) == 1)
-        if (auto other = answer_of_stretch_form(parameters, scene, options, keep_going))
-          return writes ? with_files(std::move(*other), simulate) : *other;
-      if (!retries && (!parameters.error_estimate || result.time.status != Status::finished))
-        return answer;
-      if (retries)
-      {
-        const NumericsChoice next = refined(answer.choice, scene, refined_cells);
-        result                    = simulate(next);
-        answer.choice             = next;
-        ++answer.refinements;
-        continue;
-      }
-      const Stopwatch watch;
-      estimate_errors(communicator, parameters, scene, answer.choice, result, keep_going);
-      answer.estimate_seconds += watch.seconds();
-      const double total = result.error->total;
-      // An energy balance that does not close asks for a finer run, too; if that does not help it is the self-check's
-      // business.
-      const bool closes =
-        !result.energy_balance || result.energy_balance->residual() <= energy_balance_tolerance(result, parameters);
-      const bool stopped = std::isnan(total) && keep_going && !keep_going();
-      const bool is_good = std::isnan(wanted) || total <= wanted || stopped;
-      if (is_good && (closes || std::isnan(wanted)))
-        return answer;
-      std::string problem;
-      if (may_refine && answer.refinements < most_refinements)
-        try
-        {
-          // A smooth solution needs few more; where that has not helped errors go with a power of the size of cells.
-          const double cells        = answer.refinements == 0 || !(total > wanted)
-                                        ? refined_cells
-                                        : std::clamp(std::cbrt(total / wanted), refined_cells, most_refined_cells);
-          const NumericsChoice next = refined(answer.choice, scene, cells);
-          result                    = simulate(next);
-          answer.choice             = next;
-          ++answer.refinements;
-          continue;
-        }
-        catch (...) // the answer that is there stays
-        {
-          problem = "; the next try failed: " + failure_of(std::current_exception()).message;
-          if (size_of(communicator) > 1) // the other ranks may be waiting
-            throw;
-        }
-      if (is_good)
-        return answer;
-      result.time.status = Status::failed;
-      result.time.reason = accuracy_not_met;
-      result.time.message =
-        std::isnan(total)
-          ? "the error of the displacement is not known: a finer run did not finish"
-          : fmt::format("the error of the displacement is about {:.2g}, but Accuracy asks for {:.2g}", total, wanted);
-      result.time.message += problem;
-      if (!answer.choice.advice.empty())
-        result.time.message += "; " + answer.choice.advice;
-      return answer;
-    }
+      return in_files(better_of_both_forms(parameters, scene, choice, options, keep_going));
+    Answer answer = Tries(communicator, parameters, scene, choice, simulate, keep_going).answer();
+    if (is_for_finer_numerics(answer.result.time) && !choice.is_users && size_of(communicator) == 1)
+      if (auto other = answer_of_stretch_form(parameters, scene, options, keep_going))
+        return in_files(std::move(*other));
+    return answer;
   }
 } // namespace crawler

@@ -72,51 +72,73 @@ namespace crawler
            body.length * body.elastic_modulus / (c * c) * sine_sum(shape, c * end_time / body.length);
   }
 
+  namespace
+  {
+    /// g(y) = sum a_n sin q_n y + b_n cos q_n y at equidistant places.
+    std::vector<double>
+    strain_of_speed_1(const WaveShape &shape)
+    {
+      const unsigned int points = 128 * static_cast<unsigned int>(shape.a.size());
+      std::vector<double> g(points);
+      for (unsigned int i = 0; i < points; ++i)
+        for (unsigned int n = 1; n <= shape.a.size(); ++n)
+          g[i] +=
+            shape.a[n - 1] * std::sin(2. * pi * n * i / points) + shape.b[n - 1] * std::cos(2. * pi * n * i / points);
+      return g;
+    }
+
+    WaveRoot
+    describe(const Body &body,
+             const WaveShape &shape,
+             const std::vector<double> &g,
+             const double chi,
+             const double end_time,
+             const double c)
+    {
+      const double L = body.length, gamma = body.friction_coefficient, a = body.friction_exponent();
+      WaveRoot root{};
+      root.speed      = c;
+      root.multiplier = a / (L * gamma * c);
+
+      // displacement = chi^2 [ -2 a T Delta_2/c + (L a/(4 pi c^2)) sum sin(2 pi n c T/L) P_n/n ]
+      double sum = 0.;
+      for (unsigned int n = 1; n <= shape.a.size(); ++n)
+        sum += std::sin(2. * pi * n * c * end_time / L) * shape.power(n) / n;
+      root.displacement = chi * chi * (-2. * a * end_time * shape.delta_2() / c + L * a / (4. * pi * c * c) * sum);
+
+      // strain = (chi/c) ( g(s + c t) - g(s) )
+      const auto points = static_cast<int>(g.size());
+      double smallest = 0., largest = 0.;
+      const double travelled = std::abs(c) * end_time / L;
+      if (travelled >= 1.)
+      {
+        const auto [low, high] = std::minmax_element(g.begin(), g.end());
+        smallest               = *low - *high;
+        largest                = *high - *low;
+      }
+      else
+      {
+        const auto window = static_cast<int>(travelled * points);
+        for (int i = 0; i < points; ++i)
+          for (int j = 0; j <= window; ++j)
+          {
+            const int shifted   = ((c > 0 ? i + j : i - j) + points) % points;
+            const double change = g[shifted] - g[i];
+            smallest            = std::min(smallest, change);
+            largest             = std::max(largest, change);
+          }
+      }
+      const double factor = chi / c;
+      root.min_stretch    = 1. + std::min(factor * smallest, factor * largest);
+      root.max_stretch    = 1. + std::max(factor * smallest, factor * largest);
+      return root;
+    }
+  } // namespace
+
   WaveRoot
   describe_wave(const Body &body, const WaveShape &shape, const double chi, const double end_time, const double c)
   {
-    const double L = body.length, gamma = body.friction_coefficient, a = body.friction_exponent();
-    WaveRoot root{};
-    root.speed      = c;
-    root.multiplier = a / (L * gamma * c);
-
-    // displacement = chi^2 [ -2 a T Delta_2/c + (L a/(4 pi c^2)) sum sin(2 pi n c T/L) P_n/n ]
-    double sum = 0.;
-    for (unsigned int n = 1; n <= shape.a.size(); ++n)
-      sum += std::sin(2. * pi * n * c * end_time / L) * shape.power(n) / n;
-    root.displacement = chi * chi * (-2. * a * end_time * shape.delta_2() / c + L * a / (4. * pi * c * c) * sum);
-
-    // strain = (chi/c) ( g(s + c t) - g(s) ),  g(y) = sum a_n sin q_n y + b_n cos q_n y
-    const unsigned int points = 128 * static_cast<unsigned int>(shape.a.size());
-    std::vector<double> g(points);
-    for (unsigned int i = 0; i < points; ++i)
-      for (unsigned int n = 1; n <= shape.a.size(); ++n)
-        g[i] +=
-          shape.a[n - 1] * std::sin(2. * pi * n * i / points) + shape.b[n - 1] * std::cos(2. * pi * n * i / points);
-    double smallest = 0., largest = 0.;
-    const double travelled = std::abs(c) * end_time / L;
-    if (travelled >= 1.)
-    {
-      const auto [low, high] = std::minmax_element(g.begin(), g.end());
-      smallest               = *low - *high;
-      largest                = *high - *low;
-    }
-    else
-    {
-      const auto window = static_cast<int>(travelled * points);
-      for (int i = 0; i < static_cast<int>(points); ++i)
-        for (int j = 0; j <= window; ++j)
-        {
-          const int shifted   = ((c > 0 ? i + j : i - j) + static_cast<int>(points)) % static_cast<int>(points);
-          const double change = g[shifted] - g[i];
-          smallest            = std::min(smallest, change);
-          largest             = std::max(largest, change);
-        }
-    }
-    const double factor = chi / c;
-    root.min_stretch    = 1. + std::min(factor * smallest, factor * largest);
-    root.max_stretch    = 1. + std::max(factor * smallest, factor * largest);
-    return root;
+    return describe(body, shape, strain_of_speed_1(shape), chi, end_time, c);
   }
 
   WaveRoots
@@ -148,12 +170,13 @@ namespace crawler
     if (common == 0 || (!result.double_roots && (h < 0. || h >= slope)))
       return result;
 
-    unsigned int admissible = 0;
-    const auto enough       = [&]() {
+    const std::vector<double> g = strain_of_speed_1(shape);
+    unsigned int admissible     = 0;
+    const auto enough           = [&]() {
       return result.roots.size() >= most_roots || (result.roots.size() >= at_least && admissible >= 10);
     };
     const auto add = [&](const double x) {
-      result.roots.push_back(describe_wave(body, shape, chi, end_time, sign * x * L / end_time));
+      result.roots.push_back(describe(body, shape, g, chi, end_time, sign * x * L / end_time));
       admissible += result.roots.back().admissible();
     };
 
