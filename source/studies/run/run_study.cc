@@ -438,11 +438,12 @@ namespace crawler
     write_file(folder_ / "summary.json", summary_json(result_, size_of(communicator_), options_.command_line));
   }
 
-  /// By this rank alone.
+  /// By this rank alone. What a level without a mesh computes cannot go on later, so only a signal stops it.
   bool
   RunStudy::is_stopped()
   {
-    return stops_.arrived_anywhere(MPI_COMM_SELF);
+    return model_ && !model_->needs_mesh() ? stop_signal_.arrived_anywhere(MPI_COMM_SELF)
+                                           : stops_.arrived_anywhere(MPI_COMM_SELF);
   }
 
   void
