@@ -242,7 +242,7 @@ namespace crawler
         if (!levels_.empty())
         {
           const Level &before = levels_.back();
-          const double change = std::abs(*value(result) - *value(before.result));
+          const double change = *value(result) - *value(before.result);
           if (!inverts_slowly())
             extrapolate(before.result);
           now.value   = *value(extrapolated_);
@@ -276,22 +276,25 @@ namespace crawler
       double
       error_of(const Level &before, const Level &now)
       {
-        const double order = std::log2(before.change / now.change);
-        has_order_         = order > least_order;
+        // Changes that turn round have no order.
+        const double change = std::abs(now.change), last = std::abs(before.change);
+        const double order  = now.change * before.change < 0. ? 0. : std::log2(last / change);
+        const bool is_clean = std::abs(order - 2.) < clean;
+        has_order_          = order > least_order;
         if (inverts_slowly())
-          return sticking_factor * std::max(now.change, before.change / credited);
+          return sticking_factor * std::max(change, last / credited);
         if (!(order > 0.2))
-          return 5. * now.change;
+          return 5. * change;
         if (order < least_order)
-          return std::max(now.settled, now.change / (std::exp2(order) - 1.));
+          return std::max(now.settled, change / (std::exp2(order) - 1.));
         if (order > largest_order)
-          return std::max(now.settled, now.change / 3.);
+          return std::max(now.settled, change / 3.);
         // Displacements may agree by chance; their works do not, too.
-        const double settled = std::max(now.settled, unsettled_work(before, now) * now.change);
-        if (levels_.size() == 2)
-          return settled;
+        const double settled = std::max(now.settled, unsettled_work(before, now) * change);
+        if (levels_.size() == 2) // one change of the extrapolated value alone
+          return is_clean ? settled : unclean_factor * settled;
         const double bound = std::max(settled, before.settled / fastest);
-        return before.settled > fast * settled && std::abs(order - 2.) < clean ? bound / credited : bound;
+        return before.settled > fast * settled && is_clean ? bound / credited : bound;
       }
 
       static double

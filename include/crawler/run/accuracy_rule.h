@@ -165,8 +165,8 @@ namespace crawler::accuracy_rule
     inline constexpr double fast = 5., credited = 4., fastest = 16.;
     /// For a between this and 0 the time of an inversion has an error of so many times its last change.
     inline constexpr double least_slow_exponent = -0.5, sticking_factor = 3.;
-    /// That is believed where the order is as near to 2 as this.
-    inline constexpr double clean = 0.25;
+    /// That is believed where the order is as near to 2 as this; else a first change counts so many times as much.
+    inline constexpr double clean = 0.25, unclean_factor = 2.;
   } // namespace family
 
   // Jumps that move, as the limit of fronts (moving_fronts.cc; doc/numerics.md, "Jumps that move"). Measured by
