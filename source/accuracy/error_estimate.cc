@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace crawler
@@ -48,7 +49,9 @@ namespace crawler
       Numerics n          = choice.numerics;
       const bool promised = is_promised(choice, scene);
       // Where the friction switches its direction kinks move through cells and steps: errors fall by low powers.
-      const bool much_finer = !promised || choice.is_steep || scene.ground.direction.is_uneven();
+      // A displacement that is 0 says nothing of the works.
+      const bool much_finer =
+        !promised || choice.is_steep || scene.ground.direction.is_uneven() || scene.keeps_its_centre();
       if (n.mesh.tolerance > 0.)
       {
         n.mesh.tolerance *= finer_mesh_tolerance;
@@ -224,7 +227,8 @@ namespace crawler
                             : choice.numerics.mesh.tolerance > 0. ? promised_part_if_adaptive
                             : choice.numerics.grading.levels > 0  ? promised_part_if_graded
                                                                   : promised_part;
-      const double factor = promised && !choice.is_steep ? measured_factor : factor_without_promise;
+      const double factor =
+        promised && !choice.is_steep && !scene.keeps_its_centre() ? measured_factor : factor_without_promise;
       if (finer_mesh != nullptr)
       {
         space = factor * std::abs(finer_mesh->displacement - result.displacement);
@@ -254,10 +258,16 @@ namespace crawler
         for (std::size_t i = 0; i < NumberErrors::n; ++i)
           result.errors->values[i] += in_time.values[i];
       }
+      if (scene.keeps_its_centre()) // few steps are enough for all but the kinks of positive power
+        set_error_bound(result, "positive_power", std::numeric_limits<double>::quiet_NaN());
       set_errors_of_efficiencies(scene, result);
     }
-    if (scene.keeps_its_centre()) // whatever the other errors are
-      total = 0.;
+    if (scene.keeps_its_centre()) // to round-off of each step, whatever the other errors are
+    {
+      total = round_off * scene.body.length * result.time.steps;
+      if (std::isfinite(choice.wanted_error))
+        total = std::min(total, choice.wanted_error);
+    }
     if (!std::isfinite(total))
       return;
     const double cycles = result.cycles ? result.cycles->bound : 0.;

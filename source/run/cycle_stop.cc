@@ -30,7 +30,7 @@ namespace crawler
     if (time.cycle_stop == CycleStopMode::off ||
         (time.cycle_stop == CycleStopMode::automatic && (has_pictures || time.step_control != StepControl::adaptive)))
       return std::nullopt;
-    if (!scene.is_alike_everywhere())
+    if (!scene.is_alike_everywhere() || scene.keeps_its_centre()) // cycles are judged by the displacement
       return std::nullopt;
     const auto gait = scene.active_stress->repetition();
     if (!gait)

@@ -19,6 +19,9 @@ namespace crawler
     constexpr double repeats = 1e-3;
     /// Samples are close enough if it changes by less than this part of that from one to the next.
     constexpr double smooth = 0.05;
+    /// Steps follow what happens, some in each period: with more of them from one sample to the next, in the mean, what
+    /// samples show may be a slow alias of it.
+    constexpr unsigned int most_steps_of_sample = 3;
 
     double
     square(const double x)
@@ -213,6 +216,8 @@ namespace crawler
   std::optional<double>
   GaitMeter::find_period() const
   {
+    if (steps_.size() > most_steps_of_sample * n_searched)
+      return std::nullopt;
     const std::size_t first = samples_.size() - n_searched;
     std::vector<double> change(n_searched / 2 + 1, 0.);
     for (std::size_t shift = 1; shift < change.size(); ++shift)

@@ -181,6 +181,10 @@ namespace crawler
     require_segment_table_fits(output.segment_table, *scene.active_stress);
     if (!scene.is_plain())
       require_general(*this, scene);
+    if (time.cycle_stop == CycleStopMode::on && scene.keeps_its_centre())
+      throw InputError("Cycle stop is on, but the displacement, by which cycles are judged, is 0 where a = 1 - p is 0; "
+                       "automatic or off is expected",
+                       "Time/Cycle stop");
     if (discretization.formulation == FormulationEntry::stretch)
       require_stretch_form(*this, scene);
     return scene;

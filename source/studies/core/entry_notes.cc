@@ -212,6 +212,7 @@ namespace crawler
     if (!cycle_wish(with_stop, scene, /*has_pictures=*/false))
       add("Time/Cycle stop",
           !scene.is_alike_everywhere() ? "what the body does depends on its place or its past"
+          : scene.keeps_its_centre()   ? "the displacement, by which cycles are judged, is 0 at a = 0"
           : !scene.active_stress->repetition()
             ? "no period of the active stress is known"
             : fmt::format("the active stress repeats fewer than {} times", CycleStop::fewest_cycles));
