@@ -3,11 +3,13 @@
 #include <crawler/adjoint/run_gradient.h>
 #include <crawler/mesh/reference_element.h>
 #include <crawler/run/gait.h>
+#include <crawler/time/radau_loops.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <stdexcept>
 
 namespace crawler
@@ -52,12 +54,13 @@ namespace crawler
       std::vector<Change> changes; ///< [slot of an Adjoint]
     };
 
-    /// Where a stretch is in the run: w = 1 + sum slopes[j] u[first + j] in a stage.
+    /// Where a stretch is in the run: w = 1 + sum slopes[j] u[first + j], where u is on the polynomial of a step
+    /// through its start and its stages.
     struct StretchInRun
     {
       StretchPlace place;
       std::size_t step;
-      unsigned int stage;
+      std::vector<double> weights; ///< of the stages; the start has the rest
       std::size_t cell           = 0;
       std::vector<double> slopes = {};
       double strain              = 0.;
@@ -120,7 +123,7 @@ namespace crawler
                                                    : quantity != Quantity::speed)
             add_adjoint(static_cast<std::size_t>(quantity), quantity);
         for (const StretchPlace &place : stretches)
-          stretches_.push_back(nearest_stage(place));
+          stretches_.push_back(in_step(place));
         for (std::size_t i = 0; i < stretches_.size(); ++i)
           add_adjoint(all_quantities.size() + i, Quantity::displacement, &stretches_[i]);
         constexpr std::size_t most_samples = 4000000;
@@ -209,25 +212,19 @@ namespace crawler
       }
 
       StretchInRun
-      nearest_stage(const StretchPlace &place) const
+      in_step(const StretchPlace &place) const
       {
-        StretchInRun nearest{place, 0, 0};
-        double distance = HUGE_VAL;
-        for (std::size_t step = 0; step < run_.steps.n_steps(); ++step)
-          for (unsigned int i = 0; i < tableau_.n; ++i)
-          {
-            const double t = run_.steps.time(step) - (1. - tableau_.c[i]) * run_.steps.size(step);
-            if (std::abs(t - place.t) < distance)
-            {
-              distance      = std::abs(t - place.t);
-              nearest.step  = step;
-              nearest.stage = i;
-            }
-          }
-        return nearest;
+        std::size_t step = 0;
+        while (step + 1 < run_.steps.n_steps() && run_.steps.time(step) < place.t)
+          ++step;
+        const double part = 1. + (place.t - run_.steps.time(step)) / run_.steps.size(step);
+        StretchInRun stretch{place, step, std::vector<double>(tableau_.n)};
+        radau::collocation_weights(
+          static_cast<int>(tableau_.n), tableau_.c.data(), std::clamp(part, 0., 1.), stretch.weights.data());
+        return stretch;
       }
 
-      /// The stretch as a sum over nodes, with the displacements @p u of its stage. At an end of a cell that side
+      /// The stretch as a sum over nodes, with the displacements @p u at its time. At an end of a cell that side
       /// counts whose stretch is nearer to what is known.
       void
       look_up(StretchInRun &stretch, const std::vector<double> &u) const
@@ -257,6 +254,37 @@ namespace crawler
         }
       }
 
+      /// What a stretch has of the step where it is, and of the start of this, which is the end of the one before.
+      void
+      add_stretch(const Adjoint &adjoint, const std::size_t step, BackwardStages &stages, const LaneSources &sources)
+      {
+        StretchInRun &stretch = *adjoint.stretch;
+        const std::size_t n   = run_.steps.end().size();
+        if (step + 1 == stretch.step)
+        {
+          const double rest = 1. - std::accumulate(stretch.weights.begin(), stretch.weights.end(), 0.);
+          for (std::size_t j = 0; j < stretch.slopes.size(); ++j)
+            sources.by_end[stretch.cell * setup_.degree + j] += rest * stretch.slopes[j];
+        }
+        if (step != stretch.step)
+          return;
+        stages.go_to_stage(tableau_.n - 1);
+        std::vector<double> u = stages.u(), more(n);
+        const double *z       = run_.steps.z(step);
+        radau::combine(static_cast<int>(tableau_.n), stretch.weights.data(), z, static_cast<int>(n), more.data());
+        for (std::size_t d = 0; d < n; ++d)
+          u[d] += more[d] - z[(tableau_.n - 1) * n + d];
+        look_up(stretch, u);
+        for (unsigned int i = 0; i < tableau_.n; ++i)
+          for (std::size_t j = 0; j < stretch.slopes.size(); ++j)
+            sources.by_u[i * n + stretch.cell * setup_.degree + j] += stretch.weights[i] * stretch.slopes[j];
+        // Parts of a body that is longer there are strained less.
+        for (Direction &direction : directions_)
+          for (std::size_t k = 0; k < 4; ++k)
+            direction.changes[adjoint.slot].sums[k] +=
+              stretch.strain / direction.forces[k]->inside.longer(stretch.cell * cells_.per_cell()) - stretch.strain;
+      }
+
       void
       go_to_stage(BackwardStages &stages, const unsigned int stage)
       {
@@ -277,7 +305,9 @@ namespace crawler
           adjoint.value = run_.displacement / run_.units.length;
         const std::size_t n = gradient.size(), n_mu = tableau_.n * n;
         adjoint.mu.resize(run_.steps.n_steps() * n_mu);
-        BackwardStages stages(run_.steps, tableau_);
+        const LaneRecord steps = // nothing behind a stretch has an effect on it
+          adjoint.stretch != nullptr ? run_.steps.first_steps(adjoint.stretch->step + 1) : run_.steps;
+        BackwardStages stages(steps, tableau_);
         std::vector<ForcesAtPoints::Slopes> slopes;
         const auto see =
           [&](const std::size_t step, const std::span<const double> mu, const std::span<const double> zeta) {
@@ -288,19 +318,7 @@ namespace crawler
           stages.go_back(step);
           if (adjoint.stretch != nullptr)
           {
-            StretchInRun &stretch = *adjoint.stretch;
-            if (step != stretch.step)
-              return;
-            go_to_stage(stages, stretch.stage);
-            look_up(stretch, stages.u());
-            for (std::size_t j = 0; j < stretch.slopes.size(); ++j)
-              sources.by_u[stretch.stage * n + stretch.cell * setup_.degree + j] += stretch.slopes[j];
-            // Parts of a body that is longer there are strained less.
-            for (Direction &direction : directions_)
-              for (std::size_t k = 0; k < 4; ++k)
-                direction.changes[adjoint.slot].sums[k] +=
-                  stretch.strain / direction.forces[k]->inside.longer(stretch.cell * cells_.per_cell()) -
-                  stretch.strain;
+            add_stretch(adjoint, step, stages, sources);
             return;
           }
           if (!is_work(adjoint.quantity))
@@ -328,7 +346,7 @@ namespace crawler
         };
         if (adjoint.quantity == Quantity::displacement && adjoint.stretch == nullptr)
           source = {};
-        if (!adjoint_.solve(run_.steps, gradient, see, source))
+        if (!adjoint_.solve(steps, gradient, see, source))
           throw std::runtime_error("the adjoint of a step did not converge");
       }
 
@@ -411,6 +429,8 @@ namespace crawler
               direction.forces[k]->evaluate(stages.time(), end, at_, at_ends_);
           for (const Adjoint &adjoint : adjoints_)
           {
+            if (adjoint.stretch != nullptr && step > adjoint.stretch->step)
+              continue;
             const std::size_t n = adjoint.mu.size() / (run_.steps.n_steps() * tableau_.n);
             cells_.evaluate(adjoint.mu.data() + (step * tableau_.n + i) * n, mu_, mu_s_);
             if (i + 1 == tableau_.n && !adjoint.zeta[step].empty())

@@ -25,6 +25,20 @@ namespace crawler
       end_[i] = step.y[i * step.stride];
   }
 
+  LaneRecord
+  LaneRecord::first_steps(const std::size_t n) const
+  {
+    LaneRecord first = *this;
+    for (std::size_t step = n; step < n_steps(); ++step)
+      for (std::size_t d = 0; d < end_.size(); ++d)
+        first.end_[d] -= z_[(step + 1) * n_per_step_ - end_.size() + d];
+    first.times_.resize(n);
+    first.sizes_.resize(n);
+    first.starts_.resize(n);
+    first.z_.resize(n * n_per_step_);
+    return first;
+  }
+
   LanePast
   LaneRecord::past(const double *gradient, const bool has_sources) const
   {

@@ -16,7 +16,7 @@ namespace crawler
   {
     /// Goes to better neighbours on a grid of 3 x 3 points that shrinks when there are none.
     StrainExtreme
-    refined(const StrainHistory &history,
+    refined(const FieldHistory &history,
             const double length,
             const double end_time,
             StrainExtreme best,
@@ -30,12 +30,12 @@ namespace crawler
       for (unsigned int move = 0; move < most_moves && ds > stop; ++move)
       {
         const std::vector<double> points = {std::max(0., best.s - ds), best.s, std::min(length, best.s + ds)};
-        const auto at                    = history.at(points);
+        const auto at                    = history(points);
         const StrainExtreme centre       = best;
         std::array<double, 3> e{};
         for (const double t : {std::max(0., centre.t - dt), centre.t, std::min(end_time, centre.t + dt)})
         {
-          at->strain(t, e);
+          at(t, e);
           for (unsigned int i = 0; i < 3; ++i)
             if (sign * e[i] < sign * best.strain)
               best = {e[i], points[i], t};
@@ -80,7 +80,7 @@ namespace crawler
   } // namespace
 
   StrainExtremes
-  find_extremes(const StrainHistory &history,
+  find_extremes(const FieldHistory &history,
                 const double length,
                 const double end_time,
                 const unsigned int n_s,
@@ -90,11 +90,11 @@ namespace crawler
     for (unsigned int i = 0; i < n_s; ++i)
       points[i] = i + 1 == n_s ? length : length * i / (n_s - 1);
     const auto time = [&](const unsigned int j) { return j + 1 == n_t ? end_time : end_time * j / (n_t - 1); };
-    const auto at   = history.at(points);
+    const auto at   = history(points);
     for (unsigned int j = 0; j < n_t; ++j)
     {
       const std::span row(e.data() + 1ul * j * n_s, n_s);
-      at->strain(time(j), row);
+      at(time(j), row);
       for (unsigned int i = 0; i < n_s; ++i)
         if (const StrainExtreme here{row[i], points[i], time(j)}; !std::isfinite(row[i]))
           return {here, here};
@@ -113,6 +113,20 @@ namespace crawler
       return best;
     };
     return {extreme(1.), extreme(-1.)};
+  }
+
+  StrainExtremes
+  find_extremes(const StrainHistory &history,
+                const double length,
+                const double end_time,
+                const unsigned int n_s,
+                const unsigned int n_t)
+  {
+    const auto strain = [&](const std::vector<double> &points) {
+      return
+        [at = std::shared_ptr(history.at(points))](const double t, const std::span<double> e) { at->strain(t, e); };
+    };
+    return find_extremes(FieldHistory(strain), length, end_time, n_s, n_t);
   }
 
   std::optional<StrainJump>

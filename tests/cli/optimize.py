@@ -132,6 +132,32 @@ def test_pulling_limits(place):
     expect(limit * (1 - 2e-3) < largest <= limit * (1 + 2e-5), f"pulling: strain {largest}")
 
 
+def test_many_crests(place):
+    """A wave whose strains reach their limits in many places: 600 random steps found 0.0168, half of the optimum."""
+    low, high = -0.21, 0.17
+    done = run("optimize_harmonics", place / "crests", "Model=nonlinear", "Accuracy=1e-3", "Body/Anchoring exponent=2.4", "Body/Elastic modulus=1.3",
+               "Active stress/Generator=modes", MODES + "Harmonics=3", MODES + "Coefficients=0, 0.2, 0.01, 0.02, 0.03, 0.01, 0.02",
+               f"Optimize/Variables={MODES}Coefficients[2-7] : -2 to 2", "Optimize/Objective=displacement",
+               f"Optimize/Smallest strain={low}", f"Optimize/Largest strain={high}", "Optimize/Starts=1", "Optimize/Tolerance=1e-2")
+    optimum = optima(place / "crests")[0] if done.returncode == 0 else {"has_converged": False, "objective": 0, "violation": 1}
+    best = summary(place / "crests")
+    expect(optimum["has_converged"] and 0.0222 < optimum["objective"] < 0.023, f"crests: {optimum} {done.stderr}")
+    strains = best["min_stretch"]["value"] - 1, best["max_stretch"]["value"] - 1
+    expect(low * (1 + 1e-5) <= strains[0] <= 0.97 * low and 0.97 * high <= strains[1] <= high * (1 + 1e-5), f"crests: strains {strains}")
+    expect(optimum["violation"] <= 1e-5, f"crests: {optimum['violation']} is over the limits")
+
+
+def test_narrow_stress(place):
+    """A limit of the stress is kept between the points where the optimiser looks, and reached."""
+    expression = "Active stress/Expression/"
+    done = run("optimize_robot", place / "narrow", "Active stress/Generator=expression", f"{expression}Constants=A=0.05", "Time/End time=1",
+               f"{expression}Active stress=A*sin(2*pi*(s+t))*(0.5+0.5*exp(-((s-0.515)/0.03)^2))", "Accuracy=1e-3",
+               f"Optimize/Variables={expression}Constants[A] : 0.001 to 1", "Optimize/Largest stress=0.1", "Optimize/Tolerance=1e-2")
+    optimum = optima(place / "narrow")[0] if done.returncode == 0 else {"variables": {"": 0}, "violation": 1}
+    largest = next(iter(optimum["variables"].values()))  # at s = 0.515
+    expect(0.099 < largest <= 0.1 * (1 + 1e-4) and optimum["violation"] <= 1e-4, f"narrow: {optimum} {done.stderr}")
+
+
 def test_cases(place):
     """Cases that differ in words, numbers and lists, with starts and variables of their own."""
     # The best of each is better with more segments, and for a = 1 it is the mirror image of a wave.
@@ -367,8 +393,8 @@ def main():
     """All tests in a folder of their own."""
     with tempfile.TemporaryDirectory() as name:
         place = pathlib.Path(name)
-        for test in tests_of_part((test_merits, test_theorem, test_simulations, test_pulling_limits, test_cases, test_neighbours, test_starts,
-                                   test_gradients, test_uneven, test_obstacles, test_bad_input), (test_stops,)):
+        for test in tests_of_part((test_merits, test_theorem, test_simulations, test_pulling_limits, test_many_crests, test_narrow_stress,
+                                   test_cases, test_neighbours, test_starts, test_gradients, test_uneven, test_obstacles, test_bad_input), (test_stops,)):
             test(place)
     checks.end()
 

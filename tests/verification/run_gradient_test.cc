@@ -4,6 +4,7 @@
 #include "../support/run_text.h"
 
 #include <crawler/adjoint/run_gradient.h>
+#include <crawler/output/kymograph_writer.h>
 #include <crawler/studies/core/compute.h>
 
 #include <gtest/gtest.h>
@@ -319,4 +320,45 @@ TEST(RunGradient, LocalSensitivitiesAddUp)
   }
   EXPECT_NEAR(by_k, *derivatives[0][0], 1e-9 * std::abs(*derivatives[0][0]));
   EXPECT_NEAR(by_gamma, *derivatives[1][0], 1e-9 * std::abs(*derivatives[1][0]));
+}
+
+/// The stretch at a place and a time, between stages and right behind the start of a step, too.
+TEST(RunGradient, OfStretches)
+{
+  const test::Settings settings = {{"Active stress/Generator", "expression"},
+                                   {"Active stress/Expression/Active stress", "A*sin(2*pi*(s+t))*sin(2*pi*t)"},
+                                   {"Active stress/Expression/Constants", "A=0.2"}};
+  const std::string entry       = "Active stress/Expression/Constants[A]";
+  const double value = 0.2, step = 2e-4;
+  const Scene scene         = scene_of(settings, entry, value);
+  const TimeParameters time = test::parameters_with(settings).time;
+  const Numerics numerics   = numerics_for(scene, "radau 5", 6, 1e-7);
+  const RecordedRun run(scene, time, numerics, {});
+  std::vector<StretchPlace> places;
+  std::vector<double> points, times;
+  for (const double t : {run.steps.time(5) + 1e-3 * run.steps.size(6), run.steps.time(9), 0.5123, 0.77, 1.})
+  {
+    places.push_back({0.31, t, 1.});
+    times.push_back(t);
+  }
+  std::vector<Scene> near;
+  std::vector<std::vector<double>> seen;
+  for (const int i : {-2, -1, 1, 2})
+  {
+    near.push_back(scene_of(settings, entry, value + i * step));
+    std::vector<std::unique_ptr<Observer>> observers;
+    observers.push_back(std::make_unique<Kymograph>(std::vector<double>{0.31}));
+    Simulation(MPI_COMM_SELF, near.back(), time, numerics_for(near.back(), "radau 9", 10, 1e-12))
+      .run(PictureTimes({}, times, 1.), {}, observers);
+    seen.push_back(static_cast<const Kymograph &>(*observers.front()).rows().stretch);
+    ASSERT_EQ(seen.back().size(), times.size());
+  }
+  const Variation variation = {{{&near[0], &near[1], &near[2], &near[3]}}, step};
+  RunGradient gradient(run);
+  gradient.derivatives({&variation, 1}, {}, places);
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    const double exact = fourth_order(seen[0][i], seen[1][i], seen[2][i], seen[3][i], step);
+    EXPECT_NEAR(gradient.of_stretches()[0][i].value(), exact, 2e-6 * std::abs(exact)) << times[i];
+  }
 }

@@ -63,7 +63,7 @@ namespace crawler
                 std::span<const Quantity> quantities,
                 std::span<const StretchPlace> stretches = {});
 
-    /// Of the last derivatives(): those of the stretches where they were wanted, each in the nearest stage of a step,
+    /// Of the last derivatives(): those of the stretches where they were wanted, each on the polynomial of a step,
     /// [variation][stretch]. Where it is an extreme this is the derivative of the extreme, too.
     const std::vector<std::vector<std::optional<double>>> &
     of_stretches() const

@@ -48,6 +48,10 @@ namespace crawler
       return end_;
     }
 
+    /// The first @p n of the steps.
+    LaneRecord
+    first_steps(std::size_t n) const;
+
     LanePast
     past(const double *gradient, bool has_sources) const;
 

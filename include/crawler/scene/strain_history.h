@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -61,9 +62,15 @@ namespace crawler
   std::optional<StrainJump>
   find_jump(const StrainHistory &history, double length, double end_time);
 
+  /// Evaluates a field at some points [length]: what it gives writes the values at a time.
+  using FieldHistory =
+    std::function<std::function<void(double t, std::span<double> values)>(const std::vector<double> &)>;
+
   /// Looked for on a grid of @p n_s times @p n_t points over the whole body and 0 <= t <= @p end_time, its ends
   /// included, and from its eight highest peaks by a search with steps that become smaller (to 1e-4 of those of the
   /// grid). A strain that is not a finite number somewhere is the smallest and the largest.
+  StrainExtremes
+  find_extremes(const FieldHistory &history, double length, double end_time, unsigned int n_s, unsigned int n_t);
   StrainExtremes
   find_extremes(const StrainHistory &history, double length, double end_time, unsigned int n_s, unsigned int n_t);
 } // namespace crawler

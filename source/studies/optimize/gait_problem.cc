@@ -42,7 +42,8 @@ namespace crawler
                            const OptimizeParameters &parameters,
                            const std::vector<Variable> &variables,
                            const std::vector<double> &start,
-                           std::function<bool()> stops)
+                           std::function<bool()> stops,
+                           const OptimizeParameters *const closer)
     : model_(model)
     , parameters_(parameters)
     , variables_(variables)
@@ -57,31 +58,25 @@ namespace crawler
       number_limits_.push_back({GaitNumber::dissipation, "Dissipation", *p.dissipation});
     if (p.mean_square_strain)
       number_limits_.push_back({GaitNumber::mean_square, "Mean-square strain", *p.mean_square_strain});
+    const OptimizeParameters &own = closer != nullptr ? *closer : p;
     if (p.smallest_strain || p.largest_strain)
     {
       const double lower = p.smallest_strain.value_or(-HUGE_VAL), upper = p.largest_strain.value_or(HUGE_VAL);
-      const double scale = std::max(std::isfinite(lower) ? -lower : 0., std::isfinite(upper) ? upper : 0.);
       block_limits_.push_back({&GaitValues::strain,
                                p.smallest_strain ? "Smallest strain" : "",
                                p.largest_strain ? "Largest strain" : "",
+                               own.smallest_strain.value_or(lower),
+                               own.largest_strain.value_or(upper),
+                               std::max(p.smallest_strain ? -lower : 0., p.largest_strain ? upper : 0.),
                                lower,
-                               upper,
-                               scale});
+                               upper});
     }
-    if (p.largest_stress)
-      block_limits_.push_back({&GaitValues::stress,
-                               "Largest stress",
-                               "Largest stress",
-                               -*p.largest_stress,
-                               *p.largest_stress,
-                               *p.largest_stress});
-    if (p.largest_stress_rate)
-      block_limits_.push_back({&GaitValues::stress_rate,
-                               "Largest stress rate",
-                               "Largest stress rate",
-                               -*p.largest_stress_rate,
-                               *p.largest_stress_rate,
-                               *p.largest_stress_rate});
+    const auto limit_size = [&](LimitedValues GaitValues::*values, const char *name, const auto limit) {
+      if (const std::optional<double> wanted = p.*limit)
+        block_limits_.push_back({values, name, name, -*(own.*limit), *(own.*limit), *wanted, -*wanted, *wanted});
+    };
+    limit_size(&GaitValues::stress, "Largest stress", &OptimizeParameters::largest_stress);
+    limit_size(&GaitValues::stress_rate, "Largest stress rate", &OptimizeParameters::largest_stress_rate);
     lower_.assign(number_limits_.size(), -HUGE_VAL);
     upper_.assign(number_limits_.size(), 1.);
     const GaitValues values = model.evaluate(start, /*with_gradients=*/false);
@@ -165,18 +160,31 @@ namespace crawler
     return by_D * D;
   }
 
+  std::vector<std::size_t>
+  GaitProblem::pulling_places(const std::vector<double> &forces) const
+  {
+    std::vector<std::size_t> places;
+    if (!forces.empty() && !block_limits_.empty() && block_limits_.front().values == &GaitValues::strain)
+      for (std::size_t p = 0; p < block_sizes_.front(); ++p)
+        if (forces[number_limits_.size() + p] != 0.)
+          places.push_back(p);
+    return places;
+  }
+
   const GaitProblem::Point &
-  GaitProblem::at(const std::vector<double> &y, const bool with_gradients)
+  GaitProblem::at(const std::vector<double> &y, const bool with_gradients, const std::vector<double> &forces)
   {
     if (stops_())
       throw GaitModel::Interrupted();
-    if (y == latest_y_ && (latest_has_gradients_ || !with_gradients))
+    const std::vector<std::size_t> places = pulling_places(forces);
+    if (y == latest_y_ && ((latest_has_gradients_ && std::ranges::includes(latest_places_, places)) || !with_gradients))
       return latest_;
     const bool is_new           = y != latest_y_;
     const std::vector<double> x = to_x(y);
-    const GaitValues values     = model_.evaluate(x, with_gradients);
+    const GaitValues values     = model_.evaluate(x, with_gradients, places);
     latest_y_                   = y;
     latest_has_gradients_       = with_gradients;
+    latest_places_              = places;
     latest_                     = {};
     latest_.gradient.assign(y.size(), 0.);
     latest_.constraints.assign(lower_.size(), 0.);
@@ -220,8 +228,8 @@ namespace crawler
         for (const double value : own.values)
         {
           latest_.constraints[next++] = value / limit.scale;
-          see((value - limit.upper) / limit.scale, limit.upper_name);
-          see((limit.lower - value) / limit.scale, limit.lower_name);
+          see((value - limit.wanted_upper) / limit.scale, limit.upper_name);
+          see((limit.wanted_lower - value) / limit.scale, limit.lower_name);
         }
         latest_.blocks.push_back(own.jacobian);
       }

@@ -271,7 +271,7 @@ namespace crawler
   }
 
   GaitValues
-  KinematicGait::evaluate(const std::vector<double> &x, const bool with_gradients)
+  KinematicGait::evaluate(const std::vector<double> &x, const bool with_gradients, const std::vector<std::size_t> &)
   {
     GaitValues result;
     std::shared_ptr<const State> state;

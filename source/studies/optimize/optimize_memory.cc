@@ -33,11 +33,11 @@ namespace crawler
                                                                          {"efficiency", "1", ""}}};
 
     /// Goes through the fields of a row in the order of the columns: says what they are, writes them or reads them.
-    class Fields
+    class RowFields
     {
     public:
-      Fields() = default;
-      Fields(const Table &table, const unsigned long row)
+      RowFields() = default;
+      RowFields(const Table &table, const unsigned long row)
         : table_(&table)
         , row_(row)
       {
@@ -79,7 +79,8 @@ namespace crawler
 
     /// A gait of a start. The case is too large if it is damaged.
     void
-    exchange(Fields &fields, const OptimizeNames &names, StartName &start, GaitRecord &record, const unsigned int width)
+    exchange(
+      RowFields &fields, const OptimizeNames &names, StartName &start, GaitRecord &record, const unsigned int width)
     {
       unsigned long number = start.number_of_case + 1;
       fields.whole({"case", "1", "number of the case"}, number);
@@ -124,7 +125,7 @@ namespace crawler
     }
 
     void
-    exchange(Fields &fields, const OptimizeNames &names, StartName &start, double &number, GaitRecord &record)
+    exchange(RowFields &fields, const OptimizeNames &names, StartName &start, double &number, GaitRecord &record)
     {
       constexpr unsigned int width = 256;
       fields.number({"evaluation", "1", "number of the evaluation in its start"}, number);
@@ -132,17 +133,17 @@ namespace crawler
     }
 
     /// Of a start its gait with this number.
-    Fields
+    RowFields
     evaluation(const OptimizeNames &names, StartName start, double number, GaitRecord record)
     {
-      Fields fields;
+      RowFields fields;
       exchange(fields, names, start, number, record);
       return fields;
     }
 
     /// A start, and the number of its evaluations, which are not in its row.
     void
-    exchange(Fields &fields, const OptimizeNames &names, StartResult &start, std::size_t &n_evaluations)
+    exchange(RowFields &fields, const OptimizeNames &names, StartResult &start, std::size_t &n_evaluations)
     {
       constexpr unsigned int width = 1024;
       std::string end              = start.has_converged ? converged : start.message;
@@ -183,7 +184,7 @@ namespace crawler
     {
       PointTable table = {
         OptimizeMemory::file, OptimizeMemory::group, {index_column}, 1, "status", {}, HUGE_VAL, /*grows=*/true};
-      Fields fields;
+      RowFields fields;
       StartResult any;
       std::size_t none = 0;
       exchange(fields, names, any, none);
@@ -211,7 +212,7 @@ namespace crawler
       Evaluations all;
       for (unsigned long row = 0; row < n; ++row)
       {
-        Fields fields(table, row);
+        RowFields fields(table, row);
         StartName name;
         double number = 0.;
         GaitRecord record;
@@ -249,7 +250,7 @@ namespace crawler
       for (unsigned long row = 0; row < done.size(); ++row)
         if (done[row])
         {
-          Fields fields(table, row);
+          RowFields fields(table, row);
           StartResult start;
           std::size_t n = 0;
           exchange(fields, names_, start, n);
@@ -353,7 +354,7 @@ namespace crawler
     StartResult written = start;
     written.best        = shown(start.best);
     std::size_t n       = rows.size();
-    Fields fields;
+    RowFields fields;
     exchange(fields, names_, written, n);
     start_rows_->write(n_starts_, {{fields.values}});
     ++n_starts_;

@@ -17,38 +17,62 @@ namespace crawler
 {
   namespace
   {
-    /// The limits of strain, closer by what was exceeded by more than @p exact, relative. Returns whether something
-    /// was.
+    /// A limit of what a gait has at many places, and its extreme, between the places where the optimiser looks, too.
+    struct LimitedExtreme
+    {
+      std::optional<double> OptimizeParameters::*limit;
+      double value;
+
+      /// By how much it exceeds the limit that was wanted, relative to this.
+      double
+      excess(const OptimizeParameters &wanted) const
+      {
+        const double own = *(wanted.*limit);
+        return own != 0. && value * own > 0. ? std::abs(value / own) - 1. : 0.;
+      }
+    };
+
+    std::vector<LimitedExtreme>
+    limited_extremes(const OptimizeParameters &wanted,
+                     GaitModel &model,
+                     SceneFamily &family,
+                     const std::vector<double> &x)
+    {
+      std::vector<LimitedExtreme> list;
+      if (wanted.smallest_strain || wanted.largest_strain)
+      {
+        const auto [smallest, largest] = model.extreme_strains(x);
+        if (wanted.smallest_strain)
+          list.push_back({&OptimizeParameters::smallest_strain, smallest});
+        if (wanted.largest_strain)
+          list.push_back({&OptimizeParameters::largest_strain, largest});
+      }
+      if (wanted.largest_stress)
+        list.push_back({&OptimizeParameters::largest_stress, family.largest_stress(x, /*rate=*/false)});
+      if (wanted.largest_stress_rate)
+        list.push_back({&OptimizeParameters::largest_stress_rate, family.largest_stress(x, /*rate=*/true)});
+      return list;
+    }
+
+    /// The limits, closer by what was exceeded by more than @p exact. Returns whether something was.
     bool
     tighten(OptimizeParameters &parameters,
             const OptimizeParameters &wanted,
-            const std::pair<double, double> &extremes,
+            const std::vector<LimitedExtreme> &extremes,
             const double exact)
     {
-      constexpr double more = 1.02;
-      const auto closer     = [&](std::optional<double> &limit, const std::optional<double> &own, const double value) {
-        if (!own)
-          return false;
-        const double excess = (std::abs(value) - std::abs(*own)) * more;
-        if (!(std::abs(value) > std::abs(*own) * (1. + exact)) || value * *own < 0.)
-          return false;
-        *limit = std::copysign(std::max(std::abs(*limit) - excess, 0.5 * std::abs(*own)), *own);
-        return true;
-      };
-      const bool is_lower = closer(parameters.smallest_strain, wanted.smallest_strain, extremes.first);
-      return closer(parameters.largest_strain, wanted.largest_strain, extremes.second) || is_lower;
-    }
-
-    /// Of the extreme strains over the limits, relative to these.
-    double
-    excess(const OptimizeParameters &wanted, const std::pair<double, double> &extremes)
-    {
-      double largest = 0.;
-      if (wanted.smallest_strain && *wanted.smallest_strain != 0.)
-        largest = std::max(largest, (*wanted.smallest_strain - extremes.first) / std::abs(*wanted.smallest_strain));
-      if (wanted.largest_strain && *wanted.largest_strain != 0.)
-        largest = std::max(largest, (extremes.second - *wanted.largest_strain) / std::abs(*wanted.largest_strain));
-      return largest;
+      constexpr double margin = 0.02, most = 0.5;
+      bool is_closer = false;
+      for (const LimitedExtreme &one : extremes)
+        if (const double excess = one.excess(wanted); excess > exact)
+        {
+          double &limit = *(parameters.*one.limit);
+          limit         = std::copysign(
+            std::max(std::abs(limit) * (1. - margin * excess) / (1. + excess), most * std::abs(*(wanted.*one.limit))),
+            limit);
+          is_closer = true;
+        }
+      return is_closer;
     }
 
     /// The rounds of one start. Each is an optimisation; the next one knows better where to look.
@@ -134,20 +158,19 @@ namespace crawler
             return; // closer limits would not help
           if (is_fine && !is_rough)
           {
-            if (!wanted_.smallest_strain && !wanted_.largest_strain)
-              return;
-            const auto extremes = model->extreme_strains(x_);
+            const auto extremes = limited_extremes(wanted_, *model, family_, x_);
             if (!tighten(parameters_, wanted_, extremes, std::min(promised, result_.admissible)))
             {
-              result_.best.violation = std::max(result_.best.violation, excess(wanted_, extremes));
+              for (const LimitedExtreme &one : extremes)
+                result_.best.violation = std::max(result_.best.violation, one.excess(wanted_));
               return;
             }
           }
           is_rough = is_rough && !is_fine;
         }
         result_.has_converged = false;
-        result_.message       = is_fine ? "the strain exceeds its limits between the points where it is looked at"
-                                        : "the grid became finer and finer";
+        result_.message = is_fine ? "strain or stress exceed their limits between the points where they are looked at"
+                                  : "the grid became finer and finer";
       }
 
       /// From x on; @p is_rough: the grid may be too coarse, so that a rough optimum will do.
@@ -161,7 +184,7 @@ namespace crawler
             see(*current);
           return stops_();
         };
-        GaitProblem problem(model, parameters_, family_.variables(), x_, stops);
+        GaitProblem problem(model, wanted_, family_.variables(), x_, stops, &parameters_);
         current         = &problem;
         const auto keep = [&](const GaitRecord *const optimum) {
           result_.records.insert(result_.records.end(), problem.records().begin(), problem.records().end());
@@ -247,10 +270,9 @@ namespace crawler
             limit.multiplier = NAN;
           if (is_cost) // the multiplier is that of D/W
             limit.multiplier *= -result_.best.objective * result_.best.objective;
-          if (limit.name == "Smallest strain") // as it was wanted, not tightened
-            limit.value = *wanted_.smallest_strain;
-          if (limit.name == "Largest strain")
-            limit.value = *wanted_.largest_strain;
+          for (const LimitEntry &entry : limits_of(wanted_)) // as it was wanted, not tightened
+            if (entry.name == limit.name)
+              limit.value = *entry.value;
         }
       }
 
@@ -258,7 +280,7 @@ namespace crawler
       SearchState &state_;
       const std::function<bool()> &stops_;
       OptimizeParameters wanted_;
-      OptimizeParameters parameters_; ///< with limits of strain that may be tightened
+      OptimizeParameters parameters_; ///< with limits that may be tightened
       const std::vector<double> start_;
       std::vector<double> x_, multipliers_;
       double scale_           = 1.; ///< of the objective, for the multipliers

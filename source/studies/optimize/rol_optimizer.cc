@@ -107,16 +107,17 @@ namespace crawler
       void
       gradient(List &gradient, const List &y, double &) override
       {
-        const GaitProblem::Point &point = problem_.at(y, true);
-        problem_.apply_transposed(point, forces(point.constraints), gradient);
+        const List t                    = forces(problem_.at(y, false).constraints);
+        const GaitProblem::Point &point = problem_.at(y, true, t);
+        problem_.apply_transposed(point, t, gradient);
         for (std::size_t i = 0; i < y.size(); ++i)
           gradient[i] += point.gradient[i];
       }
       void
       hessVec(List &result, const List &v, const List &y, double &) override
       {
-        const GaitProblem::Point &point = problem_.at(y, true);
-        const List t                    = forces(point.constraints);
+        const List t                    = forces(problem_.at(y, false).constraints);
+        const GaitProblem::Point &point = problem_.at(y, true, t);
         List change;
         problem_.apply_jacobian(point, v, change);
         for (std::size_t i = 0; i < t.size(); ++i)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/parameters/declarations.h>
+#include <crawler/scene/strain_history.h>
 #include <crawler/studies/optimize/scene_family.h>
 
 #include <fmt/format.h>
@@ -45,35 +46,39 @@ namespace crawler
       return variables;
     }
 
+    /// The active stress, or its rate; where this is not known, differences of the stress.
+    FieldHistory
+    stress_of(const Scene &scene, const bool rate)
+    {
+      const ActiveStress &stress = *scene.active_stress;
+      const double T = scene.end_time, beside = 1e-5 * T;
+      return [=, &stress](const std::vector<double> &points) -> std::function<void(double, std::span<double>)> {
+        const auto own = std::shared_ptr(stress.at(points));
+        if (!rate)
+          return [own](const double t, const std::span<double> m) { own->values(t, m); };
+        if (const auto rates = std::shared_ptr(stress.rate_at(points)))
+          return [rates](const double t, const std::span<double> m) { rates->values(t, m); };
+        return [=, before = std::vector<double>(points.size())](const double t, const std::span<double> m) mutable {
+          const double from = std::max(t - beside, 0.), to = std::min(t + beside, T);
+          own->values(from, before);
+          own->values(to, m);
+          for (std::size_t i = 0; i < before.size(); ++i)
+            m[i] = (m[i] - before[i]) / (to - from);
+        };
+      };
+    }
+
     std::vector<double>
     stress_samples(const Parameters &parameters, const bool rate)
     {
       constexpr unsigned int n_s = 33, n_t = 129;
-      const Scene scene          = parameters.create_scene();
-      const ActiveStress &stress = *scene.active_stress;
-      std::vector<double> points, m, before(n_s), after(n_s), now(n_s);
+      const Scene scene = parameters.create_scene();
+      std::vector<double> points, m(1ul * n_s * n_t);
       for (unsigned int i = 0; i < n_s; ++i)
         points.push_back(scene.body.length * i / (n_s - 1));
-      const auto at    = stress.at(points);
-      const auto rates = rate ? stress.rate_at(points) : nullptr;
-      const double T = scene.end_time, beside = 1e-5 * T;
+      const auto at = stress_of(scene, rate)(points);
       for (unsigned int j = 0; j < n_t; ++j)
-      {
-        const double t = T * j / (n_t - 1);
-        if (!rate)
-          at->values(t, now);
-        else if (rates)
-          rates->values(t, now);
-        else
-        {
-          const double from = std::max(t - beside, 0.), to = std::min(t + beside, T);
-          at->values(from, before);
-          at->values(to, after);
-          for (unsigned int i = 0; i < n_s; ++i)
-            now[i] = (after[i] - before[i]) / (to - from);
-        }
-        m.insert(m.end(), now.begin(), now.end());
-      }
+        at(scene.end_time * j / (n_t - 1), std::span(m).subspan(1ul * j * n_s, n_s));
       return m;
     }
   } // namespace
@@ -179,5 +184,14 @@ namespace crawler
     if (with_gradients)
       result.jacobian = std::make_shared<const std::vector<double>>(differences(x, samples, step));
     return result;
+  }
+
+  double
+  SceneFamily::largest_stress(const std::vector<double> &x, const bool rate)
+  {
+    constexpr unsigned int n_s = 65, n_t = 257;
+    const Scene scene             = parameters(x).create_scene();
+    const StrainExtremes extremes = find_extremes(stress_of(scene, rate), scene.body.length, scene.end_time, n_s, n_t);
+    return std::max(-extremes.smallest.strain, extremes.largest.strain);
   }
 } // namespace crawler

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/adjoint/run_gradient.h>
 #include <crawler/base/exceptions.h>
-#include <crawler/output/observer.h>
+#include <crawler/output/kymograph_writer.h>
 #include <crawler/run/simulation.h>
 #include <crawler/studies/core/answer_differences.h>
 #include <crawler/studies/optimize/simulated_gait.h>
@@ -40,6 +40,39 @@ namespace crawler
         return "";
       return end.reason.empty() ? word_of(end.status) : end.reason + ": " + end.message;
     }
+
+    double
+    strides_of(const Scene &scene)
+    {
+      return scene.end_time / scene.active_stress->period().value_or(scene.end_time);
+    }
+
+    /// May states between its steps be looked at, with the numerics of its answer?
+    bool
+    has_pictures(const Task &task)
+    {
+      return task.computed.result.model != Model::kinematic && !task.computed.choice.has_fronts;
+    }
+
+    /// The extreme strains of the states that it sees.
+    class ExtremesOfPictures : public Observer
+    {
+    public:
+      explicit ExtremesOfPictures(std::pair<double, double> &extremes)
+        : extremes_(extremes)
+      {
+      }
+
+      void
+      observe(const Snapshot &snapshot) override
+      {
+        extremes_.first  = std::min(extremes_.first, snapshot.stretch.min.value - 1.);
+        extremes_.second = std::max(extremes_.second, snapshot.stretch.max.value - 1.);
+      }
+
+    private:
+      std::pair<double, double> &extremes_;
+    };
   } // namespace
 
   SimulatedGait::SimulatedGait(SceneFamily &family, const GaitWishes wishes, std::function<bool()> interrupted)
@@ -59,58 +92,60 @@ namespace crawler
     return "simulations, with derivatives by the adjoint";
   }
 
-  namespace
+  std::unique_ptr<Observer>
+  SimulatedGait::seen_by(std::unique_ptr<Observer> observer, const Task &task, const std::vector<double> &times) const
   {
-    /// The extreme stretches of the states that it sees.
-    class ExtremesOfPictures : public Observer
-    {
-    public:
-      ExtremesOfPictures(double &smallest, double &largest)
-        : smallest_(smallest)
-        , largest_(largest)
-      {
-      }
-
-      void
-      observe(const Snapshot &snapshot) override
-      {
-        smallest_ = std::min(smallest_, snapshot.stretch.min.value);
-        largest_  = std::max(largest_, snapshot.stretch.max.value);
-      }
-
-    private:
-      double &smallest_, &largest_;
-    };
-  } // namespace
+    const Scene &scene = *task.scene;
+    std::vector<double> rows;
+    for (const double part : times)
+      rows.push_back(scene.end_time * part);
+    TimeParameters time = task.parameters.time;
+    time.cycle_stop     = CycleStopMode::off;
+    std::vector<std::unique_ptr<Observer>> observers;
+    observers.push_back(std::move(observer));
+    Simulation(MPI_COMM_SELF, scene, time, task.computed.choice.numerics)
+      .run(PictureTimes({}, rows, scene.end_time), {.energy_balance = false}, observers, [&]() {
+        return !interrupted_();
+      });
+    if (interrupted_())
+      throw Interrupted();
+    return std::move(observers.front());
+  }
 
   /// Steps see extremes at their stages; a thousand pictures of each stride show what is between.
   std::pair<double, double>
   SimulatedGait::extreme_strains(const std::vector<double> &x)
   {
     constexpr double pictures_of_stride = 1000., most_pictures = 20000.;
-    evaluate(x, /*with_gradients=*/false);
-    const Task &task               = latest_.front();
-    const SimulationResult &result = task.computed.result;
-    const NumericsChoice &choice   = task.computed.choice;
-    double smallest = result.min_stretch.value, largest = result.max_stretch.value;
-    if (result.model != Model::kinematic && !choice.has_fronts)
+    evaluate(x, /*with_gradients=*/false, {});
+    const Task &task = latest_.front();
+    std::pair<double, double> extremes{task.computed.result.min_stretch.value - 1.,
+                                       task.computed.result.max_stretch.value - 1.};
+    if (has_pictures(task))
+      seen_by(std::make_unique<ExtremesOfPictures>(extremes),
+              task,
+              equal_parts(static_cast<std::size_t>(
+                std::min(pictures_of_stride * std::max(strides_of(*task.scene), 1.), most_pictures))));
+    return extremes;
+  }
+
+  std::vector<StretchPlace>
+  SimulatedGait::extremes(const Task &task)
+  {
+    if (!boxes_)
+      boxes_.emplace(strides_of(*task.scene));
+    if (has_pictures(task))
     {
-      const Scene &scene   = *task.scene;
-      const double strides = scene.end_time / scene.active_stress->period().value_or(scene.end_time);
-      const auto n = static_cast<std::size_t>(std::min(pictures_of_stride * std::max(strides, 1.), most_pictures));
-      std::vector<double> times;
-      for (std::size_t i = 0; i <= n; ++i)
-        times.push_back(scene.end_time * static_cast<double>(i) / static_cast<double>(n));
-      std::vector<std::unique_ptr<Observer>> observers;
-      observers.push_back(std::make_unique<ExtremesOfPictures>(smallest, largest));
-      Simulation(MPI_COMM_SELF, scene, task.parameters.time, choice.numerics)
-        .run(PictureTimes({}, times, scene.end_time), {.energy_balance = false}, observers, [&]() {
-          return !interrupted_();
-        });
-      if (interrupted_())
-        throw Interrupted();
+      const auto seen = seen_by(std::make_unique<Kymograph>(boxes_->points()), task, boxes_->times());
+      const std::vector<double> &stretch = static_cast<const Kymograph &>(*seen).rows().stretch;
+      if (stretch.size() == boxes_->points().size() * boxes_->times().size())
+        return boxes_->find(stretch);
     }
-    return {smallest - 1., largest - 1.};
+    const SimulationResult &result = task.computed.result;
+    const auto place_of            = [&](const Extreme &one) {
+      return StretchPlace{one.s / task.scene->body.length, one.t / task.scene->end_time, one.value};
+    };
+    return boxes_->place(place_of(result.min_stretch), place_of(result.max_stretch));
   }
 
   std::vector<Task>
@@ -151,7 +186,9 @@ namespace crawler
   }
 
   GaitValues
-  SimulatedGait::evaluate(const std::vector<double> &x, const bool with_gradients)
+  SimulatedGait::evaluate(const std::vector<double> &x,
+                          const bool with_gradients,
+                          const std::vector<std::size_t> &places)
   {
     GaitValues values;
     try
@@ -160,6 +197,7 @@ namespace crawler
       {
         latest_   = answers({x});
         latest_x_ = x;
+        latest_extremes_.clear();
       }
       const Task &task = latest_.front();
       values.problem   = problem_of(task);
@@ -172,8 +210,12 @@ namespace crawler
                              ? "the speed is not known, since the active stress does not say how long its stride is"
                              : "a work is not known there";
       if (wishes_.strain)
-        values.strain.values = {task.computed.result.min_stretch.value - 1.,
-                                task.computed.result.max_stretch.value - 1.};
+      {
+        if (latest_extremes_.empty())
+          latest_extremes_ = extremes(task);
+        for (const StretchPlace &one : latest_extremes_)
+          values.strain.values.push_back(one.value - 1.);
+      }
       if (wishes_.stress)
         values.stress = family_.stress(x, /*rate=*/false, with_gradients);
       if (wishes_.stress_rate)
@@ -185,8 +227,8 @@ namespace crawler
         values.by_differences.assign(x.size(), true);
         values.strain_by_differences.assign(x.size(), wishes_.strain);
         if (wishes_.strain)
-          strain_jacobian_.assign(2 * x.size(), 0.);
-        add_adjoint_gradients(x, task, values);
+          strain_jacobian_.assign(boxes_->size() * x.size(), 0.);
+        add_adjoint_gradients(x, task, wishes_.strain ? with_extremes(places) : places, values);
         values.gradients[GaitNumber::friction_time] = family_.differences(
           x,
           [](const Parameters &there) {
@@ -207,7 +249,10 @@ namespace crawler
 
   /// For the variables for which all wanted numbers have their derivatives.
   void
-  SimulatedGait::add_adjoint_gradients(const std::vector<double> &x, const Task &task, GaitValues &values)
+  SimulatedGait::add_adjoint_gradients(const std::vector<double> &x,
+                                       const Task &task,
+                                       const std::vector<std::size_t> &near,
+                                       GaitValues &values)
   {
     constexpr double step        = 1e-3;
     const Parameters &parameters = task.parameters;
@@ -247,12 +292,11 @@ namespace crawler
     try
     {
       const RecordedRun run(*task.scene, parameters.time, choice.numerics, [&]() { return !interrupted_(); });
-      std::vector<StretchPlace> extremes;
-      if (wishes_.strain)
-        for (const Extreme &one : {task.computed.result.min_stretch, task.computed.result.max_stretch})
-          extremes.push_back({one.s / task.scene->body.length, one.t / task.scene->end_time, one.value});
+      std::vector<StretchPlace> places;
+      for (const std::size_t e : near)
+        places.push_back(latest_extremes_[e]);
       RunGradient gradient(run);
-      const auto derivatives = gradient.derivatives(variations, wanted, extremes);
+      const auto derivatives = gradient.derivatives(variations, wanted, places);
       for (std::size_t v = 0; v < own.size(); ++v)
       {
         const std::size_t i = own[v];
@@ -269,7 +313,7 @@ namespace crawler
         if (!wishes_.strain || !std::ranges::all_of(strains, [](const auto &one) { return one.has_value(); }))
           continue;
         for (std::size_t e = 0; e < strains.size(); ++e)
-          strain_jacobian_[e * x.size() + i] = *strains[e];
+          strain_jacobian_[near[e] * x.size() + i] = *strains[e];
         values.strain_by_differences[i] = false;
       }
     }
@@ -280,6 +324,19 @@ namespace crawler
       values.by_differences.assign(x.size(), true);
       values.strain_by_differences.assign(x.size(), wishes_.strain);
     }
+  }
+
+  /// Each derivative costs a sweep.
+  std::vector<std::size_t>
+  SimulatedGait::with_extremes(std::vector<std::size_t> places) const
+  {
+    const auto of_value      = [](const StretchPlace &a, const StretchPlace &b) { return a.value < b.value; };
+    const auto [least, most] = std::ranges::minmax_element(latest_extremes_, of_value);
+    places.push_back(static_cast<std::size_t>(least - latest_extremes_.begin()));
+    places.push_back(static_cast<std::size_t>(most - latest_extremes_.begin()));
+    std::ranges::sort(places);
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    return places;
   }
 
   void
@@ -325,7 +382,6 @@ namespace crawler
       if (!problems[i].empty() && nearest[i] == tasks.size())
         values.problem_of_gradients = "beside it: " + problems[i];
     }
-    const SimulationResult &here = latest_.front().computed.result;
     for (std::size_t j = 0; j < tasks.size(); ++j)
     {
       const std::size_t i     = weights[j].first;
@@ -342,8 +398,9 @@ namespace crawler
           values.gradients[k][i] += change(there[k], values.numbers[k]);
       if (!values.strain_by_differences[i])
         continue;
-      strain_jacobian_[i] += change(tasks[j].computed.result.min_stretch.value, here.min_stretch.value);
-      strain_jacobian_[n + i] += change(tasks[j].computed.result.max_stretch.value, here.max_stretch.value);
+      const std::vector<StretchPlace> extremes_there = extremes(tasks[j]);
+      for (std::size_t e = 0; e < boxes_->size(); ++e)
+        strain_jacobian_[e * n + i] += change(extremes_there[e].value, latest_extremes_[e].value);
     }
   }
 } // namespace crawler

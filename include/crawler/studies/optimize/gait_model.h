@@ -85,9 +85,10 @@ namespace crawler
   public:
     virtual ~GaitModel() = default;
 
-    /// A gait that cannot be computed (the body inverts, a formula has no value) has a problem. Throws Interrupted.
+    /// A gait that cannot be computed (the body inverts, a formula has no value) has a problem. Of the strains those of
+    /// @p places have derivatives for sure, and the smallest and the largest. Throws Interrupted.
     virtual GaitValues
-    evaluate(const std::vector<double> &x, bool with_gradients) = 0;
+    evaluate(const std::vector<double> &x, bool with_gradients, const std::vector<std::size_t> &places = {}) = 0;
 
     /// Looks at a result more closely: makes the grid finer if it was too coarse there. Returns whether it did, so that
     /// the optimum is to be looked for once more.

@@ -54,12 +54,14 @@ namespace crawler
   class GaitProblem
   {
   public:
+    /// @p closer: has the limits that are kept to, while records tell what of the wanted ones has been exceeded.
     /// Throws InputError if the start has a problem; GaitModel::Interrupted, as soon as @p stops says so.
     GaitProblem(GaitModel &model,
                 const OptimizeParameters &parameters,
                 const std::vector<Variable> &variables,
                 const std::vector<double> &start,
-                std::function<bool()> stops);
+                std::function<bool()> stops,
+                const OptimizeParameters *closer = nullptr);
 
     /// Of the numbers that objective and limits are made of.
     static GaitWishes
@@ -73,8 +75,9 @@ namespace crawler
       std::vector<std::shared_ptr<const std::vector<double>>> blocks; ///< the others, unscaled
       std::string problem; ///< of gait or derivatives, in words: what is here is no optimum
     };
+    /// Of the strains those have derivatives that pull: whose @p forces, one for each constraint, are not 0.
     const Point &
-    at(const std::vector<double> &y, bool with_gradients);
+    at(const std::vector<double> &y, bool with_gradients, const std::vector<double> &forces = {});
 
     std::size_t
     n_rows() const
@@ -154,10 +157,14 @@ namespace crawler
       LimitedValues GaitValues::*values;
       std::string lower_name, upper_name; ///< empty: there is none
       double lower, upper, scale;
+      double wanted_lower, wanted_upper;
     };
 
     double
     objective(const GaitValues &values, std::vector<double> *gradient) const;
+    /// Of the strains that pull.
+    std::vector<std::size_t>
+    pulling_places(const std::vector<double> &forces) const;
 
     GaitModel &model_;
     const OptimizeParameters parameters_;
@@ -170,6 +177,7 @@ namespace crawler
     double scale_ = 1.; ///< of the objective
     std::vector<double> latest_y_;
     bool latest_has_gradients_ = false;
+    std::vector<std::size_t> latest_places_; ///< of strains with derivatives
     Point latest_;
     std::vector<GaitRecord> records_;
   };

@@ -21,7 +21,7 @@ namespace crawler
     KinematicGait(SceneFamily &family, GaitWishes wishes, const std::vector<double> &start);
 
     GaitValues
-    evaluate(const std::vector<double> &x, bool with_gradients) override;
+    evaluate(const std::vector<double> &x, bool with_gradients, const std::vector<std::size_t> &places) override;
     bool
     refine(const std::vector<double> &x) override;
     std::pair<double, double>

@@ -76,6 +76,10 @@ namespace crawler
     LimitedValues
     stress(const std::vector<double> &x, bool rate, bool with_gradients);
 
+    /// The largest size of it, between the points of that grid, too.
+    double
+    largest_stress(const std::vector<double> &x, bool rate);
+
   private:
     Form &form_;
     const std::vector<Variable> variables_;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/output/observer.h>
 #include <crawler/studies/core/compute.h>
+#include <crawler/studies/optimize/extremes_in_boxes.h>
 #include <crawler/studies/optimize/scene_family.h>
 
 #include <functional>
@@ -21,7 +23,7 @@ namespace crawler
     SimulatedGait(SceneFamily &family, GaitWishes wishes, std::function<bool()> interrupted);
 
     GaitValues
-    evaluate(const std::vector<double> &x, bool with_gradients) override;
+    evaluate(const std::vector<double> &x, bool with_gradients, const std::vector<std::size_t> &places) override;
     bool
     refine(const std::vector<double> &) override
     {
@@ -42,16 +44,31 @@ namespace crawler
     answers(const std::vector<std::vector<double>> &places);
     ByGaitNumber<double>
     numbers(const Task &task) const;
+    /// The run of a task once more, seen at some times, parts of the duration.
+    std::unique_ptr<Observer>
+    seen_by(std::unique_ptr<Observer> observer, const Task &task, const std::vector<double> &times) const;
+    /// The extreme stretches in the boxes.
+    std::vector<StretchPlace>
+    extremes(const Task &task);
+    /// And the smallest and the largest of the latest extremes.
+    std::vector<std::size_t>
+    with_extremes(std::vector<std::size_t> places) const;
+    /// Of the strains those of @p near.
     void
-    add_adjoint_gradients(const std::vector<double> &x, const Task &task, GaitValues &values);
+    add_adjoint_gradients(const std::vector<double> &x,
+                          const Task &task,
+                          const std::vector<std::size_t> &near,
+                          GaitValues &values);
     void
     add_differences(const std::vector<double> &x, GaitValues &values);
 
     SceneFamily &family_;
     const GaitWishes wishes_;
     const std::function<bool()> interrupted_;
-    std::vector<double> latest_x_;        ///< of latest_
-    std::vector<Task> latest_;            ///< one, the answer there
-    std::vector<double> strain_jacobian_; ///< [smallest, largest][variable]
+    std::optional<ExtremesInBoxes> boxes_;      ///< where strains are limited
+    std::vector<double> latest_x_;              ///< of what follows
+    std::vector<Task> latest_;                  ///< one, the answer there
+    std::vector<StretchPlace> latest_extremes_; ///< in the boxes, if strains are limited
+    std::vector<double> strain_jacobian_;       ///< [extreme][variable]
   };
 } // namespace crawler
