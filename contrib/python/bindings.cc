@@ -267,7 +267,7 @@ namespace crawler
         std::vector<Task> tasks;
         for (const Source &source : sources)
         {
-          inputs.push_back(read_input(source.file()));
+          inputs.push_back(read_input(source.file(), /*command=*/"batch"));
           tasks.emplace_back().parameters = inputs.back().parameters;
           tasks.back().gait               = true;
         }

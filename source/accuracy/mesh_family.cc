@@ -197,20 +197,25 @@ namespace crawler
       }
 
       /// The error in time grows with the number of cells on stiff bodies: so it is measured again on the last mesh but
-      /// one. If it is too large the last mesh must be done again, with the smaller tolerance.
+      /// one, or on the last one itself if this takes few steps, whose errors grow fast. If it is too large the last
+      /// mesh must be done again, with the smaller tolerance.
       bool
       is_fine_in_time()
       {
         if (parameters_.time.tolerance || levels_.size() < 2)
           return true;
-        Numerics other = numerics();
-        other.parts /= 2;
-        other.tolerance *= finer_tolerance;
+        const bool is_on_last = latest_.time.steps <= few_steps;
+        Numerics half         = numerics();
+        half.parts /= 2;
+        half.tolerance *= finer_tolerance;
+        Numerics other                = half;
+        other.parts                   = is_on_last ? numerics().parts : half.parts;
         const SimulationResult result = run(other);
         SimulationResult &before      = levels_[levels_.size() - 2].result;
-        if (!are_alike(result, before))
+        const SimulationResult &own   = is_on_last ? latest_ : before;
+        if (!are_alike(result, own))
           return true;
-        const double error = 2. * std::abs(*value(result) - *value(before));
+        const double error = 2. * std::abs(*value(result) - *value(own));
         if (error <= time_part * wanted() || ++n_corrections_ > most_tolerances)
         {
           // One difference may be small by chance.
@@ -218,7 +223,7 @@ namespace crawler
           return true;
         }
         numerics().tolerance = other.tolerance;
-        before               = result;
+        before               = is_on_last ? run(half) : result;
         levels_.pop_back();
         return false;
       }
@@ -248,9 +253,9 @@ namespace crawler
           now.value   = *value(extrapolated_);
           now.work    = work_of(extrapolated_);
           now.change  = change;
-          now.settled = std::abs(now.value - before.value);
+          now.settled = now.value - before.value;
           if (levels_.size() > 1) // two displacements may agree by chance
-            space_error_ = (end_is_nearly_lost() ? 2. : 1.) * error_of(before, now);
+            space_error_ = std::max((end_is_nearly_lost() ? 2. : 1.) * error_of(before, now), unseen(now));
         }
         levels_.push_back(now);
       }
@@ -263,6 +268,18 @@ namespace crawler
         double change  = 0.,
                settled = HUGE_VAL; ///< of the value itself and of the extrapolated one since the last level
       };
+
+      /// Diffusion smooths the stretch over such a length in a stride; the displacements of meshes with larger cells
+      /// seem to converge without what is as thin.
+      double
+      unseen(const Level &now) const
+      {
+        const Body &body    = scene_.body;
+        const double stride = scene_.active_stress->period().value_or(scene_.end_time),
+                     length = std::sqrt(body.elastic_modulus * stride / body.friction_coefficient) / body.length;
+        const bool is_seen  = now.result.mesh->n_cells * length >= 1.;
+        return finished(now.result) && !is_seen ? unseen_part * length * std::abs(now.value) : 0.;
+      }
 
       /// There the last half of a cell has friction unlike that of its middle, and order 2 shows late.
       bool
@@ -286,15 +303,19 @@ namespace crawler
         if (!(order > 0.2))
           return 5. * change;
         if (order < least_order)
-          return std::max(now.settled, change / (std::exp2(order) - 1.));
+          return std::max(std::abs(now.settled), change / (std::exp2(order) - 1.));
         if (order > largest_order)
-          return std::max(now.settled, change / 3.);
+          return std::max(std::abs(now.settled), change / 3.);
         // Displacements may agree by chance; their works do not, too.
-        const double settled = std::max(now.settled, unsettled_work(before, now) * change);
+        const double settled = std::max(std::abs(now.settled), unsettled_work(before, now) * change);
         if (levels_.size() == 2) // one change of the extrapolated value alone
           return is_clean ? settled : unclean_factor * settled;
-        const double bound = std::max(settled, before.settled / fastest);
-        return before.settled > fast * settled && is_clean ? bound / credited : bound;
+        const double settled_before = std::abs(before.settled);
+        if (now.settled * before.settled < 0.) // the small change is where they turn round
+          return std::max(settled, settled_before / turned);
+        if (settled_before > fastest * settled)
+          return settled_before / fastest;
+        return settled_before > fast * settled && is_clean ? settled / credited : settled;
       }
 
       static double

@@ -10,6 +10,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
 #include <sstream>
 
 namespace crawler
@@ -33,6 +36,10 @@ namespace crawler
     {
       if (to_number(text)) // it is one, but out of the range
         return "";
+      char *end          = nullptr;
+      const double value = std::strtod(text.c_str(), &end);
+      if (std::isinf(value) && std::isdigit(static_cast<unsigned char>(text.back())) && *end == '\0')
+        return fmt::format("; the largest number is {:.1e}", std::numeric_limits<double>::max());
       if (const auto comma = text.find(','); comma != std::string::npos)
         if (const std::string other = std::string(text).replace(comma, 1, "."); to_number(other))
           return fmt::format("; decimals are written with a point: {}", other);

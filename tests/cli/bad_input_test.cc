@@ -200,7 +200,7 @@ namespace
       {"AccuracyTooLarge", "\n\nset Accuracy = 0.2 # large\n", {"bad.prm, line 3", "\"0.2\"", "from 1e-12 to 0.1"}},
       {"NaN", in_section("Body", "set Length = nan"), {"line 2", "\"nan\"", positive}},
       {"Infinity", in_section("Body", "set Length = inf"), {"line 2", "\"inf\"", positive}},
-      {"Overflow", in_section("Body", "set Length = 1e999"), {"line 2", "\"1e999\"", positive}},
+      {"Overflow", in_section("Body", "set Length = 1e999"), {"line 2", "\"1e999\"", positive, "largest number"}},
       {"TextForNumber",
        in_section("Time", "set End time = soon"),
        {"line 2", "\"Time/End time\" is \"soon\"", positive}},

@@ -636,6 +636,26 @@ TEST_F(Commands, UnusedPetscOptionsAreReported)
     "crawler run scene.prm --output results --set Output/Statistics=false -- -ts_adapt_clp '0.1;2' -ts_type bdf");
 }
 
+TEST_F(Commands, UnusedPetscOptionsOfSweepsAreReported)
+{
+  write_text(folder.path / "scene.prm", scene);
+  const ProgramResult result = run_program(folder.path,
+                                           {"sweep",
+                                            "scene.prm",
+                                            "--output",
+                                            "results",
+                                            "--set",
+                                            "Sweep/Axes=Body/Elastic modulus : 1, 2",
+                                            "--quiet",
+                                            "--",
+                                            "-ts_adapt_clp",
+                                            "-1",
+                                            "-ts_max_snes_failures",
+                                            "3"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.err, "crawler: warning: nothing used the PETSc option -ts_adapt_clp\n");
+}
+
 /// For -1 < a < 0 only the stretch form is believed when it says that a body inverts.
 TEST_F(Commands, InversionOfThePositionFormIsNotBelieved)
 {

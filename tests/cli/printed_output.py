@@ -5,9 +5,11 @@ run as the guide says, and each line of output in it is looked for in what comes
 
     python3 printed_output.py [--write] PATH_TO_CRAWLER MPIEXEC...
 
-With --write the lines of the guide that differ become those that the program prints. Words must be the same; numbers of many digits to 1e-5 of their size, others to 1e-2, errors and residuals to a factor of
-two. Times and numbers of points per second may be any.
+Of the results no line may be missing. Words must be the same; numbers of many digits to 1e-5 of their size, others to two
+units of their last digit, those of two digits to 1e-2, errors and residuals to a factor of two. Times and numbers of
+points per second may be any. With --write the lines of the guide that differ become those that the program prints.
 """
+import math
 import os
 import pathlib
 import re
@@ -25,7 +27,7 @@ NUMBER = re.compile(r"(?<![\w.])[-+]?\d+\.?\d*(?:e[-+]?\d+)?(?![\w])")
 TIMES = re.compile(r"[\d.]+(?:e[-+]\d+)? (s|ms|points/s)(?![\w])")
 # How lines of output begin; all others of the guide are commands, files or code.
 BEGINNINGS = ("Body L", "Active stress:", "Optimal wave:", "Model ", "Mesh:", "(for Accuracy", "Output:", "Finished at",
-              "displacement  ", "stress power  ", "dissipation  ", "ledger residual", "stretch  ", "stride  ", "wave  ",
+              "displacement  ", "corrected  ", "stress power  ", "dissipation  ", "ledger residual", "stretch  ", "stride  ", "wave  ",
               "cost of transport", "efficiency  ", "Results are in", "Sweep:", "18 points", "crawler: ", "worm.prm is")
 PROGRESS = re.compile(r"\d+ %  t = ")
 
@@ -57,7 +59,8 @@ def are_close(text, other):
     if size < 1e-3:
         return size < 1e-12 or (a * b > 0 and 0.5 <= a / b <= 2)
     digits = len(re.sub(r"e.*|[-+.]", "", text).lstrip("0"))
-    return abs(a - b) <= (1e-5 if digits >= 6 else 1e-2) * size
+    last = 10.0 ** (math.floor(math.log10(size)) - digits + 1)
+    return abs(a - b) <= (1e-5 * size if digits >= 6 else 2 * last if digits >= 3 else 1e-2 * size)
 
 
 def likeness(line, other):
@@ -78,6 +81,11 @@ def differences(part, output):
         words, numbers = pattern(line)
         if not any(words == other and all(map(are_close, numbers, others)) for other, others in printed):
             yield line, "    " + max(output.splitlines(), key=lambda other: likeness(line, other))
+    results = output[output.index("\nFinished at"):output.index("\nResults are in")].splitlines()[1:]
+    for before, line in zip(results, results[1:]):
+        if not any(pattern(line)[0] == pattern(own)[0] for own in lines):
+            own = next((one for one in lines if pattern(one)[0] == pattern(before)[0]), "")
+            yield own, f"{own}\n    {line}"
 
 
 class Place:

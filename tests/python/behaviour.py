@@ -106,6 +106,14 @@ def check_ends():
     expect(error.result == result or error.result.status == "inverted", "RunFailed has no result")
     expect([one.status for one in crawler.batch([FILE, INVERTS])] == ["finished", "inverted"], "a batch of both")
     refused(lambda: crawler.batch([FILE, INVERTS], check=True), crawler.RunFailed)
+    cut = crawler.run(FILE, set={"Time/Wall time limit": 1e-9})
+    expect((cut.status, cut.reason) == ("stopped", "time_limit") and "Time/Wall time limit, 1e-09 s" in cut.message, f"{cut!r}: {cut.message}")
+    whole = crawler.run(FILE, set={"Time/Wall time limit": 1000})
+    expect(whole.status == "finished" and whole.displacement == crawler.run(FILE).displacement, f"{whole!r}")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        crawler.batch([FILE], set={"Time/Wall time limit": 1e-9})
+    expect(any("Wall time limit\" has no effect" in str(one.message) for one in caught), f"{[str(one.message) for one in caught]}")
 
 
 def check_signals(folder):

@@ -150,8 +150,8 @@ namespace crawler::accuracy_rule
     inline constexpr double finer_tolerance       = 0.1;
     /// Cells with a smaller stretch are empty; the time tolerance then is no larger than this.
     inline constexpr double empty = 1e-9, tolerance_if_empty = 3e-7;
-    /// The bound is at least this part of the wanted error: what all runs have in common.
-    inline constexpr double least_part = 0.5;
+    inline constexpr unsigned int few_steps = 30;  ///< whose errors grow fast with the cells
+    inline constexpr double least_part      = 0.5; ///< of the wanted error, which all runs have in common
     /// Observed orders between which second order is believed.
     inline constexpr double least_order = 1.5, largest_order = 2.7;
     /// A time tolerance, relative to the strain, that is so many times too large or small is chosen anew.
@@ -160,9 +160,9 @@ namespace crawler::accuracy_rule
     inline constexpr double believed = 0.3;
     /// No displacement is known better than this, in lengths of the body.
     inline constexpr double round_off = 4e-15;
-    /// Extrapolations that settle at least so fast are believed to go on so; and what settles faster than fourth order
-    /// does it by chance.
-    inline constexpr double fast = 5., credited = 4., fastest = 16.;
+    /// Extrapolations that settle at least so fast are believed to go on so; what settles faster than fourth order does
+    /// it by chance, as does what turns round. What is thinner than cells is such a part of its length.
+    inline constexpr double fast = 5., credited = 3., fastest = 16., turned = 8., unseen_part = 0.15;
     /// For a between this and 0 the time of an inversion has an error of so many times its last change.
     inline constexpr double least_slow_exponent = -0.5, sticking_factor = 3.;
     /// That is believed where the order is as near to 2 as this; else a first change counts so many times as much.

@@ -215,7 +215,7 @@ namespace crawler
                         "Time/Step control",
                         "Time/Tolerance",
                         "Time/Cycle stop"},
-                       {{command_entry, any_of({"run", "sweep", "optimize", "fit", "check"})}}});
+                       {{command_entry, any_of({"run", "batch", "sweep", "optimize", "fit", "check"})}}});
       rules.push_back({{"Optimize/"}, {{"Optimize/Variables", is_set}, {command_entry, any_of({"optimize"})}}});
       rules.push_back({{"Optimize/Start spread", "Optimize/Seed"}, {{"Optimize/Starts", is_not(1.)}}});
       rules.push_back({{"Fit/"}, {{"Fit/Variables", is_set}, {command_entry, any_of({"fit"})}}});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/run_as_promised.h>
 #include <crawler/accuracy/swept_error.h>
+#include <crawler/base/clock.h>
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/statistics_writer.h>
 #include <crawler/run/reduced_model.h>
@@ -8,7 +9,10 @@
 #include <crawler/run/simulation.h>
 #include <crawler/studies/run/reduced_pictures.h>
 #include <crawler/studies/run/run_in_memory.h>
+#include <crawler/studies/run/run_stops.h>
 #include <crawler/time/failure.h>
+
+#include <fmt/format.h>
 
 #include <cmath>
 #include <utility>
@@ -129,7 +133,13 @@ namespace crawler
     RunInMemory run;
     input.parameters.model         = model.model;
     const OutputParameters &output = input.parameters.output;
-    const auto keep_going          = [&]() { return !interrupted(); };
+    const double begin             = now();
+    const auto limit               = input.parameters.time.wall_time_limit;
+    bool is_out_of_time            = false;
+    const auto keep_going          = [&]() {
+      is_out_of_time = is_out_of_time || (limit && now() - begin >= *limit);
+      return !is_out_of_time && !interrupted();
+    };
     Kept kept;
     if (wanted)
     {
@@ -149,7 +159,16 @@ namespace crawler
     {
       run.result.time = failure_of(std::current_exception());
     }
-    run.result.model = model.model;
+    run.result.model  = model.model;
+    TimeOutcome &end  = run.result.time;
+    const bool is_cut = end.status == Status::stopped ||
+                        (end.status == Status::finished && run.result.error && !std::isfinite(run.result.error->total));
+    if (is_out_of_time && is_cut)
+    {
+      end.status  = Status::stopped;
+      end.reason  = "time_limit";
+      end.message = fmt::format("stopped {} at t = {:.6g}", by_wall_time_limit(*limit), end.time);
+    }
     return run;
   }
 } // namespace crawler

@@ -60,7 +60,7 @@ namespace crawler
   RunStops::in_words() const
   {
     return is_asked_         ? "by the file \"" + file_.string() + "\""
-           : is_out_of_time_ ? fmt::format("by Time/Wall time limit, {:g} s,", *limit_)
+           : is_out_of_time_ ? by_wall_time_limit(*limit_)
                              : "by a signal";
   }
 } // namespace crawler

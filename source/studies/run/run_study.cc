@@ -11,6 +11,7 @@
 #include <crawler/run/self_check.h>
 #include <crawler/run/summary.h>
 #include <crawler/scene/moving_jumps.h>
+#include <crawler/studies/core/petsc_options.h>
 #include <crawler/studies/core/run_files.h>
 #include <crawler/studies/run/reduced_pictures.h>
 #include <crawler/studies/run/run.h>
@@ -20,7 +21,6 @@
 #include <crawler/time/failure.h>
 
 #include <fmt/format.h>
-#include <petscsys.h>
 
 #include <algorithm>
 #include <cmath>
@@ -66,17 +66,6 @@ namespace crawler
       }
     }
 
-    /// PETSc options that were not read are most likely misspelt.
-    void
-    report_unused_options(Log &log)
-    {
-      PetscInt n   = 0;
-      char **names = nullptr, **values = nullptr;
-      PetscOptionsLeftGet(nullptr, &n, &names, &values);
-      for (PetscInt i = 0; i < n; ++i)
-        log.warn(fmt::format("warning: nothing used the PETSc option -{}", names[i]));
-      PetscOptionsLeftRestore(nullptr, &n, &names, &values);
-    }
     /// Writes the output times of a level without a mesh as a run with one does. Returns false if @p keep_going said
     /// no.
     bool
@@ -237,8 +226,7 @@ namespace crawler
     });
     if (model_)
       report_plan(log_, input_, *model_, choice_ ? &*choice_ : nullptr);
-    if (!options_.petsc_options.empty())
-      log_.line("PETSc options (override the settings): " + options_.petsc_options);
+    announce_petsc_options(options_, log_);
   }
 
   /// The first rank computes a level that needs no mesh, and writes the files of any run.
@@ -365,7 +353,7 @@ namespace crawler
     name_stop();
     check_identities(result_, input_.parameters);
     add_what_follows();
-    report_unused_options(log_);
+    warn_of_unused_petsc_options(communicator_, options_, log_);
     on_first_rank(communicator_, [&]() {
       leave_folder();
       return "";

@@ -9,6 +9,7 @@
 #include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/output_folder.h>
+#include <crawler/studies/core/petsc_options.h>
 #include <crawler/studies/core/progress.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/run/run.h>
@@ -220,11 +221,14 @@ namespace crawler
                          n_done > 0 ? fmt::format("; {} are done already", n_done) : ""));
     for (const std::string &note : points.notes())
       log.line(note);
+    announce_petsc_options(options, log);
 
     clock.set_limit(own.time_limit);
     bool is_whole = compute_rows(
       communicator, path, points, table, done, [&]() { return clock.is_over(); }, log);
     std::string reason = clock.reason(communicator, is_whole);
+    if (n_done < design.n_points())
+      warn_of_unused_petsc_options(communicator, options, log);
     if (is_whole && !kept.empty() && !keep_fields(communicator, options, path, points, kept))
     {
       is_whole = false;

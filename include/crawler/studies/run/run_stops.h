@@ -3,6 +3,8 @@
 
 #include <crawler/base/stop_signal.h>
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,6 +13,13 @@ namespace crawler
 {
   /// Who touches a file of this name in the output folder asks the run to stop.
   extern const std::string stop_file_name;
+
+  /// In words for the user; also of runs without files.
+  inline std::string
+  by_wall_time_limit(const double limit)
+  {
+    return fmt::format("by Time/Wall time limit, {:g} s,", limit);
+  }
 
   /// Why a run that could go on is to stop: a signal, its wall time, or a file that asks for it.
   class RunStops
