@@ -122,6 +122,24 @@ namespace crawler
           look(coarse, very_fine);
       }
 
+      /// Samples that are farther apart than m may change say nothing of its rate; bounds at points do.
+      void
+      look_between()
+      {
+        constexpr unsigned int n_places = 3;
+        const ActiveStress &stress      = *scene_.active_stress;
+        const double L = scene_.body.length, dt = T_ / static_cast<double>(rates_.size());
+        if (const auto all = stress.bounds({0., L, 0., T_}); !all || all->rate * dt <= largest)
+          return;
+        for (std::size_t j = 0; j < rates_.size(); ++j)
+          for (unsigned int i = 0; i < n_places; ++i)
+          {
+            const double s = L * (i + 0.381966) / n_places, t = dt * (static_cast<double>(j) + 0.381966);
+            if (const double rate = stress.bounds({s, s, t, t})->rate; std::isfinite(rate))
+              rates_[j] = std::max(rates_[j], rate);
+          }
+      }
+
       /// At many places at one more time.
       void
       look_at(const double t)
@@ -385,6 +403,17 @@ namespace crawler
     }
   } // namespace
 
+  namespace
+  {
+    /// Whose fast changes were looked for when it was found.
+    bool
+    is_known_by_repetition(const ActiveStress &stress)
+    {
+      const auto repetition = stress.repetition();
+      return repetition && repetition->from == 0.;
+    }
+  } // namespace
+
   StressScales
   stress_scales(const Scene &scene)
   {
@@ -401,6 +430,7 @@ namespace crawler
         in_period.push_back(t * T / P);
 
     Samples samples(scene, P, in_space, in_period);
+    samples.look_between();
     const double usual              = samples.usual_rate();
     std::vector<FastChange> changes = samples.rare_changes(usual);
     const FastChanges found         = find_fast_changes(
@@ -426,7 +456,7 @@ namespace crawler
             along > 0. ? largest / along : L,
             step_limits(changes, largest, usual, P, T),
             largest,
-            found.is_complete || stress.repetition(),
+            found.is_complete || is_known_by_repetition(stress),
             samples.is_smooth(),
             std::max(change.at_start, change.later) / unit,
             change.later / unit,

@@ -709,6 +709,12 @@ TEST(HardAnswers, FormulasInLongRuns)
     EXPECT_NEAR(*result.gait->wave_speed(), -0.9827, 1e-3);
     EXPECT_NEAR(*result.gait->slip(), 0.9819, 1e-3);
   }
+  // A millionth of the run, and a burst of many periods in as little.
+  const auto short_event = long_run(wave + "+0.4*sin(pi*s)*sin(2*pi*s)*exp(-((t-149.055)/0.00165)^2)", 2000., "1e-5");
+  expect_within(short_event, 35.57588231, 1e-5, "an event in 2000 strides");
+  const auto burst =
+    long_run(wave + "+0.45*sin(pi*s)*sin(2*pi*s)*sin(40*t)*exp(-((t-959.169)/0.00145)^2)", 1000., "1e-5");
+  expect_within(burst, 17.7872769, 1e-5, "a burst in 1000 strides");
 }
 
 /// Two materials: cells end where they meet, so that the automatic numerics are as good as eight cells.
