@@ -91,7 +91,7 @@ CHECKS = (
     Check("fresh_scenes", 8, "{mpi} {build}/tests/calibration {scenes} {out}/fresh_scenes.csv"),
     Check("fresh_jumps", 6, "{mpi} {build}/tests/calibration {jumps} {out}/fresh_jumps.csv 1e-3 1e-6"),
     Check("fresh_hard", 8, "{mpi} {build}/tests/calibration {hard} {out}/fresh_hard.csv 1e-3 1e-5"),
-    Check("random_extremes", 40, "{build}/tests/random_extremes {extremes} {out}/random_extremes.csv"),
+    Check("random_extremes", 25, "{build}/tests/random_extremes {extremes} {out}/random_extremes.csv"),
     Check("soft_bodies", 30, "{root}/tests/long/soft_bodies.py {crawler} mpirun 1000 {seed}"),
     Check("kinds", 22, "{root}/tests/long/kinds.py {build}/python 100 {seed}"),
     Check("fits", 20, "{root}/tests/python/fit_coverage.py {build}/python 200 1", "doc/fit.md", "`contrib/verify.sh --only fits`", within=0.02),
@@ -174,7 +174,7 @@ def fresh(seed):
     def numbers(first, n):
         first += seed % (9000 - n)
         return f"{first}-{first + n - 1}"
-    return {"scenes": numbers(600, 200), "jumps": numbers(10100, 60), "hard": numbers(20200, 80), "extremes": numbers(10000, 1000)}
+    return {"scenes": numbers(600, 200), "jumps": numbers(10100, 60), "hard": numbers(20200, 80), "extremes": numbers(10000, 500)}
 
 
 class Runs:

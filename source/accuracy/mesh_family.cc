@@ -411,8 +411,9 @@ namespace crawler
         else if (latest_.inversion)
         {
           result = extrapolated_;
-          if (std::isfinite(space_error_))
-            result.inversion_error = std::max(space_error_, least_part * wanted()) + time_error_;
+          if (std::isfinite(space_error_)) // of an early one Accuracy, which is relative to the duration, asks nothing
+            result.inversion_error =
+              std::max(space_error_, least_part * std::min(wanted(), believed * latest_.inversion->t)) + time_error_;
           end_before_inversion(result);
           if (!(result.inversion_error.value_or(HUGE_VAL) <= believed * latest_.inversion->t))
           {
