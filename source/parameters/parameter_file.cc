@@ -45,6 +45,8 @@ namespace crawler
       if (const std::string reason = unreadable(file_name); !reason.empty())
         throw FileError(fmt::format("\"{}\" {}; the name of a parameter file is expected", file_name, reason));
       std::ifstream in(file_name, std::ios::binary);
+      if (const std::string sign = home_sign(file_name); !in && !sign.empty())
+        throw FileError(sign);
       if (!in)
         throw FileError(
           fmt::format("cannot read \"{}\": {}",

@@ -61,7 +61,8 @@ namespace crawler
     void
     require_one_value(const std::string &formula, const std::string &formula_entry)
     {
-      int depth = 0;
+      const auto is_digit = [](const char c) { return c >= '0' && c <= '9'; };
+      int depth           = 0;
       for (std::size_t i = 0; i < formula.size(); ++i)
       {
         const char c = formula[i], before = i > 0 ? formula[i - 1] : ' ',
@@ -77,9 +78,10 @@ namespace crawler
         if (c == ',' && depth == 0)
           throw InputError(
             fmt::format("error in the formula \"{}\" at position {}: one formula is expected, but there are "
-                        "several, separated by a comma",
+                        "several, separated by a comma{}",
                         formula,
-                        i + 1),
+                        i + 1,
+                        is_digit(before) && is_digit(after) ? "; decimals are written with a point" : ""),
             formula_entry);
         if (c == '=' && after != '=' && std::string("=<>!").find(before) == std::string::npos)
           throw InputError(

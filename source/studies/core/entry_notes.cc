@@ -82,8 +82,11 @@ namespace crawler
       for (const Assignment &assignment : file.assignments())
       {
         const std::string path = assignment.path.substr(0, assignment.path.find('['));
+        const std::string &own = declarations.info(path).default_value;
+        if (assignment.value.empty() && own.empty()) // to leave something out
+          continue;
         if (file.assignment_of(assignment.path) == &assignment &&
-            (assignment.is_override || !is_default(assignment.value, declarations.info(path).default_value)))
+            (assignment.is_override || !is_default(assignment.value, own)))
           look_at(path, assignment.place, assignment.is_override);
       }
       for (const std::string &path : varied.paths)
