@@ -43,4 +43,23 @@ namespace crawler
     }
     return errors;
   }
+
+  NumberErrors
+  errors_of_extrapolation(const SimulationResult &extrapolated,
+                          const std::span<const SimulationResult *const> meshes,
+                          const double part)
+  {
+    const SimulationResult &finest = *meshes.back();
+    NumberErrors errors            = number_errors(extrapolated, finest, 1., part);
+    const auto &entries            = entries_with_errors();
+    for (std::size_t before = 1; before <= 2 && before < meshes.size(); ++before)
+    {
+      const double factor        = if_not_extrapolated / static_cast<double>(before);
+      const NumberErrors changes = number_errors(finest, *meshes[meshes.size() - 1 - before], factor, part);
+      for (std::size_t i = 0; i < NumberErrors::n; ++i)
+        if (number(*entries.at(i), extrapolated) == number(*entries.at(i), finest))
+          errors.values[i] = std::max(errors.values[i], changes.values[i]);
+    }
+    return errors;
+  }
 } // namespace crawler

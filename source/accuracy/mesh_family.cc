@@ -362,6 +362,18 @@ namespace crawler
         }
       }
 
+      NumberErrors
+      errors_of_numbers() const
+      {
+        std::vector<const SimulationResult *> meshes;
+        for (const Level &level : levels_)
+          meshes.push_back(&level.result);
+        NumberErrors errors = errors_of_extrapolation(extrapolated_, meshes, least_part * accuracy_);
+        for (std::size_t i = 0; i < NumberErrors::n; ++i)
+          errors.values[i] += time_errors_.values[i];
+        return errors;
+      }
+
       /// With the largest error in time that is admissible; what that was on the coarsest mesh does not count here.
       bool
       is_good_in_space() const
@@ -383,16 +395,14 @@ namespace crawler
           return answer_;
         if (finished(latest_))
         {
-          result              = extrapolated_;
-          const double cycles = result.cycles ? result.cycles->bound : 0.;
-          const double floor  = least_part * wanted();
-          result.error        = {.total = std::max(space_error_, floor) + time_error_ + cycles,
-                                 .space = std::max(space_error_, floor),
-                                 .time  = time_error_ + cycles,
-                                 .model = 0.};
-          result.errors       = number_errors(result, latest_, 1., least_part * accuracy_);
-          for (std::size_t i = 0; i < NumberErrors::n; ++i)
-            result.errors->values[i] += time_errors_.values[i];
+          result                        = extrapolated_;
+          const double cycles           = result.cycles ? result.cycles->bound : 0.;
+          const double floor            = least_part * wanted();
+          result.error                  = {.total = std::max(space_error_, floor) + time_error_ + cycles,
+                                           .space = std::max(space_error_, floor),
+                                           .time  = time_error_ + cycles,
+                                           .model = 0.};
+          result.errors                 = errors_of_numbers();
           answer_.choice.promised_error = result.error->total;
           if (!std::isfinite(space_error_))
             result.error = DisplacementError();

@@ -3,6 +3,8 @@
 
 #include <crawler/run/simulation_result.h>
 
+#include <span>
+
 namespace crawler
 {
   /**
@@ -18,4 +20,13 @@ namespace crawler
    */
   NumberErrors
   number_errors(const SimulationResult &result, const SimulationResult &finer, double factor, double part);
+
+  /// Those of a result that is extrapolated from the last two of some @p meshes, each twice as fine as the one before:
+  /// of works, say, what the extrapolation changes. Numbers that are not extrapolated, as stretches, are those of the
+  /// finest mesh; their errors are twice what they changed since the one before, or what they changed since the one
+  /// before that if this is more: peaks of steep fronts do not converge regularly.
+  NumberErrors
+  errors_of_extrapolation(const SimulationResult &extrapolated,
+                          std::span<const SimulationResult *const> meshes,
+                          double part);
 } // namespace crawler

@@ -254,7 +254,7 @@ namespace crawler::accuracy_rule
   // tests/verification/number_errors.py.
   namespace number_bounds
   {
-    inline constexpr double more_if_sampled = 1.5, sampling_error = 2.;
+    inline constexpr double more_if_sampled = 1.5, sampling_error = 2., if_not_extrapolated = 2.;
   } // namespace number_bounds
 
   // Which level of the model hierarchy (model_choice.cc; doc/numerics.md, "Levels without a mesh"). Measured by
