@@ -27,16 +27,19 @@ if [ $headers = yes ]; then
     sed 's/.*/#include <&>/' >"$work/headers.cc"
   files+=("$work/headers.cc" source/lanes/lanes.cc)
 fi
-# The compile commands without the options of g++ that clang does not know. headers.cc, and sources that are compiled
-# together with others of their room, take that of main.cc.
+# The compile commands without the options of g++ that clang does not know. Sources that are compiled together with others
+# of their room take the command of these, headers.cc that of main.cc.
 python3 - "$build/compile_commands.json" "$work" "${files[@]}" <<'END'
 import json, os, re, sys
 commands = json.load(open(sys.argv[1]))
 main = next(c for c in commands if c["file"].endswith("source/main.cc"))
 known = {c["file"] for c in commands}
+together = {file: c for c in commands if "/Unity/" in c["file"] and os.path.exists(c["file"])
+            for file in re.findall(r'#include "(/.*)"', open(c["file"]).read())}
 for file in map(os.path.abspath, sys.argv[3:]):
     if file not in known:
-        commands.append(main | {"file": file, "command": main["command"].replace(main["file"], file)})
+        own = together.get(file, main)
+        commands.append(own | {"file": file, "command": own["command"].replace(own["file"], file)})
 lanes = [c for c in commands if c["file"].endswith("/lanes.cc")]
 commands = [c for c in commands if c not in lanes[1:]]  # of one instruction set
 for c in commands:

@@ -307,15 +307,18 @@ namespace crawler
       if (largest == 0.)
         return {};
       const double longest = usual > 0. ? largest / usual : unlimited;
-      // Where changes begin and end; the fastest of those that go on is what counts.
+      // Where changes begin and end; the fastest of those that go on is what counts. The step before one ends so many
+      // steps earlier that it does not see how the change begins: all runs would have the same error there.
+      constexpr double lead = 8.;
       std::map<double, std::vector<std::pair<double, bool>>> edges; // time -> rates, and whether they begin
       for (const FastChange &change : changes)
         if (change.rate > usual && change.from < period && change.to > 0.)
         {
-          edges[std::max(change.from, 0.)].emplace_back(change.rate, true);
+          edges[std::max(change.from - lead * largest / change.rate, 0.)].emplace_back(change.rate, true);
           edges[std::min(change.to, period)].emplace_back(change.rate, false);
         }
       std::vector<StepLimit> limits = {{0., longest}};
+      double opened = longest; // what the last one began with: many similar ones in a row may be far apart
       std::multiset<double> rates;
       for (const auto &[time, list] : edges)
       {
@@ -327,12 +330,14 @@ namespace crawler
         const double now = rates.empty() ? longest : largest / *rates.rbegin();
         StepLimit &last  = limits.back();
         if (last.from >= time)
-          last.longest = now;
-        else if (!rates.empty() && last.longest < longest &&
-                 std::max(now, last.longest) <= similar * std::min(now, last.longest))
+          opened = last.longest = now;
+        else if (!rates.empty() && opened < longest && std::max(now, opened) <= similar * std::min(now, opened))
           last.longest = std::min(now, last.longest);
         else
+        {
           limits.push_back({time, now});
+          opened = now;
+        }
       }
       const std::size_t n = limits.size();
       if (n == 1)

@@ -729,6 +729,29 @@ TEST(HardAnswers, FormulasInLongRuns)
   expect_within(burst, 17.7872769, 1e-5, "a burst in 1000 strides");
 }
 
+/// A body that rests but for an event, whose start no step may pass over: all runs of an answer would have the same
+/// error there. Its samples may be as small as those of a Gaussian far from its middle.
+TEST(HardAnswers, EventsOfABodyAtRest)
+{
+  const auto answer = [](const std::string &formula, const std::string &constants, const std::string &end_time) {
+    return answer_to({{"Accuracy", "1e-5"},
+                      {"Body/Elastic modulus", "0.59"},
+                      {"Body/Anchoring exponent", "2.88"},
+                      {"Active stress/Generator", "expression"},
+                      {"Active stress/Expression/Active stress", formula + "*exp(-((t-t0)/w)^2)"},
+                      {"Active stress/Expression/Constants", constants},
+                      {"Time/End time", end_time}});
+  };
+  const std::string turning   = "0.336*sin(3*s-(t-t0)/w)";
+  const SimulationResult late = answer(turning, "t0 = 850.6329, w = 0.05414", "1000");
+  expect_within(late, -0.0055608451, 1e-5, "an event at 850 of 1000");
+  const SimulationResult early = answer(turning, "t0 = 5.6329, w = 0.05414", "20");
+  EXPECT_NEAR(late.displacement, early.displacement, late.error->total + early.error->total);
+  const SimulationResult tiny = answer(turning, "t0 = 3850.6329, w = 0.02787", "5000");
+  EXPECT_NEAR(
+    tiny.displacement, answer(turning, "t0 = 5.6329, w = 0.02787", "20").displacement, 3. * tiny.error->total);
+}
+
 /// Two materials: cells end where they meet, so that the automatic numerics are as good as eight cells.
 TEST(HardAnswers, ModulusThatJumpsInAFormula)
 {

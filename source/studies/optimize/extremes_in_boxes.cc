@@ -9,110 +9,139 @@ namespace crawler
 {
   namespace
   {
+    constexpr std::size_t n_space = 8, per_box = 16;
     constexpr double boxes_of_stride = 8., most_strides = 4., most_times = 2560.;
     constexpr std::size_t reach = 2; ///< of a crest from one time to the next [points]
+    /// Sides of a break, which neighbours that are so near to each other are.
+    constexpr double beside = 1e-9;
 
     /// A place and the value there.
     using Point = std::pair<double, double>;
 
     /// The largest value (@p sign 1) or the smallest on the parabola through three points, the middle one of which has
-    /// it among these; the middle one itself if the vertex is not between them.
+    /// it among these; the middle one itself if the vertex is not between them, or if a break is.
     Point
     sharpened(const double sign, const Point &before, const Point &middle, const Point &after)
     {
-      if (!(sign * middle.second >= sign * before.second && sign * middle.second >= sign * after.second))
+      const double left = middle.first - before.first, right = after.first - middle.first;
+      if (std::min(left, right) < 4. * beside ||
+          !(sign * middle.second >= sign * before.second && sign * middle.second >= sign * after.second))
         return middle;
       const Point vertex =
         parabola_vertex(before.first, before.second, middle.first, middle.second, after.first, after.second);
       return vertex.first > before.first && vertex.first < after.first ? vertex : middle;
     }
+
+    /// The numbers of the places in a part of n equal ones, both ends included.
+    std::pair<std::size_t, std::size_t>
+    inside(const std::vector<double> &places, const std::size_t part, const std::size_t n)
+    {
+      const double from = static_cast<double>(part) / static_cast<double>(n) - beside / 2.,
+                   to   = static_cast<double>(part + 1) / static_cast<double>(n) + beside / 2.;
+      return {static_cast<std::size_t>(std::ranges::lower_bound(places, from) - places.begin()),
+              static_cast<std::size_t>(std::ranges::upper_bound(places, to) - places.begin())};
+    }
   } // namespace
 
-  ExtremesInBoxes::ExtremesInBoxes(const double strides)
-    : n_time_(static_cast<std::size_t>(boxes_of_stride * std::clamp(std::ceil(strides), 1., most_strides)))
-    , times_per_box_(static_cast<std::size_t>(std::clamp(
-                       per_box_ * boxes_of_stride * strides, per_box_ * static_cast<double>(n_time_), most_times)) /
-                     n_time_)
-  {
-  }
-
   std::vector<double>
-  equal_parts(const std::size_t n)
+  equal_parts(const std::size_t n, const std::vector<double> &breaks)
   {
     std::vector<double> list;
     for (std::size_t i = 0; i <= n; ++i)
-      list.push_back(static_cast<double>(i) / static_cast<double>(n));
+    {
+      const double place = static_cast<double>(i) / static_cast<double>(n);
+      if (std::ranges::none_of(breaks, [&](const double one) { return std::abs(one - place) < 4. * beside; }))
+        list.push_back(place);
+    }
+    for (const double one : breaks)
+      for (const double side : {one - beside, one + beside})
+        if (side >= 0. && side <= 1.)
+          list.push_back(side);
+    std::ranges::sort(list);
+    const auto are_one = [](const double a, const double b) { return b - a < beside / 2.; };
+    list.erase(std::unique(list.begin(), list.end(), are_one), list.end());
     return list;
   }
 
-  std::vector<double>
-  ExtremesInBoxes::points() const
+  std::size_t
+  ExtremesInBoxes::boxes_in_time(const double strides)
   {
-    return equal_parts(n_space_ * per_box_);
+    return static_cast<std::size_t>(boxes_of_stride * std::clamp(std::ceil(strides), 1., most_strides));
   }
 
-  std::vector<double>
-  ExtremesInBoxes::times() const
+  ExtremesInBoxes::ExtremesInBoxes(const std::size_t n_time, const double strides, const Breaks &breaks)
+    : n_time_(n_time)
+    , points_(equal_parts(n_space * per_box, breaks.in_space))
+    , times_(equal_parts(static_cast<std::size_t>(std::clamp(
+                           per_box * boxes_of_stride * strides, per_box * static_cast<double>(n_time), most_times)),
+                         breaks.in_time))
   {
-    return equal_parts(n_time_ * times_per_box_);
+  }
+
+  /// In each of three rows, which a crest may cross elsewhere, and then between these.
+  StretchPlace
+  ExtremesInBoxes::sharpened_at(const std::vector<double> &stretch,
+                                const std::size_t i,
+                                const std::size_t j,
+                                const double sign) const
+  {
+    const std::size_t n = points_.size();
+    const auto point    = [&](const std::size_t k, const std::size_t row) {
+      return Point{points_[k], stretch[row * n + k]};
+    };
+    const auto in_row = [&](const std::size_t row) {
+      std::size_t best = i;
+      for (std::size_t k = std::max(i, reach) - reach; k < std::min(i + reach + 1, n); ++k)
+        if (sign * point(k, row).second > sign * point(best, row).second)
+          best = k;
+      return best > 0 && best + 1 < n ? sharpened(sign, point(best - 1, row), point(best, row), point(best + 1, row))
+                                      : point(best, row);
+    };
+    const Point own = in_row(j);
+    if (j == 0 || j + 1 == times_.size())
+      return {own.first, times_[j], own.second};
+    const Point before = in_row(j - 1), after = in_row(j + 1);
+    const Point vertex =
+      sharpened(sign, {times_[j - 1], before.second}, {times_[j], own.second}, {times_[j + 1], after.second});
+    const bool is_earlier = vertex.first < times_[j];
+    const double part     = std::abs((vertex.first - times_[j]) / (times_[is_earlier ? j - 1 : j + 1] - times_[j]));
+    return {std::lerp(own.first, is_earlier ? before.first : after.first, part), vertex.first, vertex.second};
   }
 
   std::vector<StretchPlace>
   ExtremesInBoxes::find(const std::vector<double> &stretch) const
   {
-    const std::size_t n = n_space_ * per_box_, m = n_time_ * times_per_box_;
-    const auto at   = [&](const std::size_t i, const std::size_t j) { return stretch[j * (n + 1) + i]; };
-    const double ds = 1. / static_cast<double>(n), dt = 1. / static_cast<double>(m);
-    const auto point = [&](const std::size_t i, const std::size_t j) {
-      return Point{static_cast<double>(i) * ds, at(i, j)};
-    };
-    // In each of three rows, which a crest may cross elsewhere, and then between these.
-    const auto in_row = [&](const std::size_t i, const std::size_t j, const double sign) {
-      std::size_t best = i;
-      for (std::size_t k = std::max<std::size_t>(i, reach) - reach; k <= std::min(i + reach, n); ++k)
-        if (sign * at(k, j) > sign * at(best, j))
-          best = k;
-      return best > 0 && best < n ? sharpened(sign, point(best - 1, j), point(best, j), point(best + 1, j))
-                                  : point(best, j);
-    };
-    const auto sharpened_at = [&](const std::size_t i, const std::size_t j, const double sign) {
-      const Point own = in_row(i, j, sign);
-      const double t  = static_cast<double>(j) * dt;
-      if (j == 0 || j == m)
-        return StretchPlace{own.first, t, own.second};
-      const Point before = in_row(i, j - 1, sign), after = in_row(i, j + 1, sign);
-      const Point vertex = sharpened(sign, {t - dt, before.second}, {t, own.second}, {t + dt, after.second});
-      const double part  = (vertex.first - t) / dt;
-      return StretchPlace{
-        std::lerp(own.first, part < 0. ? before.first : after.first, std::abs(part)), vertex.first, vertex.second};
-    };
     std::vector<StretchPlace> list;
     for (std::size_t b = 0; b < n_time_; ++b)
-      for (std::size_t a = 0; a < n_space_; ++a)
+      for (std::size_t a = 0; a < n_space; ++a)
+      {
+        const auto [first_s, end_s] = inside(points_, a, n_space);
+        const auto [first_t, end_t] = inside(times_, b, n_time_);
         for (const double sign : {-1., 1.})
         {
-          std::size_t i = a * per_box_, j = b * times_per_box_;
-          for (std::size_t t = b * times_per_box_; t <= (b + 1) * times_per_box_; ++t)
-            for (std::size_t s = a * per_box_; s <= (a + 1) * per_box_; ++s)
-              if (sign * at(s, t) > sign * at(i, j))
+          std::size_t i = first_s, j = first_t;
+          for (std::size_t t = first_t; t < end_t; ++t)
+            for (std::size_t s = first_s; s < end_s; ++s)
+              if (sign * stretch[t * points_.size() + s] > sign * stretch[j * points_.size() + i])
               {
                 i = s;
                 j = t;
               }
-          list.push_back(sharpened_at(i, j, sign));
+          list.push_back(sharpened_at(stretch, i, j, sign));
         }
+      }
     return list;
   }
 
   std::vector<StretchPlace>
   ExtremesInBoxes::place(const StretchPlace &smallest, const StretchPlace &largest) const
   {
-    std::vector<StretchPlace> list(size(), {0., 0., 1.});
+    std::vector<StretchPlace> list(2 * n_space * n_time_, {0., 0., 1.});
     const auto put = [&](const StretchPlace &one, const std::size_t which) {
       const auto number = [](const double part, const std::size_t n) {
         return std::min(static_cast<std::size_t>(std::max(part, 0.) * static_cast<double>(n)), n - 1);
       };
-      list[2 * (number(one.t, n_time_) * n_space_ + number(one.s, n_space_)) + which] = one;
+      list[2 * (number(one.t, n_time_) * n_space + number(one.s, n_space)) + which] = one;
     };
     put(smallest, 0);
     put(largest, 1);

@@ -42,7 +42,10 @@ namespace crawler
         const auto p = static_cast<std::size_t>(place - values.begin());
         list.push_back(
           {fmt::format("{} {}", place == least ? "smallest" : "largest", name),
-           [=](const GaitValues &there) { return (there.*block).values[p]; },
+           [=, is_least = place == least](const GaitValues &there) {
+             const auto [smallest, largest] = std::ranges::minmax((there.*block).values);
+             return is_least ? smallest : largest;
+           },
            [=](const GaitValues &there, const std::size_t i) { return (*(there.*block).jacobian)[p * n + i]; }});
       }
     }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/adjoint/break_map.h>
 #include <crawler/adjoint/run_gradient.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/output/kymograph_writer.h>
@@ -132,20 +133,23 @@ namespace crawler
   std::vector<StretchPlace>
   SimulatedGait::extremes(const Task &task)
   {
-    if (!boxes_)
-      boxes_.emplace(strides_of(*task.scene));
+    const Scene &scene = *task.scene;
+    if (!n_boxes_in_time_)
+      n_boxes_in_time_ = ExtremesInBoxes::boxes_in_time(strides_of(scene));
+    const ExtremesInBoxes boxes(
+      *n_boxes_in_time_, strides_of(scene), {breaks_in_space_of(scene), breaks_in_time_of(scene)});
     if (has_pictures(task))
     {
-      const auto seen = seen_by(std::make_unique<Kymograph>(boxes_->points()), task, boxes_->times());
+      const auto seen                    = seen_by(std::make_unique<Kymograph>(boxes.points()), task, boxes.times());
       const std::vector<double> &stretch = static_cast<const Kymograph &>(*seen).rows().stretch;
-      if (stretch.size() == boxes_->points().size() * boxes_->times().size())
-        return boxes_->find(stretch);
+      if (stretch.size() == boxes.points().size() * boxes.times().size())
+        return boxes.find(stretch);
     }
     const SimulationResult &result = task.computed.result;
     const auto place_of            = [&](const Extreme &one) {
-      return StretchPlace{one.s / task.scene->body.length, one.t / task.scene->end_time, one.value};
+      return StretchPlace{one.s / scene.body.length, one.t / scene.end_time, one.value};
     };
-    return boxes_->place(place_of(result.min_stretch), place_of(result.max_stretch));
+    return boxes.place(place_of(result.min_stretch), place_of(result.max_stretch));
   }
 
   std::vector<Task>
@@ -227,7 +231,7 @@ namespace crawler
         values.by_differences.assign(x.size(), true);
         values.strain_by_differences.assign(x.size(), wishes_.strain);
         if (wishes_.strain)
-          strain_jacobian_.assign(boxes_->size() * x.size(), 0.);
+          strain_jacobian_.assign(latest_extremes_.size() * x.size(), 0.);
         add_adjoint_gradients(x, task, wishes_.strain ? with_extremes(places) : places, values);
         values.gradients[GaitNumber::friction_time] = family_.differences(
           x,
@@ -399,7 +403,7 @@ namespace crawler
       if (!values.strain_by_differences[i])
         continue;
       const std::vector<StretchPlace> extremes_there = extremes(tasks[j]);
-      for (std::size_t e = 0; e < boxes_->size(); ++e)
+      for (std::size_t e = 0; e < latest_extremes_.size(); ++e)
         strain_jacobian_[e * n + i] += change(extremes_there[e].value, latest_extremes_[e].value);
     }
   }

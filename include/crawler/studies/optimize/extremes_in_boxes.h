@@ -7,9 +7,9 @@
 
 namespace crawler
 {
-  /// 0, 1/n, ... 1.
+  /// 0, 1/n, ... 1, and both sides of some breaks.
   std::vector<double>
-  equal_parts(std::size_t n);
+  equal_parts(std::size_t n, const std::vector<double> &breaks = {});
 
   /**
    * The smallest and the largest stretch in each of some equal boxes of body and duration. The extremes of a whole run
@@ -19,23 +19,33 @@ namespace crawler
   class ExtremesInBoxes
   {
   public:
-    /// @p strides: of the run.
-    explicit ExtremesInBoxes(double strides);
-
-    /// In all boxes: the smallest, then the largest.
-    std::size_t
-    size() const
+    /// Breaks of the active stress, where the stretch may jump: parts of the length, or of the duration.
+    struct Breaks
     {
-      return 2 * n_space_ * n_time_;
+      std::vector<double> in_space, in_time;
+    };
+
+    /// For runs of about so many strides.
+    static std::size_t
+    boxes_in_time(double strides);
+
+    /// @p n_time boxes in time.
+    ExtremesInBoxes(std::size_t n_time, double strides, const Breaks &breaks = {});
+
+    /// Where and when a kymograph is wanted to tell them: parts of length and duration, and both sides of breaks.
+    const std::vector<double> &
+    points() const
+    {
+      return points_;
+    }
+    const std::vector<double> &
+    times() const
+    {
+      return times_;
     }
 
-    /// Where and when a kymograph is wanted to tell them: parts of length and duration.
-    std::vector<double>
-    points() const;
-    std::vector<double>
-    times() const;
-
-    /// Of a run that was seen there, sharpened between the points and times.
+    /// In all boxes, the smallest, then the largest, of a run that was seen there; sharpened between points and times
+    /// that no break separates.
     std::vector<StretchPlace>
     find(const std::vector<double> &stretch) const;
 
@@ -44,8 +54,10 @@ namespace crawler
     place(const StretchPlace &smallest, const StretchPlace &largest) const;
 
   private:
-    static constexpr std::size_t n_space_ = 8, per_box_ = 16;
+    StretchPlace
+    sharpened_at(const std::vector<double> &stretch, std::size_t i, std::size_t j, double sign) const;
 
-    const std::size_t n_time_, times_per_box_;
+    const std::size_t n_time_;
+    std::vector<double> points_, times_;
   };
 } // namespace crawler

@@ -65,10 +65,10 @@ namespace crawler
     SceneFamily &family_;
     const GaitWishes wishes_;
     const std::function<bool()> interrupted_;
-    std::optional<ExtremesInBoxes> boxes_;      ///< where strains are limited
-    std::vector<double> latest_x_;              ///< of what follows
-    std::vector<Task> latest_;                  ///< one, the answer there
-    std::vector<StretchPlace> latest_extremes_; ///< in the boxes, if strains are limited
-    std::vector<double> strain_jacobian_;       ///< [extreme][variable]
+    std::optional<std::size_t> n_boxes_in_time_; ///< where strains are limited
+    std::vector<double> latest_x_;               ///< of what follows
+    std::vector<Task> latest_;                   ///< one, the answer there
+    std::vector<StretchPlace> latest_extremes_;  ///< in the boxes, if strains are limited
+    std::vector<double> strain_jacobian_;        ///< [extreme][variable]
   };
 } // namespace crawler
