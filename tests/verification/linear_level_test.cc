@@ -4,6 +4,7 @@
 // for m = A(t) sin(pi j s), which vanishes there, u = U(t) cos(pi j s) with U' = pi j A - k (pi j)^2 U, U(0) = 0.
 #include "../support/answers.h"
 
+#include <crawler/base/exceptions.h>
 #include <crawler/run/result_table.h>
 
 #include <gtest/gtest.h>

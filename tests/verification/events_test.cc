@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Events that samples miss, long runs, and gaits of hundreds of strides: their answers were once wrong, with bounds
+// that said otherwise.
+#include "../support/answers.h"
+#include "../support/expect_within.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace crawler;
+using test::answer_to;
+using test::expect_within;
+using test::never;
+
+namespace
+{
+  test::Settings
+  pulse(const double speed, const double repetition, const double end_time, const std::string &accuracy)
+  {
+    return {{"Body/Anchoring exponent", "2"},
+            {"Active stress/Generator", "pulse"},
+            {"Active stress/Pulse/Amplitude", "0.4"},
+            {"Active stress/Pulse/Width", "0.1"},
+            {"Active stress/Pulse/Speed", test::text(speed)},
+            {"Active stress/Pulse/Repetition period", test::text(repetition)},
+            {"Time/End time", test::text(end_time)},
+            {"Accuracy", accuracy}};
+  }
+
+  test::Settings
+  event(const double time, const double width, const std::string &accuracy)
+  {
+    return {{"Active stress/Generator", "expression"},
+            {"Active stress/Expression/Active stress",
+             "0.1*sin(2*pi*(s+t))*tanh(5*t)+0.6*sin(pi*s)*sin(2*pi*s)*exp(-((t-q)/w)^2)"},
+            {"Active stress/Expression/Constants", fmt::format("q={}, w={}", test::text(time), test::text(width))},
+            {"Accuracy", accuracy}};
+  }
+
+  /// With steps that no event can escape.
+  double
+  with_short_steps(const test::Settings &settings, const double step)
+  {
+    const Parameters parameters = test::parameters_with(settings);
+    const Scene scene           = parameters.create_scene();
+    const Numerics numerics     = {
+          .degree = 8, .n_cells = 12, .tolerance = 1e-10, .initial_step = 1e-4 * step, .step_limits = {{0., step}}};
+    TimeParameters time = parameters.time;
+    time.integrator     = "radau 9";
+    return Simulation(MPI_COMM_WORLD, scene, time, numerics).run({}, {}).displacement;
+  }
+} // namespace
+
+TEST(Events, ASinglePulseIsNotMissed)
+{
+  expect_within(answer_to(pulse(20., 0., 1000., "1e-4")), -0.00316044717, 1e-4, "pulse");
+}
+
+TEST(Events, PulsesAreCounted)
+{
+  const double one = answer_to(pulse(20., 0., 1000., "1e-7")).displacement;
+  for (const char *stop : {"automatic", "off"})
+  {
+    auto settings = pulse(20., 50., 1000., "1e-4");
+    settings.emplace_back("Time/Cycle stop", stop);
+    expect_within(answer_to(settings), 20. * one, 1e-4, stop);
+  }
+}
+
+TEST(Events, EventsOfFormulasAreNotMissed)
+{
+  for (const double width : {1e-4, 2e-4, 3e-4})
+    for (const double time : {0.2222, 0.51371, 0.9})
+    {
+      const auto settings = event(time, width, "1e-4");
+      expect_within(answer_to(settings), with_short_steps(settings, width), 1e-4, fmt::format("{} at {}", width, time));
+    }
+}
+
+TEST(Events, EachPointOfASweepHasItsEvents)
+{
+  std::vector<Task> tasks(12);
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    tasks[i].parameters = test::parameters_with(event(0.1 + 0.07 * static_cast<double>(i), 2e-4, "1e-4"));
+  std::vector<Task> examples(3);
+  for (std::size_t i = 0; i < examples.size(); ++i)
+    examples[i].parameters = tasks[5 * i].parameters;
+  const auto shared = shared_numerics(examples, []() { return true; });
+  ASSERT_TRUE(shared);
+  const std::vector<bool> done =
+    compute_similar(tasks, *shared, std::vector<double>(tasks.size(), shared->sizes.front()), HUGE_VAL, never);
+  EXPECT_GE(std::count(done.begin(), done.end(), true), 10) << "most of them share their numerics";
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    if (done[i])
+      expect_within(tasks[i].computed.result,
+                    with_short_steps(event(0.1 + 0.07 * static_cast<double>(i), 2e-4, "1e-4"), 2e-4),
+                    1e-4,
+                    fmt::format("point {}", i));
+}
+
+TEST(Events, GaitsOfHundredsOfStrides)
+{
+  struct
+  {
+    double k, T, p, chi, c, exact;
+  } const cases[] = {{30.199100422087973,
+                      588.9260921199359,
+                      -3.41351959351645,
+                      0.061243176350007436,
+                      -0.7964371869725007,
+                      5.843672328812725},
+                     {37.47944457885461,
+                      728.6483162675148,
+                      3.524307968745102,
+                      0.02106611885423389,
+                      -0.4481391340392069,
+                      -0.9093776532489591},
+                     {12.354832814752847,
+                      778.1620910319035,
+                      -0.4855237198344735,
+                      0.1360261489749871,
+                      -0.9408009676664544,
+                      11.223218696811003}};
+  for (const auto &[k, T, p, chi, c, exact] : cases)
+  {
+    auto settings = test::wave(1. - p, chi, c, T, k);
+    settings.emplace_back("Accuracy", "1e-5");
+    expect_within(answer_to(settings), exact, 1e-5, fmt::format("k = {}", k));
+  }
+}
+
+TEST(Events, NothingHasHappenedYet)
+{
+  const SimulationResult result =
+    answer_to({{"Active stress/Generator", "pulse"}, {"Time/End time", "0.05"}, {"Accuracy", "1e-4"}});
+  EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
+  EXPECT_LT(std::abs(result.displacement), 1e-15);
+}
+
+TEST(Events, TheTailOfAPulseHasHardlyCome)
+{
+  // Bounds of its rate that do not become as small as the tail and the ramp made steps of 1e-13 of the duration.
+  const std::string pulse       = "Active stress/Pulse/";
+  const SimulationResult result = answer_to({{"Body/Elastic modulus", "1e7"},
+                                             {"Active stress/Generator", "pulse"},
+                                             {pulse + "Amplitude", "1e6"},
+                                             {pulse + "Width", "0.5"},
+                                             {pulse + "Speed", "1"},
+                                             {pulse + "Ramp duration", "0.3"},
+                                             {"Time/End time", "0.3"}});
+  EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
+  EXPECT_LT(result.time.steps, 1000u);
+  EXPECT_LT(std::abs(result.displacement), result.error->total);
+}
+
+TEST(Events, FirstStridesChooseForLongRuns)
+{
+  const auto settings = [](const bool on_ground, const std::string &accuracy) {
+    test::Settings all = test::wave(-1., 0.3, 1., 60., on_ground ? 1. : 0.01);
+    all.emplace_back("Accuracy", accuracy);
+    if (on_ground)
+      all.emplace_back("Ground/Profile", "1+0.2*sin(x)");
+    return all;
+  };
+  for (const bool on_ground : {false, true})
+  {
+    const std::string what      = on_ground ? "ground" : "soft body";
+    const Parameters parameters = test::parameters_with(settings(on_ground, "1e-5"));
+    const NumericsChoice choice = *choose_numerics(MPI_COMM_SELF, parameters, parameters.create_scene());
+    EXPECT_TRUE(std::isfinite(choice.least_size)) << what << ": " << choice.explanation;
+    const SimulationResult exact = answer_to(settings(on_ground, "1e-8"));
+    ASSERT_EQ(exact.time.status, Status::finished) << what << ": " << exact.time.message;
+    for (const std::string accuracy : {"1e-3", "1e-5"})
+      expect_within(answer_to(settings(on_ground, accuracy)), exact.displacement, std::stod(accuracy), what);
+  }
+}
+
+TEST(Events, FormulasInLongRuns)
+{
+  const std::string wave = "0.2*sin(2*pi*(s+t))";
+  const auto long_run    = [](const std::string &formula, const double end_time, const std::string &accuracy) {
+    return answer_to({{"Active stress/Generator", "expression"},
+                      {"Active stress/Expression/Active stress", formula},
+                      {"Time/End time", test::text(end_time)},
+                      {"Accuracy", accuracy}});
+  };
+  const auto with_event = long_run(wave + "+0.5*sin(pi*s)*sin(2*pi*s)*exp(-((t-530.126)/0.01)^2)", 1000., "1e-5");
+  expect_within(with_event, 17.788083, 1e-5, "an event in 1000 strides");
+  const auto all_alike = long_run(wave, 3000., "1e-4");
+  for (const SimulationResult &result : {with_event, all_alike})
+  {
+    ASSERT_TRUE(result.gait && result.gait->wave_speed());
+    EXPECT_NEAR(result.gait->period, 1., 1e-12);
+    EXPECT_NEAR(*result.gait->wave_speed(), -0.9827, 1e-3);
+    EXPECT_NEAR(*result.gait->slip(), 0.9819, 1e-3);
+  }
+  // A millionth of the run, and a burst of many periods in as little.
+  const auto short_event = long_run(wave + "+0.4*sin(pi*s)*sin(2*pi*s)*exp(-((t-149.055)/0.00165)^2)", 2000., "1e-5");
+  expect_within(short_event, 35.57588231, 1e-5, "an event in 2000 strides");
+  const auto burst =
+    long_run(wave + "+0.45*sin(pi*s)*sin(2*pi*s)*sin(40*t)*exp(-((t-959.169)/0.00145)^2)", 1000., "1e-5");
+  expect_within(burst, 17.7872769, 1e-5, "a burst in 1000 strides");
+}
+
+TEST(Events, EventsOfABodyAtRest)
+{
+  const auto answer = [](const std::string &formula, const std::string &constants, const std::string &end_time) {
+    return answer_to({{"Accuracy", "1e-5"},
+                      {"Body/Elastic modulus", "0.59"},
+                      {"Body/Anchoring exponent", "2.88"},
+                      {"Active stress/Generator", "expression"},
+                      {"Active stress/Expression/Active stress", formula + "*exp(-((t-t0)/w)^2)"},
+                      {"Active stress/Expression/Constants", constants},
+                      {"Time/End time", end_time}});
+  };
+  const std::string turning   = "0.336*sin(3*s-(t-t0)/w)";
+  const SimulationResult late = answer(turning, "t0 = 850.6329, w = 0.05414", "1000");
+  expect_within(late, -0.0055608451, 1e-5, "an event at 850 of 1000");
+  const SimulationResult early = answer(turning, "t0 = 5.6329, w = 0.05414", "20");
+  EXPECT_NEAR(late.displacement, early.displacement, late.error->total + early.error->total);
+  const SimulationResult tiny = answer(turning, "t0 = 3850.6329, w = 0.02787", "5000");
+  EXPECT_NEAR(
+    tiny.displacement, answer(turning, "t0 = 5.6329, w = 0.02787", "20").displacement, 3. * tiny.error->total);
+}
