@@ -43,10 +43,13 @@ namespace crawler
       if (const auto comma = text.find(','); comma != std::string::npos)
         if (const std::string other = std::string(text).replace(comma, 1, "."); to_number(other))
           return fmt::format("; decimals are written with a point: {}", other);
-      const std::string first = text.substr(0, text.find_first_not_of("0123456789.+-"));
-      const std::string unit  = trimmed(text.substr(first.size()));
-      if (first.size() < text.size() && to_number(first) && std::isalpha(static_cast<unsigned char>(unit[0])))
-        return fmt::format("; a number stands alone, without its unit: {}", first);
+      const bool is_decimal   = text.find_first_of("xX") == std::string::npos;
+      const std::string first = text.substr(0, static_cast<std::size_t>(end - text.c_str()));
+      const std::string rest  = trimmed(text.substr(first.size()));
+      if (is_decimal && !rest.empty() && to_number(first))
+        return fmt::format("; a number stands alone, without {}: {}",
+                           std::isalpha(static_cast<unsigned char>(rest[0])) ? "its unit" : "what is behind it",
+                           first);
       return "";
     }
 

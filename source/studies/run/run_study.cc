@@ -8,6 +8,7 @@
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/snapshot_writer.h>
 #include <crawler/output/statistics_writer.h>
+#include <crawler/run/reduced_model.h>
 #include <crawler/run/self_check.h>
 #include <crawler/run/summary.h>
 #include <crawler/scene/moving_jumps.h>
