@@ -147,6 +147,16 @@ def test_many_crests(place):
     expect(optimum["violation"] <= 1e-5, f"crests: {optimum['violation']} is over the limits")
 
 
+def test_far_start(place):
+    """A start seven times beyond its limit leads to a body at rest, and from there back to as much as the limits admit."""
+    wave = "Active stress/Travelling wave/"
+    done = run("optimize_robot", place / "far", "Accuracy=1e-3", "Active stress/Generator=travelling wave", f"{wave}Amplitude=0.544", f"{wave}Wave number=1",
+               f"{wave}Ramp duration=0.3", "Body/Anchoring exponent=2.55", "Body/Elastic modulus=1.283", "Time/End time=2", "Optimize/Tolerance=1e-2",
+               f"Optimize/Variables={wave}Amplitude : 0 to 1.7; {wave}Wave number : 0.3 to 3", "Optimize/Smallest strain=-0.265", "Optimize/Largest strain=0.078")
+    optimum = optima(place / "far")[0] if done.returncode == 0 else {"objective": 0, "has_converged": False}
+    expect(optimum["has_converged"] and 0.0067 < optimum["objective"] < 0.0072, f"far: {optimum} {done.stderr}")
+
+
 def test_narrow_stress(place):
     """A limit of the stress is kept between the points where the optimiser looks, and reached."""
     expression = "Active stress/Expression/"
@@ -393,7 +403,7 @@ def main():
     """All tests in a folder of their own."""
     with tempfile.TemporaryDirectory() as name:
         place = pathlib.Path(name)
-        for test in tests_of_part((test_merits, test_theorem, test_simulations, test_pulling_limits, test_many_crests, test_narrow_stress,
+        for test in tests_of_part((test_merits, test_theorem, test_simulations, test_pulling_limits, test_many_crests, test_far_start, test_narrow_stress,
                                    test_cases, test_neighbours, test_starts, test_gradients, test_uneven, test_obstacles, test_bad_input), (test_stops,)):
             test(place)
     checks.end()

@@ -140,6 +140,12 @@ namespace crawler
         for (unsigned int round = 0; round < most_rounds; ++round)
         {
           improve(*model, is_rough);
+          if (round == 0 && result_.has_converged && !moves() && result_.records.front().violation > 0.)
+          {
+            x_ = as_near_as_limits_admit(*model);
+            multipliers_.clear();
+            improve(*model, is_rough);
+          }
           if (!result_.best.problem.empty())
             return;
           x_      = result_.best.x;
@@ -229,6 +235,40 @@ namespace crawler
         }
       }
 
+      /// In the wanted direction?
+      bool
+      moves() const
+      {
+        constexpr double least_motion = 1e-12;
+        const bool is_cost            = wanted_.objective == "cost of transport"; // positive in the wanted direction
+        const double sign             = wanted_.direction == "forward" || is_cost ? 1. : -1.;
+        return sign * result_.best.objective > least_motion;
+      }
+
+      /// A start far beyond the limits may end where nothing moves, and nothing leads away from there. Between both is
+      /// the place that is as near to the start as the limits admit.
+      std::vector<double>
+      as_near_as_limits_admit(GaitModel &model)
+      {
+        constexpr unsigned int n_bisections = 12;
+        GaitProblem problem(model, wanted_, family_.variables(), start_, stops_);
+        const auto at = [&, end = result_.best.x](const double part) {
+          std::vector<double> x(end.size());
+          for (std::size_t i = 0; i < x.size(); ++i)
+            x[i] = std::lerp(end[i], start_[i], part);
+          return x;
+        };
+        double admitted = 0., beyond = 1.;
+        for (unsigned int i = 0; i < n_bisections; ++i)
+        {
+          const double part        = 0.5 * (admitted + beyond);
+          const GaitRecord &record = problem.record(problem.to_y(at(part)));
+          (record.problem.empty() && record.violation <= 0. ? admitted : beyond) = part;
+        }
+        result_.records.insert(result_.records.end(), problem.records().begin(), problem.records().end());
+        return at(admitted);
+      }
+
       /// For whoever watches.
       void
       see(const GaitProblem &problem)
@@ -249,10 +289,8 @@ namespace crawler
       void
       judge()
       {
-        constexpr double least_motion = 1e-12;
-        const bool is_cost            = wanted_.objective == "cost of transport"; // positive in the wanted direction
-        const double sign             = wanted_.direction == "forward" || is_cost ? 1. : -1.;
-        if (result_.has_converged && !(sign * result_.best.objective > least_motion))
+        const bool is_cost = wanted_.objective == "cost of transport";
+        if (result_.has_converged && !moves())
         {
           result_.has_converged = false;
           result_.message =
