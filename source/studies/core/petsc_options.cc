@@ -2,7 +2,6 @@
 #include <crawler/base/communication.h>
 #include <crawler/studies/core/petsc_options.h>
 
-#include <fmt/format.h>
 #include <petscsys.h>
 
 #include <cctype>
