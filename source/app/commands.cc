@@ -224,6 +224,10 @@ namespace crawler
     if (!petsc_options.empty() && !petsc_options[0].starts_with("-"))
       throw InputError("behind \"--\" stands \"" + petsc_options[0] +
                        "\", but a PETSc option is expected, like -ts_monitor");
+    for (const std::string &word : petsc_options)
+      if (word.starts_with("--"))
+        throw InputError(fmt::format(
+          "behind \"--\" stands \"{}\", but PETSc options are expected; those of crawler stand in front", word));
     try
     {
       app_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));

@@ -30,19 +30,16 @@ namespace crawler
       return static_cast<unsigned int>(std::stoul(text));
     }
 
-    /// What is perhaps wrong with a number: "0,4" or "10 cm".
+    /// What is perhaps wrong with a number like "10 cm".
     std::string
     number_hint(const std::string &text)
     {
       if (to_number(text)) // it is one, but out of the range
         return "";
-      char *end          = nullptr;
-      const double value = std::strtod(text.c_str(), &end);
-      if (std::isinf(value) && std::isdigit(static_cast<unsigned char>(text.back())) && *end == '\0')
-        return fmt::format("; the largest number is {:.1e}", std::numeric_limits<double>::max());
-      if (const auto comma = text.find(','); comma != std::string::npos)
-        if (const std::string other = std::string(text).replace(comma, 1, "."); to_number(other))
-          return fmt::format("; decimals are written with a point: {}", other);
+      if (!probable_slip(text).empty()) // which is told with the place of the entry
+        return "";
+      char *end = nullptr;
+      std::strtod(text.c_str(), &end);
       const bool is_decimal   = text.find_first_of("xX") == std::string::npos;
       const std::string first = text.substr(0, static_cast<std::size_t>(end - text.c_str()));
       const std::string rest  = trimmed(text.substr(first.size()));

@@ -94,14 +94,19 @@ namespace crawler
       return statements;
     }
 
-    /// The error of an assignment, with its place. What comes of a foreign sign is no error of its own.
+    /// The error of an assignment, with its place and a probable slip. What comes of a foreign sign is no error of its
+    /// own.
     InputError
     at_place(const Assignment &assignment, const InputError &error)
     {
       std::string sign = foreign_sign(assignment.path);
       if (sign.empty())
         sign = foreign_sign(assignment.value);
-      return InputError(assignment.place + ": " + (sign.empty() ? error.what() : sign), error.entry);
+      if (!sign.empty())
+        return InputError(assignment.place + ": " + sign, error.entry);
+      const std::string slip = probable_slip(assignment.value), sentence = error.what();
+      const bool is_told = !slip.empty() && sentence.find(slip.substr(2)) != std::string::npos;
+      return InputError(assignment.place + ": " + sentence + (is_told ? "" : slip), error.entry);
     }
   } // namespace
 

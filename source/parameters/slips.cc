@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdlib>
+#include <limits>
+#include <regex>
 
 namespace crawler
 {
@@ -36,7 +39,8 @@ namespace crawler
                                    {"\xC2\xBB", "a typographic quote (U+00BB)", quote},
                                    {"\xC3\x97", "a typographic times sign (U+00D7)", times},
                                    {"\xC2\xB7", "a centred dot (U+00B7)", times},
-                                   {"\xE2\x8B\x85", "a centred dot (U+22C5)", times}};
+                                   {"\xE2\x8B\x85", "a centred dot (U+22C5)", times},
+                                   {"\xCF\x80", "a Greek pi (U+03C0)", "\"pi\""}};
   } // namespace
 
   std::string
@@ -65,6 +69,24 @@ namespace crawler
                        "expected{}",
                        file,
                        home == nullptr ? "" : fmt::format(": {}{}", home, file.substr(1)));
+  }
+
+  std::string
+  probable_slip(const std::string &value)
+  {
+    std::smatch found;
+    // One comma between digits; not the two arguments of a function, nor a list of three and more.
+    static const std::regex comma(R"((^|[^\w.,])(\d+),(\d+)(?![\d.,]))"), arguments(R"(\(\d+,\d+\))");
+    if (const std::string rest = std::regex_replace(value, arguments, ""); std::regex_search(rest, found, comma))
+      return fmt::format("; decimals are written with a point: {}.{}", found.str(2), found.str(3));
+    static const std::regex home(R"(^~/.*$|~/[^\s,;:")]*)");
+    if (std::regex_search(value, found, home))
+      return "; " + home_sign(found.str(0));
+    static const std::regex exponent(R"((?:^|[^\w.])((?:\d+\.?\d*|\.\d+)[eE]\+?\d+)(?![\w.]))");
+    for (std::sregex_iterator number(value.begin(), value.end(), exponent); number != std::sregex_iterator(); ++number)
+      if (std::isinf(std::strtod(number->str(1).c_str(), nullptr)))
+        return fmt::format("; the largest number is {:.1e}", std::numeric_limits<double>::max());
+    return "";
   }
 
   std::string

@@ -95,7 +95,7 @@ class Study(Numbers):
 
 def read(folder):
     """The results in a folder of `crawler run`, sweep, tradeoff, optimize or fit: a Result or a Study."""
-    folder = pathlib.Path(folder)
+    folder = pathlib.Path(folder).expanduser()
     summary_file = folder / "summary.json"
     if not summary_file.is_file():
         raise FileError(f'"{summary_file}" does not exist; the folder of a run or a study that has ended is expected')

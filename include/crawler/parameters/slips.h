@@ -14,6 +14,12 @@ namespace crawler
   std::string
   home_sign(const std::string &file);
 
+  /// What is probably wrong in a value that is refused, to be put behind the sentence that refuses it: a decimal comma,
+  /// the
+  /// "~" of a shell, a number beyond the largest. Empty if none of these is in it.
+  std::string
+  probable_slip(const std::string &value);
+
   /// What to write instead of a command or section of earlier versions, in words. Empty if there was none of this name.
   std::string
   successor_of(const std::string &former);

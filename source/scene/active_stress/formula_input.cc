@@ -61,8 +61,7 @@ namespace crawler
     void
     require_one_value(const std::string &formula, const std::string &formula_entry)
     {
-      const auto is_digit = [](const char c) { return c >= '0' && c <= '9'; };
-      int depth           = 0;
+      int depth = 0;
       for (std::size_t i = 0; i < formula.size(); ++i)
       {
         const char c = formula[i], before = i > 0 ? formula[i - 1] : ' ',
@@ -78,10 +77,9 @@ namespace crawler
         if (c == ',' && depth == 0)
           throw InputError(
             fmt::format("error in the formula \"{}\" at position {}: one formula is expected, but there are "
-                        "several, separated by a comma{}",
+                        "several, separated by a comma",
                         formula,
-                        i + 1,
-                        is_digit(before) && is_digit(after) ? "; decimals are written with a point" : ""),
+                        i + 1),
             formula_entry);
         if (c == '=' && after != '=' && std::string("=<>!").find(before) == std::string::npos)
           throw InputError(
