@@ -2,6 +2,7 @@
 #include <crawler/base/plain_numbers.h>
 
 #include <algorithm>
+#include <cctype>
 #include <string_view>
 
 namespace crawler
@@ -33,6 +34,8 @@ namespace crawler
         end = std::min(text.find_first_not_of(text.compare(end, 2, "0.") == 0 ? "0." : "0", end), text.size());
       if (end == minus + 1 || (end < text.size() && after.find(text[end]) == after.npos))
         continue;
+      if (end + 1 < text.size() && text[end] == ',' && std::isdigit(static_cast<unsigned char>(text[end + 1])) != 0)
+        continue; // a decimal comma, which is repeated as it was
       const bool is_aligned = minus > 1 && text.compare(minus - 2, 2, "  ") == 0;
       text.replace(minus, 1, is_aligned ? " " : "");
     }

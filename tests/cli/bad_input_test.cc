@@ -654,6 +654,7 @@ namespace
        {"several, separated by a comma; decimals are written with a point"}},
       {"DecimalCommaInAProfile", in_section("Body", "set Initial stretch = 0,9"), {"with a point: 0.9\n"}},
       bad_formula("DecimalCommaInAConstant", "a*sin(t)", "a = 0,1", {"decimals are written with a point: 0.1\n"}),
+      bad_formula("NegativeDecimalComma", "-0,1*sin(t)", "", {"in the formula \"-0,1*sin(t)\"", "a point: 0.1\n"}),
       bad_formula("LargeNumberInAFormula", "1e400*sin(t)", "", {"; the largest number is 1.8e+308\n"}),
       bad_formula("GreekPi", "sin(2*\u03C0*t)", "", {"a Greek pi (U+03C0)", "but \"pi\" is expected"}),
       {"SmallNumberHasNoUnit", in_section("Body", "set Length = -1e-3"), {"but a positive number is expected\n"}},
