@@ -94,8 +94,7 @@ namespace crawler
       return statements;
     }
 
-    /// The error of an assignment, with its place and a probable slip. What comes of a foreign sign is no error of its
-    /// own.
+    /// The error of an assignment, with its place and a probable slip. A foreign sign takes the place of its error.
     InputError
     at_place(const Assignment &assignment, const InputError &error)
     {

@@ -15,8 +15,7 @@ namespace crawler
   home_sign(const std::string &file);
 
   /// What is probably wrong in a value that is refused, to be put behind the sentence that refuses it: a decimal comma,
-  /// the
-  /// "~" of a shell, a number beyond the largest. Empty if none of these is in it.
+  /// the "~" of a shell, a number beyond the largest. Empty if none of these is in it.
   std::string
   probable_slip(const std::string &value);
 

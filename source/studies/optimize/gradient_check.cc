@@ -118,7 +118,7 @@ namespace crawler
         log.line(fmt::format("{}: its derivatives are differences of simulations, since the adjoint does not cover it; "
                              "there is nothing to compare",
                              family.variables()[i].path));
-    if (checked.empty())
+    if (checked.empty() || list.empty())
       return std::nullopt;
 
     // Where the integrator takes another step or the mesh another cell, values jump by their error. Narrower
