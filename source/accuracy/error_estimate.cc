@@ -49,9 +49,10 @@ namespace crawler
       Numerics n          = choice.numerics;
       const bool promised = is_promised(choice, scene);
       // Where the friction switches its direction kinks move through cells and steps: errors fall by low powers.
-      // A displacement that is 0 says nothing of the works.
+      // A displacement that is 0 says nothing of the works. Inside soft bodies layers are as thin as at their ends.
+      const bool is_soft = scene.body.elastic_modulus / natural_units(scene).force < soft;
       const bool much_finer =
-        !promised || choice.is_steep || scene.ground.direction.is_uneven() || scene.keeps_its_centre();
+        !promised || choice.is_steep || is_soft || scene.ground.direction.is_uneven() || scene.keeps_its_centre();
       if (n.mesh.tolerance > 0.)
       {
         n.mesh.tolerance *= finer_mesh_tolerance;
@@ -74,9 +75,9 @@ namespace crawler
                                                    : finer_tolerance_than_others);
       n.integrator = best_integrator;
       // Layers that neither mesh sees would be missed by the difference.
-      const double k = scene.body.elastic_modulus / natural_units(scene).force;
-      if (promised && k < soft && n.mesh.tolerance == 0. && n.grading.levels == 0)
+      if (promised && is_soft && n.mesh.tolerance == 0. && n.grading.levels == 0)
       {
+        const double k      = scene.body.elastic_modulus / natural_units(scene).force;
         const double levels = std::log(layer_cells * k * n.n_cells) / std::log(layer_ratio);
         n.grading      = {static_cast<unsigned int>(std::clamp(std::ceil(levels), 1., most_layer_levels)), layer_ratio};
         n.initial_step = std::max(n.initial_step, first_step * scene.end_time);

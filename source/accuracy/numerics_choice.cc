@@ -125,13 +125,6 @@ namespace crawler
         return choice_;
       }
 
-      /// As the last pilot shows it.
-      double
-      least_size_of_displacement() const
-      {
-        return std::max(displacement_floor * pilot_.largest_u, least_size());
-      }
-
     private:
       /// Motions below this are nothing, and their squares underflow.
       double
@@ -644,6 +637,8 @@ namespace crawler
         }
         if (jumps_move_ && predicts)
           choice_.wanted_error = accuracy_ * size_;
+        if (std::isfinite(choice_.wanted_error))
+          choice_.least_size = std::max(displacement_floor * pilot_.largest_u, least_size());
         const double seconds   = watch_.seconds();
         const std::string kind = jumps_move_ ? "jumps of the active stress that move, "
                                  : is_graded ? fmt::format("sudden stress, {} of cells smaller by {:g} each, ",
@@ -754,14 +749,11 @@ namespace crawler
       if (const auto end = end_of_first_strides(parameters, scene))
       {
         const Beginning beginning(scene, *end);
-        Chooser chooser(communicator, parameters, beginning.scene(), keep_going);
-        NumericsChoice choice = chooser.choose();
+        NumericsChoice choice = Chooser(communicator, parameters, beginning.scene(), keep_going).choose();
         if (std::isfinite(choice.wanted_error) || choice.is_of_several_runs())
         {
           choice.numerics.step_limits = stress_scales(scene).step_limits;
           choice.least_error *= scene.end_time / *end;
-          if (!choice.is_of_several_runs())
-            choice.least_size = chooser.least_size_of_displacement();
           choice.explanation += fmt::format("; the first {:g} of {:.4g} strides chose",
                                             first_strides,
                                             scene.end_time / scene.active_stress->repetition()->period);

@@ -338,7 +338,7 @@ namespace crawler
       SimulationResult &result_ = answer_.result;
     };
 
-    /// Of the family, or of the position form if it has a smaller error where the family does not meet Accuracy.
+    /// Of the family, or of the position form if it meets Accuracy where the family does not, or comes nearer to it.
     Answer
     better_of_both_forms(const RunParameters &parameters,
                          const Scene &scene,
@@ -352,7 +352,8 @@ namespace crawler
       try
       {
         auto other = answer_of_position_form(parameters, scene, options, keep_going);
-        if (other && !(answer.result.error && other->result.error->total >= answer.result.error->total))
+        if (other && (other->result.time.status == Status::finished || !answer.result.error ||
+                      other->result.error->total < answer.result.error->total))
           return std::move(*other);
       }
       catch (...) // the answer that is there stays

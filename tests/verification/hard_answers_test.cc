@@ -31,12 +31,6 @@ namespace
   };
 } // namespace
 
-/// True value by an independent solver.
-/// Neighbours in a sweep share their numerics, but not their events.
-/// The stress of many strides must be sampled over one of them: samples over all of them see the wrong rate.
-/// Reference: contrib/reference/stretch.py 1e-4 2 0.3 1 1.
-/// The stretch form has meshes for their layers. Reference: contrib/reference/stretch.py 1e-5 2 0.3 1 1.
-/// In the position form the error says what the mesh may miss.
 /// a > 0, three cells: the body does not invert.
 TEST(HardAnswers, ACoarseMeshDoesNotInvertABody)
 {

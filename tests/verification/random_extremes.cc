@@ -281,8 +281,11 @@ namespace
       {
         Judgement finer = by_position_form(other, row.scene, own, limit, more);
         finer.error     = std::max(finer.error, std::abs(finer.displacement - second.displacement));
-        if (!finer.is_answer())
+        if (!finer.is_answer()) // one mesh alone is not known to be fine enough
+        {
+          verdict = more == 2. ? "undecided" : verdict;
           break;
+        }
         second  = finer;
         verdict = compare(row, second, wanted, T);
       }

@@ -42,8 +42,8 @@ namespace crawler
     /// the widest that fit; 0: the jumps themselves.
     bool has_fronts   = false;
     double front_part = 0.;
-    /// The first strides of many chose: the size of the displacement is known after the run, but it counts as no less
-    /// than this [length]; not a number otherwise.
+    /// The size of the displacement, which is known after the run, counts as no less than this [length]; not a number
+    /// if the user chose the numerics.
     double least_size = std::numeric_limits<double>::quiet_NaN();
     /// What helps if Accuracy is not met; empty if nothing special does.
     std::string advice;
@@ -55,12 +55,18 @@ namespace crawler
       return is_family || has_fronts;
     }
 
-    /// The run is there: what Accuracy stands for, if only first strides have told up to now.
+    /// The run is there: what Accuracy stands for, if pilots, or the first strides of many, were far from its
+    /// displacement.
     void
     set_size(const double displacement, const double accuracy)
     {
-      if (std::isfinite(least_size))
-        wanted_error = promised_error = accuracy * std::max(std::abs(displacement), least_size);
+      constexpr double near = 0.2;
+      const double wanted   = accuracy * std::max(std::abs(displacement), least_size);
+      if (!std::isfinite(least_size) || std::abs(wanted - wanted_error) <= near * wanted_error)
+        return;
+      wanted_error = wanted;
+      if (!is_measured)
+        promised_error = wanted;
     }
   };
 
