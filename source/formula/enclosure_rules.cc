@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/formula/enclosure.h>
 #include <crawler/formula/operation_rules.h>
 
 #include <algorithm>
@@ -12,144 +13,50 @@ namespace crawler
 {
   namespace
   {
+    using namespace interval_policies; // comparisons
     using Bound     = FormulaOperation::Bound;
     using Arguments = std::span<const Enclosure>;
 
-    constexpr double infinite = std::numeric_limits<double>::infinity();
-    constexpr Interval all{-infinite, infinite};
-    constexpr Enclosure anything{all, all};
+    const Enclosure anything{Interval::whole(), Interval::whole()};
 
     Interval
-    hull(const Interval a, const Interval b)
+    inverse(const Interval &a)
     {
-      return {std::min(a.lower, b.lower), std::max(a.upper, b.upper)};
-    }
-
-    Interval
-    operator+(const Interval a, const Interval b)
-    {
-      return {a.lower + b.lower, a.upper + b.upper};
-    }
-
-    Interval
-    operator-(const Interval a)
-    {
-      return {-a.upper, -a.lower};
-    }
-
-    Interval
-    operator*(const Interval a, const Interval b)
-    {
-      const auto product = [](const double x, const double y) // 0 times anything is 0
-      { return x == 0. || y == 0. ? 0. : x * y; };
-      const double p[] = {
-        product(a.lower, b.lower), product(a.lower, b.upper), product(a.upper, b.lower), product(a.upper, b.upper)};
-      return {*std::min_element(p, p + 4), *std::max_element(p, p + 4)};
-    }
-
-    Interval
-    inverse(const Interval a)
-    {
-      return a.lower > 0. || a.upper < 0. ? Interval{1. / a.upper, 1. / a.lower} : all;
-    }
-
-    Interval
-    square(const Interval a)
-    {
-      const double x = a.lower * a.lower, y = a.upper * a.upper;
-      return {a.lower <= 0. && a.upper >= 0. ? 0. : std::min(x, y), std::max(x, y)};
-    }
-
-    Interval
-    scaled(const Interval a, const double factor)
-    {
-      return a * Interval{factor, factor};
+      return zero_in(a) ? Interval::whole() : 1. / a;
     }
 
     bool
     is_constant(const Enclosure &x)
     {
-      return x.value.lower == x.value.upper;
+      return singleton(x.value);
     }
 
     /// What does not change in the box does not change in time, either, even where a derivative is not known.
     Interval
-    chain(const Interval derivative, const Interval rate)
+    chain(const Interval &derivative, const Interval &rate)
     {
-      return rate.lower == 0. && rate.upper == 0. ? rate : derivative * rate;
+      return equal(rate, Interval(0.)) ? rate : derivative * rate;
     }
 
     /// Of a function that increases.
     Interval
-    increasing(double (*f)(double), const Interval x)
+    increasing(double (*f)(double), const Interval &x)
     {
-      return {f(x.lower), f(x.upper)};
-    }
-
-    // Interval extensions of functions of one argument.
-
-    Interval
-    sine(const Interval x)
-    {
-      constexpr double pi = std::numbers::pi;
-      if (!(x.upper - x.lower < 2. * pi))
-        return {-1., 1.};
-      const auto contains = [x](const double phase) // one of phase + 2 pi n
-      { return std::floor((x.upper - phase) / (2. * pi)) >= std::ceil((x.lower - phase) / (2. * pi)); };
-      const double a = std::sin(x.lower), b = std::sin(x.upper);
-      return {contains(-0.5 * pi) ? -1. : std::min(a, b), contains(0.5 * pi) ? 1. : std::max(a, b)};
-    }
-
-    Interval
-    cosine(const Interval x)
-    {
-      constexpr double quarter = 0.5 * std::numbers::pi;
-      return sine({x.lower + quarter, x.upper + quarter});
-    }
-
-    Interval
-    hyperbolic_cosine(const Interval x)
-    {
-      const double a = std::cosh(x.lower), b = std::cosh(x.upper);
-      return {x.lower <= 0. && x.upper >= 0. ? 1. : std::min(a, b), std::max(a, b)};
-    }
-
-    Interval
-    exponential(const Interval x)
-    {
-      return {std::exp(x.lower), std::exp(x.upper)};
-    }
-
-    /// Where it is not defined it is not looked at: such values are refused elsewhere.
-    Interval
-    logarithm(const Interval x)
-    {
-      return {x.lower > 0. ? std::log(x.lower) : -infinite, x.upper > 0. ? std::log(x.upper) : -infinite};
-    }
-
-    Interval
-    root(const Interval x)
-    {
-      return {std::sqrt(std::max(x.lower, 0.)), std::sqrt(std::max(x.upper, 0.))};
+      return {f(x.lower()), f(x.upper())};
     }
 
     /// 1/sqrt(x)
     Interval
-    inverse_root(const Interval x)
+    inverse_root(const Interval &x)
     {
-      const Interval r = root(x);
-      return {1. / r.upper, r.lower > 0. ? 1. / r.lower : infinite};
+      const Interval r = sqrt(x);
+      return {1. / r.upper(), r.lower() > 0. ? 1. / r.lower() : std::numeric_limits<double>::infinity()};
     }
 
     Interval
-    integer_power(const Interval x, const int n)
+    whole_power(const Interval &x, const int n)
     {
-      if (n < 0)
-        return inverse(integer_power(x, -n));
-      const double a = std::pow(x.lower, n), b = std::pow(x.upper, n);
-      if (n % 2 == 1 || x.lower >= 0.)
-        return {a, b};
-      return x.upper <= 0. ? Interval{b, a} : Interval{n == 0 ? 1. : 0., std::max(a, b)};
+      return n < 0 ? inverse(pow(x, -n)) : n > 0 ? pow(x, n) : 1.;
     }
 
     // Rules: value and rate of the result from those of the arguments.
@@ -161,65 +68,31 @@ namespace crawler
     [[maybe_unused]] const Interval f = value_of;           \
     return {f, chain(derivative, arguments[0].rate)};       \
   }
-    const Interval one{1., 1.};
-    CRAWLER_RULE(sin_rule, sine(x), cosine(x))
-    CRAWLER_RULE(cos_rule, cosine(x), -sine(x))
-    CRAWLER_RULE(sinh_rule, increasing(std::sinh, x), hyperbolic_cosine(x))
-    CRAWLER_RULE(cosh_rule, hyperbolic_cosine(x), increasing(std::sinh, x))
-    CRAWLER_RULE(tanh_rule, increasing(std::tanh, x), one + -square(f))
-    CRAWLER_RULE(atan_rule, increasing(std::atan, x), inverse(one + square(x)))
-    CRAWLER_RULE(asinh_rule, increasing(std::asinh, x), inverse_root(one + square(x)))
-    CRAWLER_RULE(exp_rule, exponential(x), f)
-    CRAWLER_RULE(log_rule, logarithm(x), x.lower > 0. ? inverse(x) : all)
-    CRAWLER_RULE(log2_rule,
-                 scaled(logarithm(x), std::numbers::log2e),
-                 x.lower > 0. ? scaled(inverse(x), std::numbers::log2e) : all)
-    CRAWLER_RULE(log10_rule,
-                 scaled(logarithm(x), std::numbers::log10e),
-                 x.lower > 0. ? scaled(inverse(x), std::numbers::log10e) : all)
-    CRAWLER_RULE(sqrt_rule, root(x), scaled(inverse_root(x), 0.5))
-    CRAWLER_RULE(negative_rule, -x, -one)
-    CRAWLER_RULE(erf_rule, increasing(std::erf, x), scaled(exponential(-square(x)), 2. * std::numbers::inv_sqrtpi))
-    CRAWLER_RULE(erfc_rule,
-                 one + -increasing(std::erf, x),
-                 scaled(exponential(-square(x)), -2. * std::numbers::inv_sqrtpi))
+    CRAWLER_RULE(sin_rule, sin(x), cos(x))
+    CRAWLER_RULE(cos_rule, cos(x), -sin(x))
+    CRAWLER_RULE(tan_rule, tan(x), 1. + square(f))
+    CRAWLER_RULE(asin_rule, asin(x), inverse_root(1. - square(x)))
+    CRAWLER_RULE(acos_rule, acos(x), -inverse_root(1. - square(x)))
+    CRAWLER_RULE(sinh_rule, sinh(x), cosh(x))
+    CRAWLER_RULE(cosh_rule, cosh(x), sinh(x))
+    CRAWLER_RULE(tanh_rule, tanh(x), 1. - square(f))
+    CRAWLER_RULE(atan_rule, atan(x), inverse(1. + square(x)))
+    CRAWLER_RULE(asinh_rule, increasing(std::asinh, x), inverse_root(1. + square(x)))
+    CRAWLER_RULE(exp_rule, exp(x), f)
+    CRAWLER_RULE(log_rule, log(x), inverse(x))
+    CRAWLER_RULE(log2_rule, std::numbers::log2e *log(x), std::numbers::log2e *inverse(x))
+    CRAWLER_RULE(log10_rule, std::numbers::log10e *log(x), std::numbers::log10e *inverse(x))
+    CRAWLER_RULE(sqrt_rule, sqrt(x), 0.5 * inverse_root(x))
+    CRAWLER_RULE(negative_rule, -x, -1.)
+    CRAWLER_RULE(erf_rule, increasing(std::erf, x), 2. * std::numbers::inv_sqrtpi * exp(-square(x)))
+    CRAWLER_RULE(erfc_rule, 1. - increasing(std::erf, x), -2. * std::numbers::inv_sqrtpi * exp(-square(x)))
 #undef CRAWLER_RULE
-
-    Enclosure
-    tan_rule(const Arguments arguments)
-    {
-      const Interval x = arguments[0].value, c = cosine(x);
-      if (!(c.lower > 0. || c.upper < 0.))
-        return anything;
-      const Interval f = {std::tan(x.lower), std::tan(x.upper)};
-      return {f, chain(one + square(f), arguments[0].rate)};
-    }
-
-    Enclosure
-    asin_rule(const Arguments arguments)
-    {
-      const Interval x = arguments[0].value;
-      return {{std::asin(std::max(x.lower, -1.)), std::asin(std::min(x.upper, 1.))},
-              chain(inverse_root(one + -square(x)), arguments[0].rate)};
-    }
-
-    Enclosure
-    acos_rule(const Arguments arguments)
-    {
-      const Enclosure f        = asin_rule(arguments);
-      constexpr double quarter = 0.5 * std::numbers::pi;
-      return {Interval{quarter, quarter} + -f.value, -f.rate};
-    }
 
     Enclosure
     abs_rule(const Arguments arguments)
     {
       const Interval x = arguments[0].value, rate = arguments[0].rate;
-      if (x.lower >= 0.)
-        return {x, rate};
-      if (x.upper <= 0.)
-        return {-x, -rate};
-      return {{0., std::max(-x.lower, x.upper)}, hull(rate, -rate)};
+      return {abs(x), x.lower() >= 0. ? rate : x.upper() <= 0. ? -rate : hull(rate, -rate)};
     }
 
     Enclosure
@@ -250,7 +123,7 @@ namespace crawler
     times_rule(const Arguments x)
     {
       if (x[0].number == x[1].number && x[0].number != Enclosure::no_number) // a square
-        return {square(x[0].value), scaled(x[0].value * x[0].rate, 2.)};
+        return {square(x[0].value), 2. * x[0].value * x[0].rate};
       return {x[0].value * x[1].value, x[0].rate * x[1].value + x[0].value * x[1].rate};
     }
 
@@ -258,31 +131,29 @@ namespace crawler
     divide_rule(const Arguments x)
     {
       const Interval of_divisor = inverse(x[1].value), f = x[0].value * of_divisor;
-      return {f, (x[0].rate + -chain(f, x[1].rate)) * of_divisor};
+      return {f, (x[0].rate - chain(f, x[1].rate)) * of_divisor};
     }
 
     Enclosure
     power_rule(const Arguments x)
     {
       const Interval base = x[0].value;
-      const double y      = x[1].value.lower;
+      const double y      = x[1].value.lower();
       if (is_constant(x[1]) && y == std::rint(y) && std::abs(y) <= 64.)
       {
         const int n = static_cast<int>(y);
-        return {integer_power(base, n),
-                n == 0 ? Interval{0., 0.} : chain(scaled(integer_power(base, n - 1), y), x[0].rate)};
+        return {whole_power(base, n), n == 0 ? 0. : chain(y * whole_power(base, n - 1), x[0].rate)};
       }
-      if (is_constant(x[1]) && base.lower >= 0.)
+      if (is_constant(x[1]) && base.lower() >= 0.)
       {
-        const auto power = [base](const double exponent) -> Interval {
-          const double a = std::pow(base.lower, exponent), b = std::pow(base.upper, exponent);
-          return {std::min(a, b), std::max(a, b)};
+        const auto power = [base](const double exponent) {
+          return hull(std::pow(base.lower(), exponent), Interval(std::pow(base.upper(), exponent)));
         };
-        return {power(y), chain(scaled(power(y - 1.), y), x[0].rate)};
+        return {power(y), chain(y * power(y - 1.), x[0].rate)};
       }
-      if (!(base.lower > 0.))
+      if (!(base.lower() > 0.))
         return anything;
-      const Interval of_base = logarithm(base), f = exponential(x[1].value * of_base);
+      const Interval of_base = log(base), f = exp(x[1].value * of_base);
       return {f, f * (x[1].rate * of_base + chain(x[1].value * inverse(base), x[0].rate))};
     }
 
@@ -292,7 +163,7 @@ namespace crawler
     jumping(const Interval value, const Arguments x)
     {
       const bool at_a_time = std::all_of(x.begin(), x.end(), [](const Enclosure &e) { return !e.on_s; });
-      return {value, value.lower == value.upper || !at_a_time ? Interval{0., 0.} : all};
+      return {value, singleton(value) || !at_a_time ? Interval(0.) : Interval::whole()};
     }
 
     template <double (*function)(double)>
@@ -311,12 +182,12 @@ namespace crawler
     Enclosure
     modulo_rule(const Arguments x)
     {
-      if (!is_constant(x[1]) || !(x[1].value.lower > 0.))
+      if (!is_constant(x[1]) || !(x[1].value.lower() > 0.))
         return anything;
-      const double y = x[1].value.lower, first = std::floor(x[0].value.lower / y),
-                   last = std::floor(x[0].value.upper / y);
+      const double y = x[1].value.lower(), first = std::floor(x[0].value.lower() / y),
+                   last = std::floor(x[0].value.upper() / y);
       if (first == last)
-        return {{x[0].value.lower - first * y, x[0].value.upper - first * y}, x[0].rate};
+        return {x[0].value - first * y, x[0].rate};
       const Enclosure jump = jumping({0., y}, x);
       return {jump.value, x[0].rate + jump.rate};
     }
@@ -328,51 +199,24 @@ namespace crawler
       return jumping({is_certain ? 1. : 0., is_possible ? 1. : 0.}, x);
     }
 
+    /// By what two values may be, and by what they are for certain.
+    template <bool (*may_be)(const Interval &, const Interval &), bool (*is)(const Interval &, const Interval &)>
     Enclosure
-    less_rule(const Arguments x)
+    comparison(const Arguments x)
     {
-      return truth(x[0].value.lower < x[1].value.upper, x[0].value.upper < x[1].value.lower, x);
-    }
-
-    Enclosure
-    less_equal_rule(const Arguments x)
-    {
-      return truth(x[0].value.lower <= x[1].value.upper, x[0].value.upper <= x[1].value.lower, x);
-    }
-
-    /// With its two arguments the other way round.
-    template <Enclosure (*rule)(Arguments)>
-    Enclosure
-    turned(const Arguments x)
-    {
-      const Enclosure other_way[] = {x[1], x[0]};
-      return rule(Arguments(other_way));
-    }
-
-    Enclosure
-    equal_rule(const Arguments x)
-    {
-      const bool may_be = x[0].value.lower <= x[1].value.upper && x[1].value.lower <= x[0].value.upper;
-      return truth(may_be, may_be && is_constant(x[0]) && is_constant(x[1]), x);
-    }
-
-    Enclosure
-    not_equal_rule(const Arguments x)
-    {
-      const Interval same = equal_rule(x).value;
-      return truth(same.lower == 0., same.upper == 0., x);
+      return truth(may_be(x[0].value, x[1].value), is(x[0].value, x[1].value), x);
     }
 
     bool
     is_never_0(const Enclosure &x)
     {
-      return x.value.lower > 0. || x.value.upper < 0.;
+      return !zero_in(x.value);
     }
 
     bool
     is_always_0(const Enclosure &x)
     {
-      return x.value.lower == 0. && x.value.upper == 0.;
+      return equal(x.value, Interval(0.));
     }
 
     Enclosure
@@ -403,10 +247,10 @@ namespace crawler
     {
       Enclosure f = x[0];
       for (const Enclosure &e : x.subspan(1))
-        f = {{std::min(f.value.lower, e.value.lower), std::min(f.value.upper, e.value.upper)},
-             f.value.upper < e.value.lower   ? f.rate
-             : e.value.upper < f.value.lower ? e.rate
-                                             : hull(f.rate, e.rate)};
+        f = {min(f.value, e.value),
+             cerlt(f.value, e.value)   ? f.rate
+             : cerlt(e.value, f.value) ? e.rate
+                                       : hull(f.rate, e.rate)};
       return f;
     }
 
@@ -433,7 +277,7 @@ namespace crawler
     {
       const Enclosure f = sum_rule(x);
       const double part = 1. / static_cast<double>(x.size());
-      return {scaled(f.value, part), scaled(f.rate, part)};
+      return {part * f.value, part * f.rate};
     }
 
     Enclosure
@@ -485,12 +329,12 @@ namespace crawler
       {"a-b", minus_rule},
       {"a*b", times_rule},
       {"a/b", divide_rule},
-      {"a<b", less_rule},
-      {"a<=b", less_equal_rule},
-      {"a>b", turned<less_rule>},
-      {"a>=b", turned<less_equal_rule>},
-      {"a==b", equal_rule},
-      {"a!=b", not_equal_rule},
+      {"a<b", comparison<poslt, cerlt>},
+      {"a<=b", comparison<posle, cerle>},
+      {"a>b", comparison<posgt, cergt>},
+      {"a>=b", comparison<posge, cerge>},
+      {"a==b", comparison<poseq, cereq>},
+      {"a!=b", comparison<posne, cerne>},
       {"a&&b", and_rule},
       {"a||b", or_rule},
     };

@@ -1,30 +1,21 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/formula/formula_bound.h>
 
-#include <cmath>
-#include <limits>
-
 namespace crawler
 {
-  namespace
-  {
-    constexpr double infinite = std::numeric_limits<double>::infinity();
-    constexpr Interval all{-infinite, infinite};
-  } // namespace
-
   FormulaBound::FormulaBound(std::shared_ptr<const Formula> formula)
     : formula_(std::move(formula))
     , values_(formula_->scalars_.size())
   {
     for (unsigned int i = 0; i < values_.size(); ++i)
-      values_[i] = {{formula_->scalars_[i], formula_->scalars_[i]}, {0., 0.}};
+      values_[i] = {formula_->scalars_[i], 0.};
   }
 
   Enclosure
   FormulaBound::operator()(const Interval &s, const Interval &t)
   {
-    values_[Formula::s_] = {s, {0., 0.}};
-    values_[Formula::t_] = {t, {1., 1.}};
+    values_[Formula::s_] = {s, 0.};
+    values_[Formula::t_] = {t, 1.};
     for (const auto *list : {&formula_->of_time_, &formula_->of_place_, &formula_->of_both_})
       for (const Formula::Operation &operation : *list)
       {
@@ -39,13 +30,11 @@ namespace crawler
         }
         Enclosure &result = values_[operation.result];
         result            = operation.bound(arguments_);
-        const auto is_bad = [](const Interval &x) { return std::isnan(x.lower) || std::isnan(x.upper); };
-        if (is_bad(result.value))
-          result.value = all;
-        if (is_bad(result.rate))
-          result.rate = all;
+        for (Interval *const x : {&result.value, &result.rate})
+          if (empty(*x))
+            *x = Interval::whole();
         if (!formula_->dependence_[operation.result].on_t)
-          result.rate = {0., 0.};
+          result.rate = 0.;
       }
     return values_[formula_->result_];
   }

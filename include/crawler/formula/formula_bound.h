@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/formula/enclosure.h>
 #include <crawler/formula/formula.h>
 
 namespace crawler

@@ -2,33 +2,12 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <vector>
 
 namespace crawler
 {
-  struct Interval
-  {
-    double lower, upper;
-
-    /// Of the absolute values.
-    double
-    largest() const
-    {
-      return -lower > upper ? -lower : upper;
-    }
-  };
-
-  /// What a value of a formula is within in a box of places and times, and its derivative by t.
-  struct Enclosure
-  {
-    static constexpr unsigned int no_number = std::numeric_limits<unsigned int>::max();
-
-    Interval value, rate;
-    unsigned int number = no_number; ///< of the value in its formula
-    bool on_s           = false;     ///< it depends on s
-  };
+  struct Enclosure;
 
   /// An argument of an operation: one number for all points, or one for each.
   struct FormulaOperand
@@ -55,7 +34,7 @@ namespace crawler
                              double *rate,
                              std::size_t n);
 
-    /// Encloses the result (operation_rules.h).
+    /// Encloses the result (enclosure.h).
     using Bound = Enclosure (*)(std::span<const Enclosure> arguments);
 
     Loop loop                           = nullptr;

@@ -65,6 +65,6 @@ namespace crawler
   Expression::bounds(const Box &box) const
   {
     const Enclosure m = bound_({box.s_from, box.s_to}, {box.t_from, box.t_to});
-    return Bounds{m.value.largest(), m.rate.largest()};
+    return Bounds{norm(m.value), norm(m.rate)};
   }
 } // namespace crawler
