@@ -50,5 +50,6 @@ json.dump(commands, open(sys.argv[2] + "/compile_commands.json", "w"))
 END
 echo "clang-tidy: ${#files[@]} sources"
 printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 4 \
-  clang-tidy --quiet -p "$work" --warnings-as-errors='*' --extra-arg=-Wno-unknown-warning-option 2>/dev/null
+  clang-tidy --quiet -p "$work" --warnings-as-errors='*' \
+  --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-unknown-attributes 2>/dev/null
 echo "clang-tidy: nothing found"

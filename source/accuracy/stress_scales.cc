@@ -150,9 +150,9 @@ namespace crawler
       double
       largest_rate(const double from, const double to) const
       {
-        const double n = static_cast<double>(rates_.size());
-        const auto i   = static_cast<std::size_t>(std::clamp(std::floor(from / T_ * n), 0., n - 1.)),
-                   j   = static_cast<std::size_t>(std::clamp(std::ceil(to / T_ * n), 1., n));
+        const auto n = static_cast<double>(rates_.size());
+        const auto i = static_cast<std::size_t>(std::clamp(std::floor(from / T_ * n), 0., n - 1.)),
+                   j = static_cast<std::size_t>(std::clamp(std::ceil(to / T_ * n), 1., n));
         return *std::max_element(rates_.begin() + static_cast<std::ptrdiff_t>(i),
                                  rates_.begin() + static_cast<std::ptrdiff_t>(std::max(j, i + 1)));
       }

@@ -132,7 +132,7 @@ namespace crawler
           }
           fine_.evaluate(stages_.u(), stages_.v(), fine_at_[i]);
         }
-        look_at_bubbles(step, mu, of_cells);
+        look_at_bubbles(step, mu.data(), n, of_cells);
       }
 
       /// The states of all stages with what the bubbles @p c [stage][cell][function] add.
@@ -176,11 +176,10 @@ namespace crawler
         }
       }
 
-      /// @p without: what the run itself has in each cell.
+      /// @p mu: [stages][n]; @p without: what the run itself has in each cell.
       void
-      look_at_bubbles(const std::size_t step, const std::span<const double> mu, const std::vector<double> &without)
+      look_at_bubbles(const std::size_t step, const double *mu, const std::size_t n, const std::vector<double> &without)
       {
-        const std::size_t n = mu.size() / tableau_.n;
         std::vector<double> c(tableau_.n * n_bubbles_, 0.), mu_at(fine_.size()), mu_s(fine_.size());
         for (unsigned int round = 0; round <= rounds; ++round)
         {
@@ -196,7 +195,7 @@ namespace crawler
             fine_forces_.evaluate(times_[i], steps_.time(step), states[i]);
             if (round + 1 >= rounds) // of the last two
             {
-              fine_.evaluate(mu.data() + i * n, mu_at, mu_s);
+              fine_.evaluate(mu + i * n, mu_at, mu_s);
               for (std::size_t p = 0; p < fine_.size(); ++p)
                 of_cells[fine_.cell_of(p)] +=
                   fine_.weight(p) * (fine_forces_.body_force(p) * mu_s[p] + fine_forces_.friction(p) * mu_at[p]);

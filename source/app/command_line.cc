@@ -123,10 +123,10 @@ namespace crawler
 
     /// Starts MPI and PETSc, and runs the command.
     int
-    start_mpi_and_run(char *program, const Commands &commands, char **first_petsc_option, char **end)
+    start_mpi_and_run(char **argv, const Commands &commands, char **first_petsc_option, char **end)
     {
       static char no_signal_handler[] = "-no_signal_handler", yes[] = "true";
-      std::vector<char *> petsc_arguments = {program, no_signal_handler, yes};
+      std::vector<char *> petsc_arguments = {argv[0], no_signal_handler, yes};
       petsc_arguments.insert(petsc_arguments.end(), first_petsc_option, end);
       int petsc_argc = static_cast<int>(petsc_arguments.size());
       petsc_arguments.push_back(nullptr);
@@ -166,7 +166,7 @@ namespace crawler
     StandardOutput output;
     Commands commands;
     const auto early = without_mpi(commands, {argv + 1, separator}, {petsc, end});
-    const int code   = early ? *early : start_mpi_and_run(argv[0], commands, petsc, end);
+    const int code   = early ? *early : start_mpi_and_run(argv, commands, petsc, end);
     if (const std::string problem = output.problem(); !problem.empty())
     {
       say(ExitCode::file_error, "cannot write to standard output: " + problem);

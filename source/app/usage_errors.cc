@@ -103,9 +103,9 @@ namespace crawler
     for (const CLI::Option *option : command->get_options())
       for (const std::string &name : typed_names(*option))
         known.push_back(name);
-    known.push_back("-h");
+    known.emplace_back("-h");
     for (const std::string &argument : arguments)
-      if (const std::string sign = foreign_sign(argument); !sign.empty())
+      if (std::string sign = foreign_sign(argument); !sign.empty())
         return sign;
     std::vector<std::string> words; // without the values of options
     for (std::size_t i = 0; i < arguments.size(); ++i)
@@ -144,7 +144,7 @@ namespace crawler
       if (has_value && name != "--set" && option->count() > 1)
         return fmt::format("\"{}\" is there {} times, but once is expected", name, option->count());
     }
-    if (const std::string problem = has_command ? count_error(*command, words) : ""; !problem.empty())
+    if (std::string problem = has_command ? count_error(*command, words) : ""; !problem.empty())
       return problem;
     return error.what();
   }

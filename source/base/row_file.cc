@@ -113,7 +113,7 @@ namespace crawler
           std::memcpy(&data[i * sizeof(double)], &std::get<double>(one), sizeof(double));
         else
         {
-          const std::string &text = std::get<std::string>(one);
+          const auto &text = std::get<std::string>(one);
           std::copy_n(
             text.begin(), whole_characters(text, width), data.begin() + static_cast<std::ptrdiff_t>(i * width));
         }
@@ -153,7 +153,7 @@ namespace crawler
           crc_.process_bytes(number, sizeof(double));
         else
         {
-          const std::string &text = std::get<std::string>(value);
+          const auto &text = std::get<std::string>(value);
           crc_.process_bytes(text.data(), whole_characters(text, width));
         }
       }

@@ -71,8 +71,8 @@ namespace crawler
   void
   state_within(const LaneStep &step, const LaneSetup &setup, const double time, const std::span<double> y)
   {
-    const int s = static_cast<int>(setup.n_stages);
-    double weights[radau::most_stages];
+    const int s                        = static_cast<int>(setup.n_stages);
+    double weights[radau::most_stages] = {};
     radau::collocation_weights(s, setup.c, 1. - (step.time - time) / step.size, weights);
     weights[s - 1] -= 1.; // y is that of the end
     const std::size_t n = y.size();

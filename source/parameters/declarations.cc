@@ -400,7 +400,7 @@ namespace crawler
                                    const std::filesystem::path &folder) const
   {
     const EntryInfo &entry = info(path);
-    const std::string text = trimmed(value);
+    std::string text       = trimmed(value);
     if (!entry.names_file || text.empty() || !text.ends_with(entry.file_ending))
       return text;
     if (const std::string sign = home_sign(text); !sign.empty())

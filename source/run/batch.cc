@@ -254,10 +254,9 @@ namespace crawler
           smallest = std::min(smallest, end_stretch(lane, m));
         if (!(smallest > 0.))
           return true;
-        for (const StressWatch::Values &m : lane.watch->inside())
-          if (!(end_stretch(lane, {{m[0] / lane.units.force, m[1] / lane.units.force}}) > 0.))
-            return true;
-        return false;
+        return std::ranges::any_of(lane.watch->inside(), [&](const StressWatch::Values &m) {
+          return !(end_stretch(lane, {{m[0] / lane.units.force, m[1] / lane.units.force}}) > 0.);
+        });
       }
 
       static bool

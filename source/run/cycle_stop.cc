@@ -162,7 +162,7 @@ namespace crawler
   CycleStop::judge(const double decay)
   {
     const std::size_t n        = ends_.size() - 1;
-    const double left          = static_cast<double>(n_cycles_ - n);
+    const auto left            = static_cast<double>(n_cycles_ - n);
     const double increment     = ends_[n].displacement - ends_[n - 1].displacement;
     const double before        = ends_[n - 1].displacement - ends_[n - 2].displacement;
     const double difference    = std::abs(increment - before);
@@ -194,7 +194,7 @@ namespace crawler
   CycleStop::extrapolate(double &displacement, EnergyBalance *energy_balance) const
   {
     const std::size_t n = ends_.size() - 1;
-    const double left   = static_cast<double>(n_cycles_ - n);
+    const auto left     = static_cast<double>(n_cycles_ - n);
     const auto go_on    = [&](double &value, const auto of) { value += left * (of(ends_[n]) - of(ends_[n - 1])); };
     go_on(displacement, [](const End &end) { return end.displacement; });
     if (energy_balance)

@@ -108,7 +108,7 @@ namespace crawler
   double
   GaitMeter::time_of(const unsigned long number) const
   {
-    const double back = static_cast<double>(n_samples_ - number);
+    const auto back = static_cast<double>(n_samples_ - number);
     return period_ ? std::max(1. - back * *period_ / n_phases, 0.) : 1. - back / static_cast<double>(n_unknown);
   }
 

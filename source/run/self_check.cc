@@ -66,7 +66,7 @@ namespace crawler
                            *efficiency,
                            *error + lacking);
       };
-      const std::string whole =
+      std::string whole =
         complaint("", "gait.efficiency", result.gait_efficiency, energy_of_bound(*result.energy_balance));
       if (!whole.empty() || !result.gait || !result.gait->energy_balance)
         return whole;

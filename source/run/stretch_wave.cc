@@ -222,7 +222,7 @@ namespace crawler
     Beam::Value
     Beam::at(const double nu) const
     {
-      const double n_pieces  = static_cast<double>(E_.n);
+      const auto n_pieces    = static_cast<double>(E_.n);
       const double per_piece = 2. * std::numbers::pi * nu / n_pieces, middle = 0.5 * (n_pieces - 1.);
       // e^(i w q s) at all pieces, s from the middle; and its powers.
       const std::size_t filled = E_.filled;

@@ -58,7 +58,7 @@ namespace crawler
     add_sensitivity_lines(const SimulationResult &result, std::vector<std::string> &lines)
     {
       if (!result.sensitivities.empty())
-        lines.push_back("  sensitivities     d(displacement)/d(entry), and % of displacement for 1 % of the entry");
+        lines.emplace_back("  sensitivities     d(displacement)/d(entry), and % of displacement for 1 % of the entry");
       std::size_t width = 0;
       for (const EntrySensitivity &one : result.sensitivities)
         width = std::max(width, one.entry.size());
@@ -77,7 +77,7 @@ namespace crawler
         lines.push_back(fmt::format(
           "  uncertain entries make the displacement uncertain by {:.2g} (standard deviation)", *deviation));
       else if (std::ranges::any_of(result.sensitivities, [](const auto &one) { return one.standard_deviation > 0.; }))
-        lines.push_back("  what uncertain entries do to the displacement is not known, since a derivative is not");
+        lines.emplace_back("  what uncertain entries do to the displacement is not known, since a derivative is not");
     }
   } // namespace
 

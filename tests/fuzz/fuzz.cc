@@ -101,7 +101,7 @@ namespace crawler::fuzz
   void
   start_mpi()
   {
-    static const auto started = []() {
+    static auto *const started = []() {
       static char name[]   = "fuzz";
       static char *words[] = {name, nullptr}, **arguments = words;
       static int n = 1;

@@ -93,8 +93,8 @@ namespace
     static const Input input       = read_input(ParameterFile::from_text("set Model = nonlinear", "scene.prm"));
     static RunCheckpoint own       = checkpoint_of(input, {});
     static const std::string whole = []() {
-      own.journal               = runs()[0]->left;
-      const std::string content = archived(own);
+      own.journal         = runs()[0]->left;
+      std::string content = archived(own);
       own.journal.clear();
       write_file(fuzz::scratch() / "parameters.prm", input.effective);
       write_file(fuzz::scratch() / "log.txt", "");

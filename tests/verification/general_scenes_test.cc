@@ -45,7 +45,7 @@ namespace
   SimulationResult
   run(const Settings &settings, const double most_residual = 1e-6)
   {
-    const SimulationResult result = test::run_with(settings).result;
+    SimulationResult result = test::run_with(settings).result;
     EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
     EXPECT_LT(result.energy_balance->residual(), most_residual);
     EXPECT_LT(result.net_friction, 1e-9);

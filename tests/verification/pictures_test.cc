@@ -117,7 +117,7 @@ namespace
 /// Steps know nothing of pictures.
 TEST(Pictures, ChangeNeitherStepsNorResults)
 {
-  for (Settings settings : {test::wave(-1., 0.4), test::wave(2., 0.2, 1., 3.), robot(1.)})
+  for (const Settings &settings : {test::wave(-1., 0.4), test::wave(2., 0.2, 1., 3.), robot(1.)})
   {
     const Compared with = run(settings), without = run(settings, with.choice.numerics, /*has_pictures=*/false);
     EXPECT_EQ(with.result.displacement, without.result.displacement);

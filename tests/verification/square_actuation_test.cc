@@ -76,9 +76,9 @@ namespace
   SimulationResult
   with_numerics(const Settings &settings, const Numerics &numerics)
   {
-    const Parameters parameters   = test::parameters_with(settings);
-    const Scene scene             = parameters.create_scene();
-    const SimulationResult result = Simulation(MPI_COMM_SELF, scene, parameters.time, numerics).run({}, {});
+    const Parameters parameters = test::parameters_with(settings);
+    const Scene scene           = parameters.create_scene();
+    SimulationResult result     = Simulation(MPI_COMM_SELF, scene, parameters.time, numerics).run({}, {});
     EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
     return result;
   }

@@ -65,11 +65,11 @@ namespace crawler
     void
     jacobian_vmult(ConstVector x, Vector y) override;
     bool
-    setup_complex_jacobians(double t, ConstVector y, ConstVector y_dot, std::span<const Complex> sigma) override;
+    setup_complex_jacobians(double t, ConstVector u, ConstVector v, std::span<const Complex> sigma) override;
     void
     solve_with_complex_jacobian(unsigned int i, std::span<const Complex> b, std::span<Complex> x) override;
     void
-    setup_stage(unsigned int stage, double t, ConstVector y, ConstVector y_dot) override;
+    setup_stage(unsigned int stage, double t, ConstVector u, ConstVector v) override;
     void
     stage_vmult(unsigned int stage, ConstVector x, ConstVector x_dot, Vector result) override;
     bool

@@ -22,7 +22,7 @@ namespace crawler
 
     /// Writes what the engine asks for; false if a law is not a positive number there.
     bool
-    evaluate(const LanePoints &points);
+    evaluate(const LanePoints &at);
 
   private:
     const Scene &scene_;

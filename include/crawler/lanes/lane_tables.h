@@ -20,7 +20,7 @@ namespace crawler
     bool other_rule               = false; ///< see stretch_method()
     unsigned int laws             = 0;     ///< LaneLaws::Bits of the scene
 
-    auto
+    auto // NOLINTNEXTLINE(modernize-use-nullptr): what the compiler makes of default
     operator<=>(const LaneMethod &) const = default;
   };
 

@@ -130,7 +130,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       constexpr int width = PackTraits<Points>::size;
       for (int i = 0; i < n; i += width)
       {
-        Points some = broadcast<Points>(1.);
+        auto some = broadcast<Points>(1.);
         for (int j = 0; j < width && i + j < n; ++j)
           some[j] = x[i + j];
         some = function(some, broadcast<Points>(y));

@@ -160,7 +160,7 @@ namespace crawler
     const EntryInfo &
     find(const std::vector<std::string> &path) const;
     [[noreturn]] void
-    refuse_name(const std::vector<std::string> &path) const;
+    refuse_name(const std::vector<std::string> &words) const;
 
     std::string
     path_of(const std::string &name) const;

@@ -63,6 +63,7 @@ namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
   {
     for (int d = 0; d < n; ++d)
     {
+      // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): there is at least one stage
       Number sum = weights[0] * z[d];
       for (int j = 1; j < s; ++j)
         sum += weights[j] * z[j * n + d];

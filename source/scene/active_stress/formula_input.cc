@@ -32,7 +32,7 @@ namespace crawler
         problem = problem.substr(0, problem.find(position));
       while (!problem.empty() && (problem.back() == '.' || problem.back() == '!'))
         problem.pop_back();
-      const std::string token = error.GetToken();
+      const std::string &token = error.GetToken();
       if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && !token.empty() &&
           std::isalpha(static_cast<unsigned char>(token[0])))
       {

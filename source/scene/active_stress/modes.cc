@@ -102,7 +102,6 @@ namespace crawler
     , length_(length)
     , end_time_(end_time)
     , n_space_(2 * parameters.harmonics + 1)
-    , n_time_(1)
     , c_(parameters.coefficients)
   {
     const std::size_t n_splines = parameters.time_cells + 3;

@@ -228,7 +228,7 @@ namespace crawler
   {
     constexpr std::size_t most = 256;
     const auto &s              = table_.grid().s;
-    const auto knots           = inside(s, length_);
+    auto knots                 = inside(s, length_);
     if (knots.size() <= (parameters_.interpolation == "linear" ? most : most_knots_of_splines))
       return knots;
     return inside({s.front(), s.back()}, length_); // where it is held
@@ -241,7 +241,7 @@ namespace crawler
     const auto &t              = table_.grid().t;
     const bool linear = parameters_.interpolation == "linear", periodic = parameters_.outside == "periodic";
     if (linear && !periodic)
-      if (const auto knots = inside(t, end_time); knots.size() <= most)
+      if (auto knots = inside(t, end_time); knots.size() <= most)
         return knots;
     if (linear && periodic)
     {

@@ -207,7 +207,7 @@ namespace crawler
             members.emplace_back(task, task.computed.choice, /*choice_is_shared=*/false);
         if (members.empty())
           continue;
-        const double n = static_cast<double>(members.size());
+        const auto n = static_cast<double>(members.size());
         const Stopwatch clock;
         try
         {

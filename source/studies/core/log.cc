@@ -68,15 +68,15 @@ namespace crawler
   }
 
   void
-  Log::warn(const std::string &raw)
+  Log::warn(const std::string &text)
   {
     if (!active_)
       return;
     clear_status();
     std::cout.flush();
-    const std::string text = without_controls(with_plain_numbers(raw));
-    std::cerr << "crawler: " << text << std::endl;
-    keep(text);
+    const std::string plain = without_controls(with_plain_numbers(text));
+    std::cerr << "crawler: " << plain << std::endl;
+    keep(plain);
   }
 
   void

@@ -33,7 +33,7 @@ namespace crawler
     const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
     const auto places  = places_of_script(script, program);
     setenv("CRAWLER_PROGRAM", program.c_str(), /*overwrite=*/1);
-    const auto path =
+    const auto *const path =
       std::ranges::find_if(places, [&](const auto &place) { return std::filesystem::exists(place, ignored); });
     if (path == places.end())
       return {

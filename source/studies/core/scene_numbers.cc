@@ -44,9 +44,9 @@ namespace crawler
   std::string
   SceneNumbers::find(const std::string &name, const std::string &own, const std::string &or_else) const
   {
-    const std::string path = normal_path(name);
-    const auto word        = own.substr(own.rfind('/') + 1);
-    const auto is_in       = [&](const std::vector<std::string> &list) {
+    std::string path = normal_path(name);
+    const auto word  = own.substr(own.rfind('/') + 1);
+    const auto is_in = [&](const std::vector<std::string> &list) {
       if (std::ranges::find(list, path) != list.end())
         return true;
       // A list of one by its place, or a number behind those that a list has now.

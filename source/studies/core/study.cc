@@ -85,7 +85,7 @@ namespace crawler
     for (const auto &[entry, value] : old_values)
       compare(entry);
     for (const auto &[entry, value] : new_values)
-      if (old_values.count(entry) == 0)
+      if (!old_values.contains(entry))
         compare(entry);
     return list;
   }

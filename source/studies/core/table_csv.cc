@@ -82,13 +82,13 @@ namespace crawler
   write_table_csv(MPI_Comm communicator,
                   const fs::path &table_path,
                   const std::string &group,
-                  const fs::path &path,
+                  const fs::path &csv,
                   const std::function<void(const Table &part)> &see)
   {
     constexpr unsigned long together = 1024; // rows, about a megabyte
-    fs::path temporary               = path.string() + ".part";
+    fs::path temporary               = csv.string() + ".part";
     on_first_rank(communicator, [&]() {
-      temporary = temporary_file(path);
+      temporary = temporary_file(csv);
       return "";
     });
     const RowReader table(communicator, table_path, group);
@@ -116,9 +116,9 @@ namespace crawler
       if (!is_good || fs::file_size(temporary, error) != size)
       {
         fs::remove(temporary, error);
-        throw FileError("cannot write \"" + path.string() + "\" (is the disk full?)");
+        throw FileError("cannot write \"" + csv.string() + "\" (is the disk full?)");
       }
-      rename_whole(temporary, path);
+      rename_whole(temporary, csv);
       return "";
     });
   }

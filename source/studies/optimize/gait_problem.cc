@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 namespace crawler
 {
@@ -293,9 +294,9 @@ namespace crawler
   GaitProblem::record(const std::vector<double> &y)
   {
     const std::vector<double> x = to_x(y);
-    for (auto record = records_.rbegin(); record != records_.rend(); ++record)
-      if (record->x == x)
-        return *record;
+    for (const GaitRecord &record : std::views::reverse(records_))
+      if (record.x == x)
+        return record;
     at(y, false);
     return records_.back();
   }

@@ -95,8 +95,6 @@ namespace crawler
     : family_(family)
     , wishes_(wishes)
     , start_(start)
-    , n_space_(1)
-    , n_time_(1)
   {
     constexpr unsigned int most = 128;
     const State state(family.parameters(start));
@@ -421,10 +419,10 @@ namespace crawler
     if (!own)
       return false;
     const auto differs = [&](const std::optional<StrainFunctional::Values> &other) {
-      for (const auto number : {StrainFunctional::displacement, StrainFunctional::stress_work})
-        if (other && std::abs((*other)[number] - (*own)[number]) > accurate_enough * std::abs((*other)[number]) + 1e-13)
-          return true;
-      return false;
+      const auto differs_in = [&](const auto number) {
+        return std::abs((*other)[number] - (*own)[number]) > accurate_enough * std::abs((*other)[number]) + 1e-13;
+      };
+      return other && (differs_in(StrainFunctional::displacement) || differs_in(StrainFunctional::stress_work));
     };
     const bool in_space = differs(with(2 * n_space_, n_time_)), in_time = differs(with(n_space_, 2 * n_time_));
     return (in_space || in_time) && !is_large && refine_in(in_space, in_time, x);

@@ -77,7 +77,7 @@ namespace crawler
         }
         catch (const FileError &problem)
         {
-          notes.push_back(problem.what());
+          notes.emplace_back(problem.what());
         }
       return std::nullopt;
     }

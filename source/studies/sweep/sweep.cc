@@ -209,7 +209,7 @@ namespace crawler
                        options,
                        log);
     const std::vector<bool> done = points_done(communicator, [&]() {
-      const auto list = begin_or_resume(folder, table, file, planned_rows(table, points), options.command_line);
+      auto list = begin_or_resume(folder, table, file, planned_rows(table, points), options.command_line);
       if (std::count(list.begin(), list.end(), true) == 0)
         remove_kept_fields(path / "points"); // of an earlier sweep
       return list;

@@ -55,7 +55,7 @@ namespace crawler
   SweepInputs::from_attributes(const Texts &attributes)
   {
     const auto parsed = [&](const std::string &name) {
-      const auto json = nlohmann::json::parse(attributes.at(name), nullptr, /*allow_exceptions=*/false);
+      auto json = nlohmann::json::parse(attributes.at(name), nullptr, /*allow_exceptions=*/false);
       if (!json.is_object() && !json.is_null())
         throw InputError("the attribute \"" + name + "\" of the table is damaged: JSON is expected");
       return json;
@@ -69,7 +69,7 @@ namespace crawler
     SweepInputs inputs{without_comments(points.effective()), {}, {}};
     const auto add_file = [&](const std::string &name) {
       std::error_code ignored;
-      if (!name.empty() && inputs.files.count(name) == 0 && std::filesystem::is_regular_file(name, ignored))
+      if (!name.empty() && !inputs.files.contains(name) && std::filesystem::is_regular_file(name, ignored))
         inputs.files.emplace(name, fingerprint(name));
     };
     Texts base;

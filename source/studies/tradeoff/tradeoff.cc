@@ -229,7 +229,7 @@ namespace crawler
       for (const std::string &note : input.notes)
         study.log.line(note);
       if (!text.empty())
-        if (const TradeoffReference reference = nlohmann::json::parse(text); reference.status == "finished")
+        if (TradeoffReference reference = nlohmann::json::parse(text); reference.status == "finished")
           return reference;
       // On every rank alike, so that none has an idle core beside it; the first one's is used.
       study.log.line("Making the reference ...");

@@ -76,8 +76,7 @@ namespace
     return scene;
   }
 
-  constexpr Numerics mesh = {
-    .degree = 4, .n_cells = 8, .tolerance = 1e-7, .initial_step = 1e-3, .integrator = "radau 5"};
+  const Numerics mesh = {.degree = 4, .n_cells = 8, .tolerance = 1e-7, .initial_step = 1e-3, .integrator = "radau 5"};
 } // namespace
 
 TEST(Failures, HaveNames)

@@ -113,7 +113,7 @@ TEST(Declarations, NumbersOfAnEntryHaveNames)
                                    std::pair("X/Profile[3]", "has 2 of them, so [1] to [2] are expected"),
                                    std::pair("X/Formula[1]", "is \"1+s\"; numbers at places"),
                                    std::pair("X/List[0]", "a whole number from 1 to 10000")})
-    EXPECT_NE(refusal([&]() { declarations.value(path); }).find(part), std::string::npos) << path;
+    EXPECT_NE(refusal([&, &path = path]() { declarations.value(path); }).find(part), std::string::npos) << path;
 }
 
 TEST(Declarations, PrintsAllEntries)

@@ -12,7 +12,7 @@ namespace
 {
   using namespace crawler;
   using std::numbers::pi;
-  constexpr unsigned int n_s = GaitMeter::n_pieces, n_t = GaitMeter::n_phases;
+  constexpr unsigned int n_s = GaitMeter::n_pieces;
 
   /// Shows a meter the motion zeta = s + u(s,t) + D(t) with the work @p work(t), in steps.
   void

@@ -43,7 +43,7 @@ namespace
     std::string
     file(const std::string &content)
     {
-      const auto path = folder_.path / "profile.csv";
+      const auto path = folder.path / "profile.csv";
       test::write_text(path, content);
       return path.string();
     }
@@ -52,7 +52,7 @@ namespace
     {
       return read_profile({"profile", "x", file(content), interpolation, outside, "Ground/Profile"}, 1., 1.);
     }
-    test::TemporaryFolder folder_;
+    test::TemporaryFolder folder;
   };
 } // namespace
 

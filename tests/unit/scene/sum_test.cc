@@ -261,6 +261,8 @@ TEST(Sum, CombinesFeedback)
       {
         return sensor_length_;
       }
+
+    private:
       const double distance_, delay_, sensor_length_;
     };
     Feedback(const double distance, const double delay, const double sensor_length = 0.)

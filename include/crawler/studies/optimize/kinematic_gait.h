@@ -62,7 +62,7 @@ namespace crawler
     SceneFamily &family_;
     const GaitWishes wishes_;
     const std::vector<double> start_;
-    unsigned int n_space_, n_time_; ///< panels
+    unsigned int n_space_ = 1, n_time_ = 1; ///< panels
     std::optional<StrainFunctional> grid_;
     unsigned int n_limited_s_ = 1,
                  n_limited_t_ = 1; ///< parts of body and duration; the strain is limited at their ends

@@ -47,9 +47,9 @@ namespace crawler
       return axes_;
     }
 
-    /// Of a grid the last axis varies fastest. Nothing is kept for random points: they are computed.
+    /// Of axis @p number. Of a grid the last one varies fastest. Nothing is kept for random points: they are computed.
     std::string
-    value(std::size_t axis, unsigned long point) const;
+    value(std::size_t number, unsigned long point) const;
 
     /// From which the names of files on the axes count.
     const std::filesystem::path &
