@@ -44,7 +44,7 @@ namespace crawler
       std::optional<GradedChoice>
       find()
       {
-        now_.grading = {task_.accuracy < accurate ? first_levels_if_accurate : first_levels, coarse_ratio};
+        now_.grading = {0, coarse_ratio};
         now_.n_cells = std::max(now_.n_cells, least_cells(n_pieces_ - 1, now_.grading)); // fewer are the same mesh
         while (smallest_size(task_.scene, now_) > std::max(task_.layer, smallest_layer) && task_.layer > 0.)
           ++now_.grading.levels;
@@ -62,16 +62,13 @@ namespace crawler
             largest = now_.tolerance *= finer_tolerance;
         }
         // The tolerance is relative to a size that the runs tell.
-        double size = 0.;
         for (unsigned int i = 0; i < 2; ++i)
         {
-          const double before = size;
-          size                = task_.size(result_);
-          if (!(size > 0.))
+          const double before = wanted_;
+          if (!measure())
             return std::nullopt;
-          if (std::abs(size - before) < same_size * size)
+          if (std::abs(wanted_ - before) < same_size * wanted_)
             break;
-          wanted_ = task_.accuracy * size;
           if (task_.choose_tolerance)
             now_.tolerance = std::min(largest, task_.tolerance_factor * wanted_);
           if (!run(now_, result_))
@@ -84,25 +81,14 @@ namespace crawler
         const auto with_more_cells  = [this](Numerics &n) {
           n.n_cells = finer_n_cells(more_cells, n.n_cells, n_pieces_ - 1, n.grading);
         };
+        bool again               = true;
         const auto is_ratio_fine = [this]() {
           return task_.accuracy >= coarse_ratio_is_enough || now_.grading.ratio > fine_ratio * 0.99;
         };
-        // All together first; one by one where that matters.
-        Numerics next = now_;
-        SimulationResult result;
-        one_more_level(next);
-        with_more_cells(next);
-        if (!is_ratio_fine())
-          with_finer_ratio(next);
-        if (!possible_)
-          return std::nullopt;
-        bool again = matters(next, result, space_change_);
-        if (!possible_ && n_runs_ <= most_runs) // too much at once
-          again = possible_ = true;
-        while (again && possible_)
+        do
         {
           double levels_change = 0., cells_change = std::numeric_limits<double>::infinity(), ratio_change = 0.;
-          refine(levels_change, one_more_level);
+          climb(levels_change, one_more_level);
           if (is_ratio_fine() || try_one(ratio_change, with_finer_ratio))
             ratio_change = 0.;
           again = refine(cells_change, with_more_cells);
@@ -112,8 +98,8 @@ namespace crawler
             possible_ = true;
             again     = false;
           }
-          space_change_ = levels_change + ratio_change + cells_change;
-        }
+          space_change_ = levels_change / gain_of_level() + ratio_change + cells_change;
+        } while (again && possible_);
         if (!possible_)
           return std::nullopt;
         return GradedChoice{first_step(now_),
@@ -179,6 +165,38 @@ namespace crawler
         while (try_one(change, refinement))
           any = true;
         return any;
+      }
+
+      /// What is wanted of a displacement like the last one; false if that is 0.
+      bool
+      measure()
+      {
+        wanted_ = task_.accuracy * task_.size(result_);
+        return wanted_ > 0.;
+      }
+
+      /// By how much a level makes the error at a discontinuity smaller, at least.
+      double
+      gain_of_level() const
+      {
+        return part_of_gain / (now_.grading.ratio * now_.grading.ratio);
+      }
+
+      /// One level after the other. The last change tells what is still missing.
+      void
+      climb(double &change, const auto &one_more_level)
+      {
+        do
+        {
+          Numerics next = now_;
+          one_more_level(next);
+          SimulationResult result;
+          if (!run(next, result))
+            return;
+          change  = std::abs(result.displacement - result_.displacement);
+          now_    = next;
+          result_ = result;
+        } while (measure() && change > gain_of_level() * part * wanted_);
       }
 
       const GradedTask &task_;

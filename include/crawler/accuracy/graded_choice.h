@@ -42,8 +42,9 @@ namespace crawler
 
   /**
    * Finds the cells, levels and tolerance for an active stress that starts or jumps suddenly (doc/numerics.md, "Jumps
-   * and sudden starts"): each of them is made finer until that changes the displacement by less than a quarter of the
-   * wanted error. Nothing if a run breaks off or nearly loses a stretch, or if the mesh would become too fine.
+   * and sudden starts"): each of them is made finer until what that still would change of the displacement is less than
+   * a quarter of the wanted error. Nothing if a run breaks off or nearly loses a stretch, or if the mesh would become
+   * too fine.
    */
   std::optional<GradedChoice>
   find_graded_mesh(const GradedTask &task);

@@ -56,7 +56,7 @@ namespace crawler::accuracy_rule
     /// layers that count. Graded meshes have this degree, the higher one for a smaller Accuracy than that.
     inline constexpr double sudden_part         = 0.1;
     inline constexpr unsigned int graded_degree = 6, accurate_graded_degree = 8;
-    inline constexpr double accurate_graded = 1e-5;
+    inline constexpr double accurate_graded = 3e-7;
     /// More breaks would make graded meshes too large, or too many starts where nothing happens suddenly.
     inline constexpr std::size_t most_graded_places = 200, most_gentle_breaks = 200;
     /// No error is wanted to be smaller than this part of the length: round-off.
@@ -88,9 +88,9 @@ namespace crawler::accuracy_rule
   // tests/verification/jump_study.cc.
   namespace graded
   {
-    inline constexpr double accurate           = 1e-4; ///< from here on
-    inline constexpr unsigned int first_levels = 1, first_levels_if_accurate = 2;
     inline constexpr double coarse_ratio = 0.25, fine_ratio = 0.4;
+    /// A level makes the error at a discontinuity smaller by this over the square of the ratio, at least.
+    inline constexpr double part_of_gain = 0.5;
     /// From this Accuracy on the coarse ratio has never mattered.
     inline constexpr double coarse_ratio_is_enough = 1e-5;
     /// A refinement that changes the displacement by less than this part of the wanted error was not needed.
