@@ -4,7 +4,8 @@
 # undefined behaviour, in build-fuzz/.
 # An input that takes 60 s is a hang: with the sanitizers and without optimisation programs are some 30 times slower.
 # Usage: contrib/fuzz.sh [SECONDS [TARGET...]]     seconds for each target (default: 60; all targets)
-# What was found is in build-fuzz/findings/: once it is mended, its input goes to tests/fuzz/inputs/TARGET.
+# What was found is in build-fuzz/findings/: once it is mended, its input goes to tests/fuzz/inputs/TARGET. Findings of
+# tables, where the target goes on, are of the copies of the process that read HDF5 files first and may die of them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:-60}

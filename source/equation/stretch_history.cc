@@ -67,10 +67,9 @@ namespace crawler
     {
       if (archive.reads())
         steps_.emplace_back();
-      Step &step          = steps_[i];
-      bool is_same        = latest && step.cells == latest;
-      unsigned int degree = step.element != nullptr ? step.element->degree : 0;
-      archive(step.from, step.to, step.coefficients, is_same, degree);
+      Step &step   = steps_[i];
+      bool is_same = latest && step.cells == latest;
+      archive(step.from, step.to, step.coefficients, is_same);
       if (!is_same)
       {
         std::vector<Cell> cells = step.cells ? *step.cells : std::vector<Cell>();
@@ -79,8 +78,14 @@ namespace crawler
       }
       if (archive.reads())
       {
+        const std::size_t n_cells = latest ? latest->size() : 0,
+                          degree  = n_cells > 0 ? step.coefficients[0].size() / n_cells : 0;
+        archive.require(
+          degree >= 1 && degree <= ReferenceElement::highest_degree &&
+            std::ranges::all_of(step.coefficients, [&](const auto &list) { return list.size() == n_cells * degree; }),
+          "the stretch of a step");
         step.cells   = latest;
-        step.element = &reference_element(degree);
+        step.element = &reference_element(static_cast<unsigned int>(degree));
       }
     }
   }

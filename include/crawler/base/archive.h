@@ -58,6 +58,14 @@ namespace crawler
       (one(values), ...);
     }
 
+    /// Does what was read make sense?
+    void
+    require(const bool makes_sense, const char *what) const
+    {
+      if (reads_ && !makes_sense)
+        fail(what);
+    }
+
     /// What must be the same as when it was written: numbers and kinds of things that are not exchanged themselves.
     template <typename Type>
     void
@@ -65,8 +73,7 @@ namespace crawler
     {
       const Type own = value;
       one(value);
-      if (!(value == own))
-        fail(what);
+      require(value == own, what);
     }
 
   private:
