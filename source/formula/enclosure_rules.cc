@@ -160,7 +160,7 @@ namespace crawler
     /// The value of something that jumps where its argument does not tell on which side it is. Jumps at a time are
     /// infinitely fast; those that depend on the place, too, move, and are looked for elsewhere.
     Enclosure
-    jumping(const Interval value, const Arguments x)
+    jumping(const Interval &value, const Arguments x)
     {
       const bool at_a_time = std::all_of(x.begin(), x.end(), [](const Enclosure &e) { return !e.on_s; });
       return {value, singleton(value) || !at_a_time ? Interval(0.) : Interval::whole()};

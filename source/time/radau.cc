@@ -594,7 +594,7 @@ namespace crawler
     PetscErrorCode
     set_from_options(TS ts, Items)
     {
-      PetscInt n       = static_cast<PetscInt>(data(ts).tableau->n);
+      auto n           = static_cast<PetscInt>(data(ts).tableau->n);
       PetscBool found  = PETSC_FALSE;
       const char *name = nullptr;
       TSGetOptionsPrefix(ts, &name);

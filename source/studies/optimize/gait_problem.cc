@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 namespace crawler
 {
@@ -294,9 +293,10 @@ namespace crawler
   GaitProblem::record(const std::vector<double> &y)
   {
     const std::vector<double> x = to_x(y);
-    for (const GaitRecord &record : std::views::reverse(records_))
-      if (record.x == x)
-        return record;
+    const auto latest =
+      std::find_if(records_.rbegin(), records_.rend(), [&x](const GaitRecord &record) { return record.x == x; });
+    if (latest != records_.rend())
+      return *latest;
     at(y, false);
     return records_.back();
   }
