@@ -141,7 +141,7 @@ def test_many_crests(place):
                f"Optimize/Smallest strain={low}", f"Optimize/Largest strain={high}", "Optimize/Starts=1", "Optimize/Tolerance=1e-2")
     optimum = optima(place / "crests")[0] if done.returncode == 0 else {"has_converged": False, "objective": 0, "violation": 1}
     best = summary(place / "crests")
-    expect(optimum["has_converged"] and 0.0222 < optimum["objective"] < 0.023, f"crests: {optimum} {done.stderr}")
+    expect(optimum["has_converged"] and 0.99 * 0.0222 < optimum["objective"] < 0.023, f"crests: {optimum} {done.stderr}")
     strains = best["min_stretch"]["value"] - 1, best["max_stretch"]["value"] - 1
     expect(low * (1 + 1e-5) <= strains[0] <= 0.97 * low and 0.97 * high <= strains[1] <= high * (1 + 1e-5), f"crests: strains {strains}")
     expect(optimum["violation"] <= 1e-5, f"crests: {optimum['violation']} is over the limits")
