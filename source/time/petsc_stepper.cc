@@ -562,7 +562,10 @@ namespace crawler
     self.convergence_constant = std::numeric_limits<double>::infinity();
     double time               = course.start;
     if (self.goes_on)
+    {
       (*self.goes_on)(time, self.next_end, self.limit, self.refused_at, self.nonfinite_at);
+      self.goes_on->require(self.next_end < self.ends.size() && self.limit <= self.limits.size(), "the next step");
+    }
     self.y.assign(y.begin(), y.end());
     {
       const WriteAccess access(self.solution.get());
