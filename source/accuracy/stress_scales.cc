@@ -122,22 +122,31 @@ namespace crawler
           look(coarse, very_fine);
       }
 
-      /// Samples that are farther apart than m may change say nothing of its rate; bounds at points do.
+      /// Samples that are farther apart than m may change say nothing of its rate; bounds at points do. Where an event
+      /// lies between samples its stress has not been seen either.
       void
       look_between()
       {
         constexpr unsigned int n_places = 3;
+        constexpr double between        = 0.381966; // of two samples: no simple fraction
         const ActiveStress &stress      = *scene_.active_stress;
         const double L = scene_.body.length, dt = T_ / static_cast<double>(rates_.size());
         if (const auto all = stress.bounds({0., L, 0., T_}); !all || all->rate * dt <= largest)
           return;
+        std::vector<double> places;
+        for (unsigned int i = 0; i < n_places; ++i)
+          places.push_back(L * (i + between) / n_places);
+        const auto at = stress.at(places);
+        std::vector<double> m(n_places);
         for (std::size_t j = 0; j < rates_.size(); ++j)
-          for (unsigned int i = 0; i < n_places; ++i)
-          {
-            const double s = L * (i + 0.381966) / n_places, t = dt * (static_cast<double>(j) + 0.381966);
+        {
+          const double t = dt * (static_cast<double>(j) + between);
+          for (const double s : places)
             if (const double rate = stress.bounds({s, s, t, t})->rate; std::isfinite(rate))
               rates_[j] = std::max(rates_[j], rate);
-          }
+          at->values(t, m);
+          largest = std::max(largest, largest_size(m.size(), [&](const std::size_t i) { return m[i]; }));
+        }
       }
 
       /// At many places at one more time.

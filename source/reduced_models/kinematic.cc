@@ -52,26 +52,100 @@ namespace crawler
       energies.add_works(works);
     }
 
+    /// The strain at some points of the box, as far as it has no bounds of its own.
+    FieldBounds
+    bounds_of(const StrainHistory &strain, const SpaceTimeBox &box)
+    {
+      if (const auto bounds = strain.bounds(box))
+        return *bounds;
+      constexpr unsigned int n_s = 9, n_t = 3;
+      std::vector<double> points, values(n_s);
+      for (unsigned int i = 0; i < n_s; ++i)
+        points.push_back(box.s_from + (box.s_to - box.s_from) * i / (n_s - 1));
+      const auto at = strain.at(points);
+      FieldBounds largest{0., 0.};
+      for (unsigned int j = 0; j < n_t; ++j)
+      {
+        const double t = box.t_from + (box.t_to - box.t_from) * j / (n_t - 1);
+        at->strain(t, values);
+        for (const double e : values)
+          largest.value = std::max(largest.value, std::abs(e));
+        at->rate(t, values);
+        for (const double e_t : values)
+          largest.rate = std::max(largest.rate, std::abs(e_t));
+      }
+      return largest;
+    }
+
+    /// Where panels in time begin and end such that the strain changes by at most @p most_changes times its size in
+    /// each, so that their points see all that it does, however short it is. Nothing if that takes more than @p most.
+    std::optional<std::vector<double>>
+    time_panels(const StrainHistory &strain,
+                std::vector<double> breaks,
+                const double most_changes,
+                const std::size_t most)
+    {
+      constexpr unsigned int fewest = 4;
+      constexpr double negligible = 1e-6, shortest = 1e-9; // of the largest strain; of the duration
+      for (unsigned int i = 1; i < fewest; ++i)
+        breaks.push_back(1. * i / fewest);
+      breaks.push_back(1.);
+      std::erase_if(breaks, [](const double t) { return !(t > shortest && t <= 1.); });
+      std::ranges::sort(breaks, std::greater());
+      const double largest     = bounds_of(strain, {0., 1., 0., 1.}).value,
+                   floor       = std::isfinite(largest) ? negligible * largest : 0.;
+      std::vector<double> ends = {0.};
+      for (std::vector<double> &open = breaks; !open.empty();)
+      {
+        const double from = ends.back(), to = open.back();
+        const auto [value, rate] = bounds_of(strain, {0., 1., from, to});
+        if (to - from <= shortest || rate * (to - from) <= most_changes * std::max(value, floor))
+        {
+          ends.push_back(to);
+          open.pop_back();
+        }
+        else
+          open.push_back(0.5 * (from + to));
+        if (ends.size() + open.size() > most)
+          return std::nullopt;
+      }
+      return ends;
+    }
+
+    std::vector<double>
+    halved(const std::vector<double> &ends)
+    {
+      std::vector<double> finer = {ends.front()};
+      for (std::size_t i = 1; i < ends.size(); ++i)
+        finer.insert(finer.end(), {0.5 * (ends[i - 1] + ends[i]), ends[i]});
+      return finer;
+    }
+
+    /// @p ends: of the panels in time.
     Sums
     integrate(const Scene &scene,
               const StrainHistory &strain,
               const unsigned int n_space,
-              const unsigned int n_time,
+              const std::vector<double> &ends,
               const std::function<bool()> &keep_going)
     {
-      const GaussPanels time(0., 1., n_time);
+      static const GaussPanels panel(0., 1., 1);
       KinematicBody body(scene, strain, n_space);
       Sums sums;
       add(sums, body.evaluate(0.));
       sums.energies.initial_energy = body.evaluate(0.).sums.elastic_energy;
-      for (std::size_t i = 0; i < time.points().size(); ++i)
+      for (std::size_t p = 1; p < ends.size(); ++p)
       {
-        const auto &now     = body.evaluate(time.points()[i]);
-        const double weight = time.weights()[i];
-        add(sums, now);
-        sums.displacement += weight * now.sums.velocity;
-        add(sums.energies, now, weight);
-        if (i % GaussPanels::n_points == 0 && keep_going && !keep_going())
+        const double start = ends[p - 1], duration = ends[p] - start;
+        for (unsigned int i = 0; i < GaussPanels::n_points; ++i)
+        {
+          const auto &now     = body.evaluate(start + duration * panel.points()[i]);
+          const double weight = duration * panel.weights()[i];
+          add(sums, now);
+          sums.displacement += weight * now.sums.velocity;
+          add(sums.energies, now, weight);
+        }
+        if (keep_going && !keep_going())
         {
           sums.stopped = true;
           return sums;
@@ -192,17 +266,25 @@ namespace crawler
     constexpr unsigned int most_space = 1024, most_time = 1u << 17, most_in_all = 1u << 20;
     KinematicResult result;
     constexpr unsigned int most_at_start = 128; // panels that end where the strain is not smooth
-    unsigned int n_space                 = GaussPanels::number_ending_at(scene.breaks_in_space(), 2, most_at_start),
-                 n_time = GaussPanels::number_ending_at(scene.active_stress->breaks_in_time(), 4, most_at_start);
+    unsigned int n_space                 = GaussPanels::number_ending_at(scene.breaks_in_space(), 2, most_at_start);
+    // Half a wave of the strain in a panel, or two if there are too many: the eight points see these, too.
+    std::optional<std::vector<double>> panels;
+    for (const double most_changes : {3., 12.})
+      if (!panels)
+        panels = time_panels(strain, scene.active_stress->breaks_in_time(), most_changes, most_time / 4);
+    const bool sees_all       = panels.has_value();
+    std::vector<double> &ends = result.time_panels;
+    ends                      = sees_all ? *panels : std::vector<double>{0., 0.25, 0.5, 0.75, 1.};
     for (;;)
     {
-      const Sums coarse  = integrate(scene, strain, n_space, n_time, keep_going);
-      const bool inverts = !(1. + coarse.smallest.strain > 0.);
+      const std::size_t n_time = ends.size() - 1;
+      const Sums coarse        = integrate(scene, strain, n_space, ends, keep_going);
+      const bool inverts       = !(1. + coarse.smallest.strain > 0.);
       Sums in_space, in_time, both;
       if (!inverts && !coarse.stopped)
       {
-        in_space = integrate(scene, strain, 2 * n_space, n_time, keep_going);
-        in_time  = integrate(scene, strain, n_space, 2 * n_time, keep_going);
+        in_space = integrate(scene, strain, 2 * n_space, ends, keep_going);
+        in_time  = integrate(scene, strain, n_space, halved(ends), keep_going);
       }
       if (coarse.stopped || in_space.stopped || in_time.stopped)
       {
@@ -210,7 +292,7 @@ namespace crawler
         return result;
       }
       result.space_error   = std::abs(in_space.displacement - coarse.displacement);
-      result.time_error    = std::abs(in_time.displacement - coarse.displacement);
+      result.time_error    = sees_all ? std::abs(in_time.displacement - coarse.displacement) : HUGE_VAL;
       const double allowed = share * std::max(tolerance * std::abs(in_time.displacement), floor);
       // At a = 0 nothing moves: what the works need decides there, and otherwise hardly ever.
       const auto settled = [&](const Sums &finer) {
@@ -225,16 +307,18 @@ namespace crawler
       if (!inverts && !(space_fits && time_fits) && !at_limit)
       {
         n_space *= space_fits ? 1 : 2;
-        n_time *= time_fits ? 1 : 2;
+        if (!time_fits)
+          ends = halved(ends);
         continue;
       }
       result.n_space_panels = 2 * n_space;
-      result.n_time_panels  = 2 * n_time;
+      ends                  = halved(ends);
       if (!inverts)
-        both = integrate(scene, strain, 2 * n_space, 2 * n_time, keep_going);
+        both = integrate(scene, strain, 2 * n_space, ends, keep_going);
       // The extremes are looked for where the finest quadrature has seen them.
-      const unsigned int n_s = std::clamp(8 * n_space, 33u, 257u), n_t = std::clamp(8 * n_time, 33u, 2049u);
-      result.extremes = find_extremes(strain, 1., 1., n_s, n_t);
+      const unsigned int n_s = std::clamp(8 * n_space, 33u, 257u),
+                         n_t = static_cast<unsigned int>(std::clamp<std::size_t>(8 * n_time, 33, 2049));
+      result.extremes        = find_extremes(strain, 1., 1., n_s, n_t);
       if (inverts || !(1. + result.extremes.smallest.strain > 0.) || !(1. + both.smallest.strain > 0.))
       {
         result.inversion = inverts ? coarse.smallest : result.extremes.smallest;

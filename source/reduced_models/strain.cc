@@ -131,4 +131,26 @@ namespace crawler
   {
     return std::make_unique<StiffAtPoints>(scene_, points);
   }
+
+  std::optional<FieldBounds>
+  LeadingOrderStrain::bounds(const SpaceTimeBox &) const
+  {
+    FieldBounds sum{0., 0.};
+    for (const NaturalWave::Harmonic &harmonic : wave_.harmonics)
+    {
+      const double amplitude = std::hypot(harmonic.a, harmonic.b);
+      sum.value += 2. * amplitude;
+      sum.rate += harmonic.q * std::abs(wave_.speed) * amplitude;
+    }
+    return sum;
+  }
+
+  std::optional<FieldBounds>
+  StiffStrain::bounds(const SpaceTimeBox &box) const
+  {
+    auto bounds = scene_.active_stress->bounds(box);
+    if (bounds)
+      *bounds = {bounds->value / scene_.body.elastic_modulus, bounds->rate / scene_.body.elastic_modulus};
+    return bounds;
+  }
 } // namespace crawler

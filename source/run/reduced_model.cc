@@ -63,7 +63,7 @@ namespace crawler
     const KinematicResult motion =
       kinematic(reduced_scene_.scene(), *reduced_scene_.strain(), 0.5 * accuracy, keep_going);
     n_space_panels_ = motion.n_space_panels;
-    n_time_panels_  = motion.n_time_panels;
+    time_panels_    = motion.time_panels;
     if (motion.stopped)
     {
       result.time.status = Status::stopped;
@@ -177,13 +177,13 @@ namespace crawler
     {
       if (i > 0)
       {
-        const double span = times[i] - times[i - 1];
-        const auto panels = static_cast<unsigned int>(std::ceil(span * n_time_panels_));
-        for (unsigned int j = 0; j < panels; ++j)
-          state.displacement += advance(body,
-                                        times[i - 1] + span * j / panels,
-                                        j + 1 == panels ? times[i] : times[i - 1] + span * (j + 1) / panels,
-                                        state.energies);
+        double now = times[i - 1];
+        for (auto end = std::ranges::upper_bound(time_panels_, now); now < times[i]; ++end)
+        {
+          const double next = end == time_panels_.end() ? times[i] : std::min(*end, times[i]);
+          state.displacement += advance(body, now, next, state.energies);
+          now = next;
+        }
       }
       const auto &now               = body.evaluate(times[i]);
       state.energies.elastic_energy = now.sums.elastic_energy;
@@ -229,7 +229,7 @@ namespace crawler
       return "No mesh and no time steps: the series is a closed form.";
     return fmt::format("No mesh and no time steps: quadrature on {} panels in s and {} in t, of {} points each.",
                        n_space_panels_,
-                       n_time_panels_,
+                       time_panels_.size() - 1,
                        GaussPanels::n_points);
   }
 } // namespace crawler

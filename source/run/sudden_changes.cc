@@ -85,7 +85,7 @@ namespace crawler
   {
     while (next_ < starts_.size() && starts_[next_] < t)
       look_at_next_start();
-    if (!(t < thin_until_))
+    if (!stress_ || !(t < thin_until_))
       return std::nullopt;
     const auto [left, right] = at(t).end_stretch;
     const Extreme at_left{left, 0., t}, at_right{right, 1., t};

@@ -23,20 +23,33 @@ namespace crawler
       return values;
     }
 
+    SpaceTimeBox
+    physical(const SpaceTimeBox &box, const Units &units)
+    {
+      return {box.s_from * units.length, box.s_to * units.length, box.t_from * units.time, box.t_to * units.time};
+    }
+
     /// A strain history in other units.
     StrainByEvaluators
     scaled(const StrainHistory &history, const Units &units)
     {
-      return StrainByEvaluators([&history, units](const std::vector<double> &points) -> StrainByEvaluators::Evaluators {
-        const std::shared_ptr<StrainAtPoints> at = history.at(times(points, units.length));
-        const double unit                        = units.time;
-        return {stress_at_points([at, unit](const double t, const std::span<double> e) { at->strain(t * unit, e); }),
-                stress_at_points([at, unit](const double t, const std::span<double> e_t) {
-                  at->rate(t * unit, e_t);
-                  for (double &value : e_t)
-                    value *= unit;
-                })};
-      });
+      return StrainByEvaluators(
+        [&history, units](const std::vector<double> &points) -> StrainByEvaluators::Evaluators {
+          const std::shared_ptr<StrainAtPoints> at = history.at(times(points, units.length));
+          const double unit                        = units.time;
+          return {stress_at_points([at, unit](const double t, const std::span<double> e) { at->strain(t * unit, e); }),
+                  stress_at_points([at, unit](const double t, const std::span<double> e_t) {
+                    at->rate(t * unit, e_t);
+                    for (double &value : e_t)
+                      value *= unit;
+                  })};
+        },
+        [&history, units](const SpaceTimeBox &box) {
+          auto bounds = history.bounds(physical(box, units));
+          if (bounds)
+            bounds->rate *= units.time;
+          return bounds;
+        });
     }
 
     /// An active stress in other units. @p pieces may be null.
@@ -80,6 +93,14 @@ namespace crawler
       feedback() const override
       {
         return feedback_ ? &*feedback_ : nullptr;
+      }
+      std::optional<Bounds>
+      bounds(const Box &box) const override
+      {
+        auto bounds = stress_.bounds(physical(box, units_));
+        if (bounds)
+          *bounds = {bounds->value / units_.force, bounds->rate * units_.time / units_.force};
+        return bounds;
       }
 
     private:

@@ -5,9 +5,14 @@
 #include "../support/answers.h"
 #include "../support/expect_within.h"
 
+#include <crawler/base/gauss_panels.h>
+
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numbers>
 
 using namespace crawler;
 using test::answer_to;
@@ -128,6 +133,71 @@ TEST(Events, GaitsOfHundredsOfStrides)
     auto settings = test::wave(1. - p, chi, c, T, k);
     settings.emplace_back("Accuracy", "1e-5");
     expect_within(answer_to(settings), exact, 1e-5, fmt::format("k = {}", k));
+  }
+}
+
+/// Samples of the stress saw nothing but the far end of its decay, so that steps were a million times too short.
+TEST(Events, OneInALongRest)
+{
+  const auto settings = [](const std::string &time, const std::string &end_time) {
+    return test::Settings{{"Body/Elastic modulus", "0.93"},
+                          {"Body/Anchoring exponent", "2.89"},
+                          {"Active stress/Generator", "expression"},
+                          {"Active stress/Expression/Active stress", "0.53*sin(3*s-(t-q)/w)*exp(-((t-q)/w)^2)"},
+                          {"Active stress/Expression/Constants", "w = 0.07403, q = " + time},
+                          {"Time/End time", end_time},
+                          {"Accuracy", "1e-5"}};
+  };
+  const SimulationResult rested = answer_to(settings("713.5928", "1000"));
+  expect_within(rested, answer_to(settings("1.5", "50")).displacement, 1e-5, "after a long rest");
+  EXPECT_LT(rested.time.steps, 1000u);
+}
+
+/// The displacement that a strain brings about, by theory.md ("Prescribed strain") and the trapezoidal rule in time.
+TEST(Events, OfGivenStrains)
+{
+  struct Case
+  {
+    const char *strain;
+    double T;
+    unsigned int n_steps;
+    double beginning; ///< so fast the strain begins
+    double event;     ///< its size
+  };
+  constexpr double time = 13.126, width = 0.003, pi = std::numbers::pi;
+  const Case cases[] = {
+    {"0.2*sin(2*pi*(s+t))*tanh(t)", 400., 40000, 1., 0.},
+    {"0.2*sin(2*pi*(s+t))*tanh(5*t)+0.3*sin(pi*s)*sin(2*pi*s)*exp(-((t-13.126)/0.003)^2)", 20., 80000, 5., 0.3}};
+  const GaussPanels body(0., 1., 4);
+  const std::size_t n = body.points().size();
+  std::vector<double> e_t(n), B_t(n), g(n), product(n);
+  for (const auto &[strain, T, n_steps, beginning, size] : cases)
+  {
+    double displacement = 0.;
+    for (unsigned int j = 0; j <= n_steps; ++j)
+    {
+      const double t = T * j / n_steps, start = std::tanh(beginning * t), start_rate = beginning * (1. - start * start);
+      const double x = (t - time) / width, bell = size * std::exp(-x * x), bell_rate = -2. * x / width * bell;
+      for (std::size_t i = 0; i < n; ++i)
+      {
+        const double s = body.points()[i], phase = 2. * pi * (s + t), shape = std::sin(pi * s) * std::sin(2. * pi * s);
+        g[i]   = 1. / (1. + 0.2 * std::sin(phase) * start + bell * shape); // p = 2: a = -1
+        e_t[i] = 0.2 * (2. * pi * std::cos(phase) * start + std::sin(phase) * start_rate) + bell_rate * shape;
+      }
+      body.running_integral(e_t, B_t);
+      std::ranges::transform(g, B_t, product.begin(), std::multiplies());
+      const double velocity = body.integral(B_t) - body.integral(product) / body.integral(g);
+      displacement += velocity * T / n_steps * (j == 0 || j == n_steps ? 0.5 : 1.);
+    }
+    for (const char *accuracy : {"1e-2", "1e-4", "1e-6"})
+      expect_within(answer_to({{"Model", "kinematic"},
+                               {"Active stress/Generator", "prescribed strain"},
+                               {"Active stress/Prescribed strain/Strain", strain},
+                               {"Time/End time", test::text(T)},
+                               {"Accuracy", accuracy}}),
+                    displacement,
+                    std::stod(accuracy),
+                    fmt::format("{}, {}", strain, accuracy));
   }
 }
 

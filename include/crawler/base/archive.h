@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/words.h>
+
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -78,16 +80,40 @@ namespace crawler
 
   private:
     template <typename Type>
+    static constexpr bool has_exchange = requires(Type value, Archive archive)
+    {
+      value.exchange(archive);
+    };
+    /// Numbers, and structures of nothing but numbers: all bytes are a value. A structure with truth values or enums
+    /// must say what belongs to it (exchange), so that each is looked at.
+    template <typename Type>
+    static constexpr bool is_raw =
+      !has_exchange<Type> && !std::is_same_v<Type, bool> &&
+      (std::is_arithmetic_v<Type> || (std::is_aggregate_v<Type> && std::is_trivially_copyable_v<Type>));
+
+    template <typename Type>
     void
     one(Type &value)
     {
-      if constexpr (requires { value.exchange(*this); })
+      if constexpr (has_exchange<Type>)
         value.exchange(*this);
+      else if constexpr (std::is_enum_v<Type>)
+        kind(value);
       else
       {
-        static_assert(std::is_trivially_copyable_v<Type> && !std::is_pointer_v<Type>);
+        static_assert(is_raw<Type>);
         raw(&value, sizeof(Type));
       }
+    }
+    template <typename Enum>
+    void
+    kind(Enum &value)
+    {
+      auto number = static_cast<unsigned int>(value);
+      raw(&number, sizeof(number));
+      if constexpr (HasWords<Enum>)
+        require(number < std::size(Words<Enum>::list), "a kind");
+      value = static_cast<Enum>(number);
     }
     /// A byte that is neither 0 nor 1 is no truth value, and using it as one is undefined.
     void
@@ -154,8 +180,8 @@ namespace crawler
     list_of(List &list)
     {
       using Type = typename List::value_type;
-      resize(list, std::is_trivially_copyable_v<Type> ? sizeof(Type) : 1);
-      if constexpr (requires { list.data(); } && std::is_trivially_copyable_v<Type>)
+      resize(list, is_raw<Type> ? sizeof(Type) : 1);
+      if constexpr (requires { list.data(); } && is_raw<Type>)
         raw(list.data(), list.size() * sizeof(Type));
       else
         for (Type &value : list)

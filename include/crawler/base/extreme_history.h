@@ -87,6 +87,12 @@ namespace crawler
       return sign_ * a < sign_ * b;
     }
 
+    void
+    exchange(auto &archive)
+    {
+      archive(last_, extreme_);
+    }
+
   private:
     double sign_;
     std::array<Extreme, 3> last_;

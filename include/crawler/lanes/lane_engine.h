@@ -67,6 +67,13 @@ namespace crawler
     unsigned int steps = 0, rejected = 0, failures = 0, all_failures = 0, output_time = 0, limit = 0;
     unsigned int first_step = 0; ///< steps before the last start
     unsigned long newton    = 0;
+
+    void
+    exchange(auto &archive)
+    {
+      archive(has_old, just_rejected, is_retry, t, h, next, old_h, rate, known_rate, last_correction);
+      archive(steps, rejected, failures, all_failures, output_time, limit, first_step, newton);
+    }
   };
 
   /// One body to compute.

@@ -12,6 +12,12 @@ namespace crawler
     double left, size;  ///< [length]
     unsigned int level; ///< how often one of the cells of the first mesh was halved
     bool is_left_half;  ///< of the cell of which it is a half
+
+    void
+    exchange(auto &archive)
+    {
+      archive(left, size, level, is_left_half);
+    }
   };
 
   /// What is to become of a cell; two halves of a former cell are joined if both are marked.

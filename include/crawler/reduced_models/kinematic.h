@@ -74,11 +74,14 @@ namespace crawler
     double net_friction = 0.; ///< largest |int g v ds| over largest int |g v| ds, both over time
     StrainExtremes extremes{};
     std::optional<StrainExtreme> inversion; ///< where the stretch is not positive; then nothing else is known
-    unsigned int n_space_panels = 0, n_time_panels = 0;
+    unsigned int n_space_panels = 0;
+    std::vector<double> time_panels; ///< where those in time begin and end
   };
 
   /**
-   * The displacement and the works of a body with a given strain over 0 <= t <= 1. The panels in s and in t are doubled
+   * The displacement and the works of a body with a given strain over 0 <= t <= 1. Panels in t are first such that
+   * the strain changes by a few times its size in each (by its bounds, so that no event is missed; if that takes too
+   * many the error is infinite). The panels in s and in t are doubled
    * until the changes of the displacement that this makes are, each, below a quarter of @p tolerance times the
    * displacement (or of 1e-12), and the works balance to @p tolerance, or until there are a million of them; the
    * changes are the errors, and the values are those of the doubled panels.

@@ -45,6 +45,8 @@ namespace crawler
 
     std::unique_ptr<StrainAtPoints>
     at(const std::vector<double> &points) const override;
+    std::optional<FieldBounds>
+    bounds(const SpaceTimeBox &box) const override;
 
   private:
     const NaturalWave wave_;
@@ -62,6 +64,8 @@ namespace crawler
 
     std::unique_ptr<StrainAtPoints>
     at(const std::vector<double> &points) const override;
+    std::optional<FieldBounds>
+    bounds(const SpaceTimeBox &box) const override;
 
   private:
     const Scene &scene_;

@@ -33,6 +33,12 @@ namespace crawler
     std::optional<double> efficiency =
       {}; ///< part of what any gait with this dissipation could (gait_efficiency.h) [1]
 
+    void
+    exchange(auto &archive)
+    {
+      archive(period, is_declared, n_strides, displacement, wave, energy_balance, length, efficiency);
+    }
+
     double
     speed() const
     {
@@ -144,6 +150,12 @@ namespace crawler
       double time, displacement;
       std::optional<EnergyBalance> energy_balance;
       Range smallest, largest; ///< stretches since the one before
+
+      void
+      exchange(auto &archive)
+      {
+        archive(time, displacement, energy_balance, smallest, largest);
+      }
     };
 
     double

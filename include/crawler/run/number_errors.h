@@ -19,5 +19,11 @@ namespace crawler
     {
       values.fill(std::numeric_limits<double>::quiet_NaN());
     }
+
+    void
+    exchange(auto &archive)
+    {
+      archive(values);
+    }
   };
 } // namespace crawler

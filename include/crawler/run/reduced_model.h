@@ -71,6 +71,7 @@ namespace crawler
     const Scene &scene_; ///< in the user's units
     const ReducedScene reduced_scene_;
     const Model model_;
-    unsigned int n_space_panels_ = 0, n_time_panels_ = 0; ///< of the kinematic level
+    unsigned int n_space_panels_ = 0; ///< of the kinematic level
+    std::vector<double> time_panels_; ///< of the kinematic level: where they begin and end
   };
 } // namespace crawler

@@ -101,6 +101,12 @@ namespace crawler
       unsigned int n_cells, degree;
       std::size_t n_unknowns;
       bool is_shared; ///< by several ranks
+
+      void
+      exchange(auto &archive)
+      {
+        archive(n_cells, degree, n_unknowns, is_shared);
+      }
     };
     std::optional<Mesh> mesh;
     double largest_indicator = 0.; ///< largest sum of the error indicators of an accepted state [length]

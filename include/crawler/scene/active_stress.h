@@ -75,17 +75,8 @@ namespace crawler
       return nullptr;
     }
 
-    /// A part of the body for some time: s in [s_from, s_to] [length], t in [t_from, t_to] [time].
-    struct Box
-    {
-      double s_from, s_to, t_from, t_to;
-    };
-
-    /// |m| [force] and |m_t| [force/time] are at most these.
-    struct Bounds
-    {
-      double value, rate;
-    };
+    using Box    = SpaceTimeBox;
+    using Bounds = FieldBounds; ///< of m [force] and m_t [force/time]
 
     /// Those in @p box, without the jumps at breaks_in_time(). They may be too large, but the less so the smaller the
     /// box. A rate is infinite where m may jump. Nothing if the generator cannot tell (the default): then events that

@@ -108,9 +108,11 @@ namespace crawler
     /// Of the strain [1] and of its rate [1/time].
     using Evaluators = std::pair<std::unique_ptr<ActiveStressAtPoints>, std::unique_ptr<ActiveStressAtPoints>>;
     using Make       = std::function<Evaluators(const std::vector<double> &points)>;
+    using Bound      = std::function<std::optional<FieldBounds>(const SpaceTimeBox &box)>;
 
-    explicit StrainByEvaluators(Make make)
+    explicit StrainByEvaluators(Make make, Bound bound = {})
       : make_(std::move(make))
+      , bound_(std::move(bound))
     {
     }
 
@@ -138,7 +140,14 @@ namespace crawler
       return std::make_unique<AtPoints>(make_(points));
     }
 
+    std::optional<FieldBounds>
+    bounds(const SpaceTimeBox &box) const override
+    {
+      return bound_ ? bound_(box) : std::nullopt;
+    }
+
   private:
     const Make make_;
+    const Bound bound_;
   };
 } // namespace crawler

@@ -24,6 +24,18 @@ namespace crawler
     rate(double t, std::span<double> e_t) = 0;
   };
 
+  /// A part of the body for some time: s in [s_from, s_to] [length], t in [t_from, t_to] [time].
+  struct SpaceTimeBox
+  {
+    double s_from, s_to, t_from, t_to;
+  };
+
+  /// A field and its derivative in time are, in a box, at most these in size.
+  struct FieldBounds
+  {
+    double value, rate;
+  };
+
   /// A strain e(s,t) = zeta_s - 1 that is known in advance, for 0 <= s <= L and 0 <= t <= T.
   class StrainHistory
   {
@@ -33,6 +45,14 @@ namespace crawler
     /// An evaluator at @p points [length] that may keep whatever does not depend on time.
     virtual std::unique_ptr<StrainAtPoints>
     at(const std::vector<double> &points) const = 0;
+
+    /// Those of e [1] and e_t [1/time] in @p box. They may be too large, but the less so the smaller the box. Nothing
+    /// if that is not known (the default).
+    virtual std::optional<FieldBounds>
+    bounds([[maybe_unused]] const SpaceTimeBox &box) const
+    {
+      return std::nullopt;
+    }
   };
 
   /// A value of the strain with its place.

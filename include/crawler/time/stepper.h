@@ -21,6 +21,12 @@ namespace crawler
     bool is_output_time;   ///< the time is one of the times that were asked for, exactly
     unsigned int rejected; ///< rejected steps so far
     unsigned long newton_iterations;
+
+    void
+    exchange(auto &archive)
+    {
+      archive(time, size, number, is_output_time, rejected, newton_iterations);
+    }
   };
 
   /// How a computation ended.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/base/grid_interpolation.h>
+#include <crawler/formula/formula_bound.h>
 #include <crawler/formula/formula_gradient.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/formula_input.h>
@@ -24,21 +25,26 @@ namespace crawler
     using Strains = StrainByEvaluators::Evaluators;
 
     std::unique_ptr<const StrainHistory>
-    strain_by(StrainByEvaluators::Make make)
+    strain_by(StrainByEvaluators::Make make, StrainByEvaluators::Bound bound)
     {
-      return std::make_unique<StrainByEvaluators>(std::move(make));
+      return std::make_unique<StrainByEvaluators>(std::move(make), std::move(bound));
     }
 
     std::unique_ptr<const StrainHistory>
     formula_strain(const std::shared_ptr<const Formula> &formula)
     {
-      return strain_by([formula](const std::vector<double> &points) -> Strains {
-        const auto by = [](auto values) {
-          return stress_at_points(
-            [values = std::move(values)](const double t, const std::span<double> e) mutable { values.values(t, e); });
-        };
-        return {by(FormulaAtPoints(formula, points)), by(FormulaRateAtPoints(formula, points))};
-      });
+      return strain_by(
+        [formula](const std::vector<double> &points) -> Strains {
+          const auto by = [](auto values) {
+            return stress_at_points(
+              [values = std::move(values)](const double t, const std::span<double> e) mutable { values.values(t, e); });
+          };
+          return {by(FormulaAtPoints(formula, points)), by(FormulaRateAtPoints(formula, points))};
+        },
+        [bound = std::make_shared<FormulaBound>(formula)](const SpaceTimeBox &box) {
+          const Enclosure e = (*bound)({box.s_from, box.s_to}, {box.t_from, box.t_to});
+          return FieldBounds{norm(e.value), norm(e.rate)};
+        });
     }
 
     /// e = mean + amplitude sin( q (s + c t) + phase )
@@ -46,19 +52,24 @@ namespace crawler
     wave_strain(const PrescribedStrainParameters &wave, const double length)
     {
       const double q = 2. * std::numbers::pi * wave.wave_number / length;
-      return strain_by([wave, q](const std::vector<double> &points) -> Strains {
-        const auto phase = [wave, q](const double s, const double t) {
-          return q * (s + wave.wave_speed * t) + wave.phase;
-        };
-        return {stress_at_points([=](const double t, const std::span<double> e) {
-                  for (std::size_t i = 0; i < e.size(); ++i)
-                    e[i] = wave.mean_strain + wave.amplitude * std::sin(phase(points[i], t));
-                }),
-                stress_at_points([=](const double t, const std::span<double> e_t) {
-                  for (std::size_t i = 0; i < e_t.size(); ++i)
-                    e_t[i] = q * wave.wave_speed * wave.amplitude * std::cos(phase(points[i], t));
-                })};
-      });
+      return strain_by(
+        [wave, q](const std::vector<double> &points) -> Strains {
+          const auto phase = [wave, q](const double s, const double t) {
+            return q * (s + wave.wave_speed * t) + wave.phase;
+          };
+          return {stress_at_points([=](const double t, const std::span<double> e) {
+                    for (std::size_t i = 0; i < e.size(); ++i)
+                      e[i] = wave.mean_strain + wave.amplitude * std::sin(phase(points[i], t));
+                  }),
+                  stress_at_points([=](const double t, const std::span<double> e_t) {
+                    for (std::size_t i = 0; i < e_t.size(); ++i)
+                      e_t[i] = q * wave.wave_speed * wave.amplitude * std::cos(phase(points[i], t));
+                  })};
+        },
+        [wave, q](const SpaceTimeBox &) {
+          return FieldBounds{std::abs(wave.mean_strain) + std::abs(wave.amplitude),
+                             std::abs(q * wave.wave_speed * wave.amplitude)};
+        });
     }
 
     /// The stress from the balance of forces, see the class.
@@ -117,9 +128,11 @@ namespace crawler
                         "differentiated in time is expected",
                         parameters.given_by),
             prescribed_strain_section + "Given by");
-        return strain_by([generator](const std::vector<double> &points) -> Strains {
-          return {generator->at(points), generator->rate_at(points)};
-        });
+        return strain_by(
+          [generator](const std::vector<double> &points) -> Strains {
+            return {generator->at(points), generator->rate_at(points)};
+          },
+          [generator](const SpaceTimeBox &box) { return generator->bounds(box); });
       }
       if (parameters.given_by == "wave")
         return wave_strain(parameters, length);

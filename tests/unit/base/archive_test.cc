@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/archive.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/time/stepper.h>
 
 #include <gtest/gtest.h>
 
@@ -40,6 +41,20 @@ namespace
     }
     bool
     operator==(const Outer &) const = default;
+  };
+
+  struct Progress
+  {
+    double t                   = 0.;
+    bool is_retry              = false;
+    Status status              = Status::none;
+    std::optional<double> size = 1.;
+
+    void
+    exchange(auto &archive)
+    {
+      archive(t, is_retry, status, size);
+    }
   };
 
   Outer
@@ -94,5 +109,21 @@ namespace
     unsigned int three = 3;
     Archive archive(archived(three));
     EXPECT_THROW(archive.require_same(4u, "the number"), FileError);
+  }
+
+  /// What an object without constructors would take from its bytes, and then use.
+  TEST(Archive, RefusesValuesThatDoNotExist)
+  {
+    std::vector<Progress> list(1);
+    const std::string bytes = archived(list);
+    const std::size_t first = sizeof(std::size_t) + sizeof(double); // behind the size of the list and t
+    for (const std::size_t place : {first, first + 1, first + 1 + sizeof(unsigned int)})
+    {
+      std::string damaged = bytes;
+      damaged[place]      = '\xf0';
+      Archive archive(damaged), whole(bytes);
+      EXPECT_NO_THROW(whole(list));
+      EXPECT_THROW(archive(list), FileError) << place;
+    }
   }
 } // namespace
