@@ -15,6 +15,8 @@ targets=("$@")
 contrib/setup.sh fuzz
 
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
+# An input that a sanitizer stops is kept only if it aborts.
+export UBSAN_OPTIONS=abort_on_error=1:print_stacktrace=1
 mkdir -p build-fuzz/findings
 # What parameter files and command lines may have in them.
 sed -nE 's/^ *(set|subsection) ([^=]*[^ =]).*/\1 \2/p' prm/default.prm | sort -u |

@@ -86,8 +86,10 @@ namespace crawler
       unsigned int
       most_cells_now() const
       {
-        if (latest_.inversion && std::isfinite(space_error_))
+        if (latest_.inversion && space_error_ <= believed * latest_.inversion->t)
           return most_cells_if_inverted;
+        if (levels_.size() == 2) // a third one that agrees with these tells their error
+          return most_cells_if_accurate;
         return accuracy_ < accurate ? most_cells_if_accurate : most_cells;
       }
 
@@ -254,7 +256,10 @@ namespace crawler
           now.work    = work_of(extrapolated_);
           now.change  = change;
           now.settled = now.value - before.value;
-          if (levels_.size() > 1) // two displacements may agree by chance
+          // Two displacements may agree by chance; times that have changed by much show no order yet.
+          const bool inverts_elsewhere =
+            latest_.inversion && std::abs(before.change) > largest_change_of_inversion * latest_.inversion->t;
+          if (levels_.size() > 1 && !inverts_elsewhere)
             space_error_ = std::max((end_is_nearly_lost() ? 2. : 1.) * error_of(before, now), unseen(now));
         }
         levels_.push_back(now);

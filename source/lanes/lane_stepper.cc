@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
 #include <crawler/lanes/lane_stepper.h>
 #include <crawler/time/radau_loops.h>
 #include <crawler/time/radau_tableau.h>
@@ -39,6 +40,8 @@ namespace crawler
   {
     course_ = course;
     y_.assign(y.begin(), y.end());
+    if (goes_on_ && (old_z_.size() != tableau_.n * y_.size() || progress_.output_time >= course_.ends.size()))
+      throw FileError("a saved state does not fit to the program: its last step is one of another run");
     job_ = {.k         = scene_.body.elastic_modulus,
             .a         = scene_.body.friction_exponent(),
             .tolerance = course_.tolerance,

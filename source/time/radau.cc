@@ -689,6 +689,11 @@ namespace crawler
     Radau &radau = data(ts);
     archive(radau.hard_steps, radau.steps, radau.old_start, radau.old_z, radau.old_h, radau.old_t);
     archive(radau.known_rate, ts->time_step, ts->steps, ts->reject, ts->snes_its, ts->ksp_its);
+    PetscInt n = 0;
+    VecGetLocalSize(ts->vec_sol, &n);
+    const auto size     = static_cast<std::size_t>(n);
+    const bool has_step = radau.old_start.size() == size && radau.old_z.size() == radau.n_stages() * size;
+    archive.require(has_step || (radau.old_start.empty() && radau.old_z.empty() && radau.old_h == 0.), "the last step");
     if (!archive.reads())
       return;
     radau.factors_h = 0.;

@@ -158,6 +158,8 @@ namespace crawler::accuracy_rule
     inline constexpr double too_large = 2., too_small = 0.05;
     /// An inversion whose time is not known better than this, relative to it, may be none.
     inline constexpr double believed = 0.3;
+    /// Meshes that move it by more, relative to the time, are too coarse.
+    inline constexpr double largest_change_of_inversion = 0.2;
     /// No displacement is known better than this, in lengths of the body.
     inline constexpr double round_off = 4e-15;
     /// Extrapolations that settle at least so fast are believed to go on so; what settles faster than fourth order does
