@@ -13,6 +13,7 @@ displacements are those of contrib/reference/crawler_reference.py, in the sweep 
 import argparse
 import dataclasses
 import datetime
+import itertools
 import math
 import os
 import pathlib
@@ -154,12 +155,14 @@ def measure_case(peer, case, wanted, exact):
 
 
 def measure_sweep(peer, wanted, exact):
-    """Each half of the chi has its setting, as the engine has: found with some of the scenes, true for all of them."""
+    """Each half of the chi has its setting, as the engine has: found with some of the scenes, made finer until it is true
+    for all of them."""
     seconds, settings = 0.0, []
     for half in (CHIS[:12], CHIS[12:]):
         bodies = [(a, chi, 1, 1) for a in EXPONENTS for chi in half]
         some = [(a, chi, 1, 1) for a in (EXPONENTS[0], EXPONENTS[20], EXPONENTS[-1]) for chi in (half[0], half[-1])]
-        for _, (method, size, tolerance) in candidates(peer, some, exact, wanted)[:20]:
+        for part, (_, (method, size, tolerance)) in itertools.product((1, 0.5, 0.25), candidates(peer, some, exact, wanted)[:20]):
+            tolerance *= part
             error, time = try_setting(peer, bodies, exact, (method, size, tolerance))
             if error <= wanted:
                 break

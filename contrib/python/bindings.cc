@@ -15,6 +15,7 @@
 #include <crawler/run/summary.h>
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/differentiated_numbers.h>
+#include <crawler/studies/core/entry_rules.h>
 #include <crawler/studies/core/sensitivities.h>
 #include <crawler/studies/core/variables.h>
 #include <crawler/studies/optimize/optimize.h>
@@ -194,7 +195,7 @@ namespace crawler
       std::vector<std::string> notes;
       LocalSensitivity local;
       const RunInMemory run = without_lock([&](const std::function<bool()> &interrupted) {
-        Input input = read_input(source.file());
+        Input input = read_input(source.file(), run_in_memory_command);
         effective   = input.effective;
         notes       = input.notes;
         std::optional<WantedFields> wanted;

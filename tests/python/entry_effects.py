@@ -422,6 +422,15 @@ def check_channels():
             action()
         texts = [str(one.message) for one in caught]
         expect(len(texts) == 1 and sentence in texts[0] and caught[0].filename == __file__, f"{kind} in Python: {texts}")
+    # A run without files has fields or none; how they are written is nothing to it.
+    for name, value, n in (("Output/Number of snapshots", 3, 1), ("Output/Number of snapshots", 0, 0), ("Output/Statistics", False, 0),
+                           ("Output/Snapshot format", "xdmf", 1), ("Output/Active stress table", "4, 4", 1),
+                           ("Time/Checkpoint interval", 3, 1)):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            crawler.run({name: value})
+        texts = [str(one.message) for one in caught]
+        expect(len(texts) == n and all(f'"{name}" has no effect' in text for text in texts), f"{name} = {value} in Python: {texts}")
     # An axis may give the entry its effect, and may itself have none.
     for axes, n in ((GROUND + "Friction law : power, expression", 0), (BODY + "Length : 1, 2", 1),
                     (GROUND + "Switching velocity : 0.1, 0.2", 2)):

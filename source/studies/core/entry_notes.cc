@@ -40,7 +40,9 @@ namespace crawler
       std::vector<std::string> words;
       for (const Chooser &chooser : rule.choosers)
         words.push_back(chooser.is_command()
-                          ? fmt::format("\"crawler{}{}\"", command == "batch" ? "." : " ", command)
+                          ? command == run_in_memory_command
+                              ? "\"crawler.run\" without \"output\""
+                              : fmt::format("\"crawler{}{}\"", command == "batch" ? "." : " ", command)
                           : fmt::format("\"{} = {}{}\"",
                                         chooser.path,
                                         declarations.value(chooser.path),

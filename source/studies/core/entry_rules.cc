@@ -207,15 +207,22 @@ namespace crawler
                         "Output/Active stress table",
                         "Time/Wall time limit",
                         "Time/Checkpoint interval"},
-                       {{command_entry, any_of({"run", "optimize", "check"})}, {"Sweep/Keep fields", is_set}}});
-      rules.push_back({{"Error estimate",
-                        "Discretization/",
-                        "Time/Integrator",
-                        "Time/Engine",
-                        "Time/Step control",
-                        "Time/Tolerance",
-                        "Time/Cycle stop"},
-                       {{command_entry, any_of({"run", "batch", "sweep", "optimize", "fit", "check"})}}});
+                       {{command_entry, any_of({"run", run_in_memory_command, "optimize", "check"})},
+                        {"Sweep/Keep fields", is_set}}});
+      const auto has_files = [](const std::string &command) { return command != run_in_memory_command; };
+      rules.push_back({{"Output/Snapshot format", "Output/Active stress table", "Time/Checkpoint interval"},
+                       {{command_entry, has_files}}});
+      rules.push_back({{"Output/Number of snapshots"}, // it has fields at all, or none
+                       {{command_entry, has_files}, {"Output/Number of snapshots", any_of({"0"})}}});
+      rules.push_back(
+        {{"Error estimate",
+          "Discretization/",
+          "Time/Integrator",
+          "Time/Engine",
+          "Time/Step control",
+          "Time/Tolerance",
+          "Time/Cycle stop"},
+         {{command_entry, any_of({"run", run_in_memory_command, "batch", "sweep", "optimize", "fit", "check"})}}});
       rules.push_back({{"Optimize/"}, {{"Optimize/Variables", is_set}, {command_entry, any_of({"optimize"})}}});
       rules.push_back({{"Optimize/Start spread", "Optimize/Seed"}, {{"Optimize/Starts", is_not(1.)}}});
       rules.push_back({{"Fit/"}, {{"Fit/Variables", is_set}, {command_entry, any_of({"fit"})}}});

@@ -155,7 +155,8 @@ namespace crawler
       return;
     if (is_broken_off(folder))
       throw InputError("the output folder \"" + folder.string() +
-                       "\" has a run or study that was broken off; --resume goes on with it (--overwrite begins anew, "
+                       "\" has a run or study that was broken off; the same command with --resume goes on with it "
+                       "(--overwrite begins anew, "
                        "--output gives another folder)");
     throw InputError("the output folder \"" + folder.string() +
                      "\" is not empty; give another one with --output, or --overwrite to replace the results in it");

@@ -36,7 +36,7 @@ def require_usable(path, kind, marks, resume, overwrite):
         raise InputError(f'"{path}" is not the folder of a {kind}, so "--overwrite" replaces nothing in it; another folder is expected')
     if names and not resume and not overwrite:
         if is_own and not is_finished(path):
-            raise InputError(f'the output folder "{path}" has a {kind} that was broken off; --resume goes on with it (--overwrite begins '
+            raise InputError(f'the output folder "{path}" has a {kind} that was broken off; the same command with --resume goes on with it (--overwrite begins '
                              "anew, --output gives another folder)")
         raise InputError(f'the output folder "{path}" is not empty; give another one with --output, or --overwrite to replace the '
                          "results in it")

@@ -23,6 +23,9 @@ namespace crawler
     }
   };
 
+  /// The command of a run without files (from Python).
+  inline const std::string run_in_memory_command = "run in memory";
+
   /// Entries, and sections with a "/" behind them, that have an effect only if one of the choosers fits. An entry needs
   /// all rules that name it or a section that it is in.
   struct EntryRule
