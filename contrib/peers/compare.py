@@ -13,7 +13,6 @@ displacements are those of contrib/reference/crawler_reference.py, in the sweep 
 import argparse
 import dataclasses
 import datetime
-import itertools
 import math
 import os
 import pathlib
@@ -161,8 +160,7 @@ def measure_sweep(peer, wanted, exact):
     for half in (CHIS[:12], CHIS[12:]):
         bodies = [(a, chi, 1, 1) for a in EXPONENTS for chi in half]
         some = [(a, chi, 1, 1) for a in (EXPONENTS[0], EXPONENTS[20], EXPONENTS[-1]) for chi in (half[0], half[-1])]
-        for part, (_, (method, size, tolerance)) in itertools.product((1, 0.5, 0.25), candidates(peer, some, exact, wanted)[:20]):
-            tolerance *= part
+        for _, (method, size, tolerance) in (found for aim in (1, 0.5, 0.25) for found in candidates(peer, some, exact, aim * wanted)[:20]):
             error, time = try_setting(peer, bodies, exact, (method, size, tolerance))
             if error <= wanted:
                 break

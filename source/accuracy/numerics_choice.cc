@@ -287,6 +287,22 @@ namespace crawler
         return true;
       }
 
+      /// When an end has inverted in the last pilot.
+      std::optional<double>
+      end_inversion() const
+      {
+        return pilot_.time.reason == "inverted_at_end" ? std::optional(pilot_.inversion->t) : std::nullopt;
+      }
+
+      /// The conditions at the ends say when these invert, on any mesh: two pilots that get there are enough.
+      bool
+      ends_invert_then(const std::optional<double> &before)
+      {
+        constexpr double same  = 1e-6;
+        const auto now         = end_inversion();
+        return inverts_at_end_ = now && before && std::abs(*now - *before) <= same * *now;
+      }
+
       /// Makes pilots on meshes from @p n_cells cells on, at most @p most, with smaller steps each time, until one
       /// shows the deformation.
       void
@@ -295,14 +311,17 @@ namespace crawler
         bool good = false;
         while (!good && n_pilots_ < 20)
         {
-          pilot_ = pilot(pilot_numerics(degree, n_cells, tolerance_), ResolutionWish::all);
+          const auto inversion_before = end_inversion();
+          pilot_                      = pilot(pilot_numerics(degree, n_cells, tolerance_), ResolutionWish::all);
           measure_size();
           if (accuracy_ >= 1e-7 && is_for_stretch())
             return;
           const bool finished = pilot_.time.status == Status::finished;
           const bool resolves = user_cells_ || pilot_.unresolved <= std::max(resolved, accuracy_) || n_cells >= most;
           // Too coarse a mesh or step can look like an inversion; if finer ones say the same the real run will name it.
-          if (!finished && !user_cells_ && n_cells < std::min(most, 64u))
+          if (ends_invert_then(inversion_before))
+            good = true;
+          else if (!finished && !user_cells_ && n_cells < std::min(most, 64u))
           {
             n_cells *= 2;
             tolerance_ *= 0.1;
@@ -332,10 +351,10 @@ namespace crawler
         if (n_cells > most && !user_cells_)
           return false;
         pilots_on_uniform_mesh(pilot_degree, n_cells, most);
-        if (accuracy_ >= 1e-7 && is_for_stretch())
-          return true;
-        const bool predicts      = pilot_.time.status == Status::finished;
         choice_.numerics.n_cells = n_cells;
+        if ((accuracy_ >= 1e-7 && is_for_stretch()) || inverts_at_end_)
+          return true;
+        const bool predicts = pilot_.time.status == Status::finished;
         if (!predicts || pilot_.unresolved > std::max(resolved, accuracy_))
           return most == most_cells; // whatever it is, there is no more
         if (most < most_cells && stiffness() < very_soft)
@@ -624,7 +643,9 @@ namespace crawler
         const double wanted = accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
         const double by_rule =
           std::max(superconvergence() * std::min(std::pow(wanted, 1. / (1. - r)), tolerance_),
-                   std::max((kinks_move() ? least_tolerance_if_kinks : least_tolerance) * scale_, smallest()));
+                   std::max({(kinks_move() ? least_tolerance_if_kinks : least_tolerance) * scale_,
+                             smallest(),
+                             inverts_at_end_ ? 0.1 * accuracy_ * tolerance_ : 0.})); // the size is not known then
         n.tolerance = user_tolerance_.value_or(jumps_move_ ? tolerance_ : is_graded ? n.tolerance : by_rule);
         if (predicts && !jumps_move_ && !user_cells_ && !user_tolerance_ && !fixed &&
             !parameters_.discretization.mesh_tolerance)
@@ -686,8 +707,8 @@ namespace crawler
       NumericsChoice choice_;
       SimulationResult pilot_; ///< the last one that counts
       double tolerance_ = 0., size_ = 0.;
-      unsigned int n_pilots_  = 0;
-      bool jumps_move_        = false;
+      unsigned int n_pilots_ = 0;
+      bool jumps_move_ = false, inverts_at_end_ = false;
       double space_over_time_ = 1.; ///< errors as the rule expects them
     };
   } // namespace

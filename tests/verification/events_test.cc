@@ -201,6 +201,21 @@ TEST(Events, OfGivenStrains)
   }
 }
 
+/// Both ends invert when m = k, on any mesh; pilots on finer and finer ones took minutes.
+TEST(Events, EndsThatInvertInALongRun)
+{
+  const SimulationResult result = answer_to(
+    {{"Body/Elastic modulus", "1.49"},
+     {"Body/Anchoring exponent", "2.24"},
+     {"Active stress/Generator", "expression"},
+     {"Active stress/Expression/Active stress", "0.2*sin(pi*s)*sin(2*pi*(s+t))*(1-exp(-t))+6*exp(-((t-815.9)/0.4)^2)"},
+     {"Time/End time", "1000"},
+     {"Accuracy", "1e-5"}});
+  ASSERT_EQ(result.time.reason, "inverted_at_end") << result.time.message;
+  EXPECT_NEAR(result.inversion->t, 815.9 - 0.4 * std::sqrt(std::log(6. / 1.49)), 1e-9 * 815.9);
+  EXPECT_LT(result.time.steps, 30000u);
+}
+
 TEST(Events, NothingHasHappenedYet)
 {
   const SimulationResult result =
