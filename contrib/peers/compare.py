@@ -34,8 +34,8 @@ ROWS = [("s1", error) for error in ERRORS] + [("fig2", "1e-6"), ("stiff", "1e-6"
 TITLES = {"s1": "Fig. S1", "fig2": "Fig. 2", "stiff": "STIFF", "sweep": "SWEEP"}
 EXPONENTS, CHIS = [-3 + 2.5 * i / 39 for i in range(40)], [0.05 + 0.4 * i / 24 for i in range(25)]
 FLAGS = "-O3 -march=native -fno-math-errno -fno-trapping-math -fno-signed-zeros -fassociative-math".split()
-ELEMENTS = [(q, n) for q in (4, 5, 6) for n in (2, 3, 4, 5, 6, 8, 12)]  # degree, cells
-POINTS = [(q, 1) for q in (8, 10, 12, 14, 16, 20, 24, 28, 34, 40)]
+ELEMENTS = [(q, n) for q in (4, 5, 6) for n in (2, 3, 4, 5, 6, 8, 12, 16)]  # degree, cells
+POINTS = [(q, 1) for q in (8, 10, 12, 14, 16, 20, 24, 28, 34, 40, 48, 56)]
 
 
 @dataclasses.dataclass
