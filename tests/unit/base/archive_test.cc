@@ -1,12 +1,26 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/archive.h>
 #include <crawler/base/exceptions.h>
-#include <crawler/time/stepper.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+
+namespace
+{
+  enum class Colour
+  {
+    red,
+    green
+  };
+} // namespace
+
+template <>
+struct crawler::Words<Colour>
+{
+  static constexpr const char *list[] = {"red", "green"};
+};
 
 namespace
 {
@@ -47,13 +61,13 @@ namespace
   {
     double t                   = 0.;
     bool is_retry              = false;
-    Status status              = Status::none;
+    Colour colour              = Colour::red;
     std::optional<double> size = 1.;
 
     void
     exchange(auto &archive)
     {
-      archive(t, is_retry, status, size);
+      archive(t, is_retry, colour, size);
     }
   };
 
