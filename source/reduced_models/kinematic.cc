@@ -121,6 +121,24 @@ namespace crawler
       return finer;
     }
 
+    /// Adds the time integrals from @p start to @p end, one panel of Gauss points, each of which @p see sees; returns
+    /// the change of the displacement.
+    double
+    add_panel(KinematicBody &body, const double start, const double end, EnergyBalance &energies, const auto &see)
+    {
+      static const GaussPanels panel(0., 1., 1);
+      double displacement = 0.;
+      for (unsigned int i = 0; i < GaussPanels::n_points; ++i)
+      {
+        const auto &now     = body.evaluate(start + (end - start) * panel.points()[i]);
+        const double weight = (end - start) * panel.weights()[i];
+        see(now);
+        displacement += weight * now.sums.velocity;
+        add(energies, now, weight);
+      }
+      return displacement;
+    }
+
     /// @p ends: of the panels in time.
     Sums
     integrate(const Scene &scene,
@@ -129,22 +147,14 @@ namespace crawler
               const std::vector<double> &ends,
               const std::function<bool()> &keep_going)
     {
-      static const GaussPanels panel(0., 1., 1);
       KinematicBody body(scene, strain, n_space);
       Sums sums;
       add(sums, body.evaluate(0.));
       sums.energies.initial_energy = body.evaluate(0.).sums.elastic_energy;
       for (std::size_t p = 1; p < ends.size(); ++p)
       {
-        const double start = ends[p - 1], duration = ends[p] - start;
-        for (unsigned int i = 0; i < GaussPanels::n_points; ++i)
-        {
-          const auto &now     = body.evaluate(start + duration * panel.points()[i]);
-          const double weight = duration * panel.weights()[i];
-          add(sums, now);
-          sums.displacement += weight * now.sums.velocity;
-          add(sums.energies, now, weight);
-        }
+        sums.displacement +=
+          add_panel(body, ends[p - 1], ends[p], sums.energies, [&](const auto &now) { add(sums, now); });
         if (keep_going && !keep_going())
         {
           sums.stopped = true;
@@ -243,16 +253,8 @@ namespace crawler
   double
   advance(KinematicBody &body, const double start, const double end, EnergyBalance &energies)
   {
-    const GaussPanels time(start, end, 1);
-    double displacement = 0.;
-    for (std::size_t i = 0; i < time.points().size(); ++i)
-    {
-      const auto &now     = body.evaluate(time.points()[i]);
-      const double weight = time.weights()[i];
-      displacement += weight * now.sums.velocity;
-      add(energies, now, weight);
-    }
-    energies.elastic_energy = body.evaluate(end).sums.elastic_energy;
+    const double displacement = add_panel(body, start, end, energies, [](const auto &) {});
+    energies.elastic_energy   = body.evaluate(end).sums.elastic_energy;
     return displacement;
   }
 

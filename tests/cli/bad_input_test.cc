@@ -655,6 +655,10 @@ namespace
       {"DecimalCommaInAProfile", in_section("Body", "set Initial stretch = 0,9"), {"with a point: 0.9\n"}},
       bad_formula("DecimalCommaInAConstant", "a*sin(t)", "a = 0,1", {"decimals are written with a point: 0.1\n"}),
       bad_formula("NegativeDecimalComma", "-0,1*sin(t)", "", {"in the formula \"-0,1*sin(t)\"", "a point: 0.1\n"}),
+      {"DecimalCommaInAListThatIsRefused",
+       in_section("Active stress",
+                  "set Generator = optimal wave\nsubsection Optimal wave\nset Sine coefficients = 0,5\nend"),
+       {"no wave spends the energy", "bad.prm, line 4", "is the two numbers 0 and 5", "with a point, 0.5\n"}},
       bad_formula("LargeNumberInAFormula", "1e400*sin(t)", "", {"; the largest number is 1.8e+308\n"}),
       bad_formula("GreekPi", "sin(2*\u03C0*t)", "", {"a Greek pi (U+03C0)", "but \"pi\" is expected"}),
       {"SmallNumberHasNoUnit", in_section("Body", "set Length = -1e-3"), {"but a positive number is expected\n"}},
@@ -672,7 +676,7 @@ namespace
       set("HomeSignOfFolder", {"--output=~/results"}, {"--output: \"~/results\" begins with \"~\""}),
       set("KilledFolder",
           {"--output", "killed"},
-          {"\"killed\" has a run or study that was broken off; --resume goes on"}),
+          {"\"killed\" has a run or study that was broken off; the same command with --resume goes on"}),
     };
   }
 

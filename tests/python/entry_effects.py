@@ -450,7 +450,8 @@ def check_channels():
 def check_commas():
     """A list that may be meant as a decimal is noted; one with a blank, or in a file without decimals, is a list."""
     coefficients = OPTIMAL + "Sine coefficients"
-    for value, k, n in (("0,5", "1", 1), ("0, 5", "1", 0), ("1,5", "0.5", 1), ("1,5", "1", 0), ("0,0.5", "0.5", 0)):
+    for value, k, n in (("0,5", "1", 1), ("0, 5", "1", 0), ("1,5", "0.5", 1), ("1,5", "1", 0), ("0,0.5", "0.5", 0), ("0.3, 0,5", "1", 1),
+                        ("0.3, 0, 5", "1", 0), ("0.3,0,5", "1", 0)):
         scene = {OPTIMAL + "Choose wave by": "wave speed", OPTIMAL + "Perturbation parameter": "1e-2",
                  BODY + "Elastic modulus": k, coefficients: value}
         with warnings.catch_warnings(record=True) as caught:

@@ -156,10 +156,9 @@ namespace crawler::accuracy_rule
     inline constexpr double least_order = 1.5, largest_order = 2.7;
     /// A time tolerance, relative to the strain, that is so many times too large or small is chosen anew.
     inline constexpr double too_large = 2., too_small = 0.05;
-    /// An inversion whose time is not known better than this, relative to it, may be none.
-    inline constexpr double believed = 0.3;
-    /// Meshes that move it by more, relative to the time, are too coarse.
-    inline constexpr double largest_change_of_inversion = 0.2;
+    /// An inversion whose time is not known better, relative to it, may be none; meshes that move it more are too
+    /// coarse.
+    inline constexpr double believed = 0.3, largest_change_of_inversion = 0.2;
     /// No displacement is known better than this, in lengths of the body.
     inline constexpr double round_off = 4e-15;
     /// Extrapolations that settle at least so fast are believed to go on so; what settles faster than fourth order does

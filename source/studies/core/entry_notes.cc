@@ -144,42 +144,58 @@ namespace crawler
       return notes;
     }
 
-    /// "0,5" where a single number would do is a list of two, but most likely meant as 0.5.
-    std::vector<std::string>
-    decimal_commas(const ParameterFile &file, const Declarations &declarations)
-    {
-      const auto is_whole = [](const std::string &text) {
-        return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-      };
-      const auto has_point = [](const Assignment &other) {
-        const auto number = to_number(other.value);
-        return number && other.value.find('.') != std::string::npos;
-      };
-      const bool has_points = std::any_of(file.assignments().begin(), file.assignments().end(), has_point);
-      std::vector<std::string> notes;
-      for (const Assignment &assignment : file.assignments())
-      {
-        const EntryValues &values = declarations.info(assignment.path).values;
-        const std::string &text   = assignment.value;
-        const auto comma          = text.find(',');
-        const bool is_list        = values.kind == EntryKind::numbers || values.kind == EntryKind::profile;
-        if (!is_list || values.may_be_empty || comma == std::string::npos ||
-            file.assignment_of(assignment.path) != &assignment)
-          continue;
-        const std::size_t start = text.starts_with("-") ? 1 : 0;
-        const std::string first = text.substr(start, comma - start), second = text.substr(comma + 1);
-        if (is_whole(first) && is_whole(second) && (first == "0" || has_points))
-          notes.push_back(
-            fmt::format("Note: {0}: \"{1} = {2},{3}\" is the two numbers {2} and {3}; decimals are written "
-                        "with a point, {2}.{3}",
-                        assignment.place,
-                        assignment.path,
-                        text.substr(0, comma),
-                        second));
-      }
-      return notes;
-    }
   } // namespace
+
+  std::vector<std::string>
+  notes_on_decimal_commas(const ParameterFile &file, const Declarations &declarations)
+  {
+    const auto is_whole = [](const std::string &text) {
+      return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+    };
+    const auto has_point = [](const Assignment &other) {
+      const auto number = to_number(other.value);
+      return number && other.value.find('.') != std::string::npos;
+    };
+    const auto is_digit = [](const char c) { return c >= '0' && c <= '9'; };
+    const auto is_mixed = [&](const std::string &list) {
+      bool with_space = false, between_digits = false;
+      for (std::size_t i = 1; i + 1 < list.size(); ++i)
+        if (list[i] == ',')
+        {
+          with_space |= list[i + 1] == ' ';
+          between_digits |= is_digit(list[i - 1]) && is_digit(list[i + 1]);
+        }
+      return with_space && between_digits;
+    };
+    const bool has_points = std::any_of(file.assignments().begin(), file.assignments().end(), has_point);
+    std::vector<std::string> notes;
+    for (const Assignment &assignment : file.assignments())
+    {
+      const EntryValues &values = declarations.info(assignment.path).values;
+      const std::string &text   = assignment.value;
+      const auto comma          = text.find(',');
+      const bool is_list        = values.kind == EntryKind::numbers || values.kind == EntryKind::profile;
+      if (!is_list || values.may_be_empty || comma == std::string::npos ||
+          file.assignment_of(assignment.path) != &assignment)
+        continue;
+      const std::size_t start = text.starts_with("-") ? 1 : 0;
+      const std::string first = text.substr(start, comma - start), second = text.substr(comma + 1);
+      if (const auto numbers = to_numbers(text); numbers && is_mixed(text))
+        notes.push_back(fmt::format("Note: {}: \"{} = {}\" is a list of {} numbers; decimals are written with a point",
+                                    assignment.place,
+                                    assignment.path,
+                                    text,
+                                    numbers->size()));
+      else if (is_whole(first) && is_whole(second) && (first == "0" || has_points))
+        notes.push_back(fmt::format("Note: {0}: \"{1} = {2},{3}\" is the two numbers {2} and {3}; decimals are written "
+                                    "with a point, {2}.{3}",
+                                    assignment.place,
+                                    assignment.path,
+                                    text.substr(0, comma),
+                                    second));
+    }
+    return notes;
+  }
 
   std::vector<std::string>
   notes_on_entries(const ParameterFile &file,
@@ -190,7 +206,7 @@ namespace crawler
   {
     auto notes = idle_entries(file, declarations, command, varied, chosen);
     std::ranges::copy(notes_on_constants(file, declarations, varied), std::back_inserter(notes));
-    std::ranges::copy(decimal_commas(file, declarations), std::back_inserter(notes));
+    std::ranges::copy(notes_on_decimal_commas(file, declarations), std::back_inserter(notes));
     return notes;
   }
 

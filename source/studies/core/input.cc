@@ -71,7 +71,12 @@ namespace crawler
     }
     catch (const InputError &error)
     {
-      throw file.with_place(error);
+      const InputError placed = file.with_place(error);
+      std::string message     = placed.what();
+      if (message.find("decimals are written with a point") == std::string::npos)
+        for (const std::string &note : notes_on_decimal_commas(file, form.declarations)) // perhaps that is why
+          message += "; " + note.substr(note.find(": ") + 2);
+      throw InputError(message, placed.entry);
     }
   }
 

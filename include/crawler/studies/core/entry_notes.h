@@ -31,6 +31,11 @@ namespace crawler
                    const VariedEntries &varied = {},
                    const ChosenValues &chosen  = {});
 
+  /// "0,5" where a single number would do is a list of two, but most likely meant as 0.5; so is a comma without a space
+  /// in a list whose others have one.
+  std::vector<std::string>
+  notes_on_decimal_commas(const ParameterFile &file, const Declarations &declarations);
+
   /// Adds notes on entries of @p file that have no effect in this scene, whatever the others are, unless these
   /// @p notes have the entry already.
   void
