@@ -5,7 +5,7 @@
     contrib/peers/compare.py [build] [--only NAME ...] [--cases NAME ...]
 
 NAME of a peer: IDA, PETSc, SciPy, FEniCSx, Octave, crawler; of a case: s1, fig2, stiff, sweep. A peer that is not
-installed is skipped by name. Every peer takes the cheapest setting that a search over its methods, degrees, cells and
+installed is skipped by name; SIGINT skips the rest of one. Every peer takes the cheapest setting that a search over its methods, degrees, cells and
 tolerances finds, whose true error is below the wanted one; tolerances of 0.5 and 0.25 times its own must reach the
 error as well, so that none wins by luck. Times are of the processor, without the start of the program. The true
 displacements are those of contrib/reference/crawler_reference.py, in the sweep those of fine runs by SciPy.
@@ -160,7 +160,8 @@ def measure_sweep(peer, wanted, exact):
     for half in (CHIS[:12], CHIS[12:]):
         bodies = [(a, chi, 1, 1) for a in EXPONENTS for chi in half]
         some = [(a, chi, 1, 1) for a in (EXPONENTS[0], EXPONENTS[20], EXPONENTS[-1]) for chi in (half[0], half[-1])]
-        for _, (method, size, tolerance) in (found for aim in (1, 0.5, 0.25) for found in candidates(peer, some, exact, aim * wanted)[:20]):
+        settings_found = (found for aim in (1, 0.5, 0.25) for found in candidates(peer, some, exact, aim * wanted)[:20])
+        for _, (method, size, tolerance) in settings_found:
             error, time = try_setting(peer, bodies, exact, (method, size, tolerance))
             if error <= wanted:
                 break
@@ -282,13 +283,16 @@ def main():
                 print(f"{peer.name} is not installed: skipped", flush=True)
                 continue
             names.append(f"{peer.name} {peer.words}".strip())
-            for case, error in results:
-                found = measure_sweep(peer, float(error), exact) if case == "sweep" else measure_case(peer, case, float(error), exact)
-                if found:
-                    words = "; ".join(map(in_words, found[1])) if case == "sweep" else in_words(found[1])
-                    results[case, error][names[-1]] = (found[0], words)
-                print(f"{names[-1]}, {case}, {error}: {f'{found[0]:.3g} s' if found else 'not reached'}", flush=True)
-            peer.process.stdin.close()
+            try:
+                for case, error in results:
+                    found = measure_sweep(peer, float(error), exact) if case == "sweep" else measure_case(peer, case, float(error), exact)
+                    if found:
+                        words = "; ".join(map(in_words, found[1])) if case == "sweep" else in_words(found[1])
+                        results[case, error][names[-1]] = (found[0], words)
+                    print(f"{names[-1]}, {case}, {error}: {f'{found[0]:.3g} s' if found else 'not reached'}", flush=True)
+            except KeyboardInterrupt:
+                print(f"{names[-1]}: the rest is skipped", flush=True)
+            peer.process.kill()
             peer.process.wait()
     program = o.build / "tests/benchmark/crawler_benchmark"
     if (not o.only or "crawler" in o.only) and program.exists():

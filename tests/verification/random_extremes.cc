@@ -39,7 +39,7 @@ namespace
   /// Of fewer scenes only wrong answers count: shares and times say little.
   constexpr unsigned int fewest = 500;
   /// No answer is waited for longer, and no second method unless the user says so [steps].
-  constexpr unsigned long own_limit = 20000, second_limit = 20000;
+  constexpr unsigned long own_limit = 200000, second_limit = 20000;
   constexpr double longest = 60., longest_second = 20.; ///< of processor time [s]
   constexpr double most_cells =
     16.; ///< of the second method, where it does not agree, relative to those it begins with
