@@ -5,9 +5,9 @@
     contrib/peers/compare.py [build] [--only NAME ...] [--cases NAME ...]
 
 NAME of a peer: IDA, PETSc, SciPy, FEniCSx, Octave, crawler; of a case: s1, fig2, stiff, sweep. A peer that is not
-installed is skipped by name; SIGINT skips the rest of one. Every peer takes the cheapest setting that a search over its methods, degrees, cells and
-tolerances finds, whose true error is below the wanted one; tolerances of 0.5 and 0.25 times its own must reach the
-error as well, so that none wins by luck. Times are of the processor, without the start of the program. The true
+installed is skipped by name; SIGINT skips the rest of one. Every peer takes the cheapest setting that a search over its
+methods, degrees, cells and tolerances finds, whose true error is below the wanted one; tolerances of 0.5 and 0.25 times
+its own must reach the error as well, so that none wins by luck. Times are of the processor, without the start of the program. The true
 displacements are those of contrib/reference/crawler_reference.py, in the sweep those of fine runs by SciPy.
 """
 import argparse
@@ -33,6 +33,7 @@ CASES = {"s1": (-1, 0.4, 1, 1), "fig2": (-1, 0.4, 1, 20), "stiff": (-1, 0.3, 100
 ROWS = [("s1", error) for error in ERRORS] + [("fig2", "1e-6"), ("stiff", "1e-6"), ("sweep", "1e-4"), ("sweep", "1e-6")]
 TITLES = {"s1": "Fig. S1", "fig2": "Fig. 2", "stiff": "STIFF", "sweep": "SWEEP"}
 EXPONENTS, CHIS = [-3 + 2.5 * i / 39 for i in range(40)], [0.05 + 0.4 * i / 24 for i in range(25)]
+SMALLEST = 0.004  # tolerance that is tried, relative to the wanted error
 FLAGS = "-O3 -march=native -fno-math-errno -fno-trapping-math -fno-signed-zeros -fassociative-math".split()
 ELEMENTS = [(q, n) for q in (4, 5, 6) for n in (2, 3, 4, 5, 6, 8, 12, 16)]  # degree, cells
 POINTS = [(q, 1) for q in (8, 10, 12, 14, 16, 20, 24, 28, 34, 40, 48, 56)]
@@ -121,9 +122,9 @@ def candidates(peer, bodies, exact, wanted):
             tolerance, passed = 30 * wanted, []
             if try_setting(peer, bodies, exact, (method, size, tolerance))[1] > 1.3 * best:
                 continue  # smaller tolerances would be slower still
-            if try_setting(peer, bodies, exact, (method, size, 0.02 * wanted))[0] > wanted:
+            if try_setting(peer, bodies, exact, (method, size, SMALLEST * wanted))[0] > wanted:
                 continue  # too coarse in space
-            while tolerance > 0.02 * wanted:
+            while tolerance > SMALLEST * wanted:
                 error, seconds = try_setting(peer, bodies, exact, (method, size, tolerance))
                 if seconds > 1.3 * best:
                     break
