@@ -19,7 +19,7 @@ import pathlib
 import platform
 import re
 import resource
-import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -265,6 +265,7 @@ def main():
     parser.add_argument("--cases", nargs="+", choices=[*CASES, "sweep"])
     o = parser.parse_args()
     os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # in the background, too
     cases = o.cases or [*CASES, "sweep"]
     try:
         exact, certainty = references(cases)
@@ -291,7 +292,7 @@ def main():
                         words = "; ".join(map(in_words, found[1])) if case == "sweep" else in_words(found[1])
                         results[case, error][names[-1]] = (found[0], words)
                     print(f"{names[-1]}, {case}, {error}: {f'{found[0]:.3g} s' if found else 'not reached'}", flush=True)
-            except KeyboardInterrupt:
+            except (KeyboardInterrupt, OSError):  # OSError: it has ended
                 print(f"{names[-1]}: the rest is skipped", flush=True)
             peer.process.kill()
             peer.process.wait()
