@@ -77,15 +77,15 @@ namespace crawler
       return largest;
     }
 
-    /// Where panels in time begin and end such that the strain changes by at most @p most_changes times its size in
-    /// each, so that their points see all that it does, however short it is. Nothing if that takes more than @p most.
+    /// Where panels in time begin and end such that the strain changes by at most some times its size in each (two
+    /// waves of a sine), so that their eight points see all that it does, however short it is. Nothing if that takes
+    /// more than
+    /// @p most.
     std::optional<std::vector<double>>
-    time_panels(const StrainHistory &strain,
-                std::vector<double> breaks,
-                const double most_changes,
-                const std::size_t most)
+    time_panels(const StrainHistory &strain, std::vector<double> breaks, const std::size_t most)
     {
       constexpr unsigned int fewest = 4;
+      constexpr double most_changes = 12.;
       constexpr double negligible = 1e-6, shortest = 1e-9; // of the largest strain; of the duration
       for (unsigned int i = 1; i < fewest; ++i)
         breaks.push_back(1. * i / fewest);
@@ -110,6 +110,20 @@ namespace crawler
           return std::nullopt;
       }
       return ends;
+    }
+
+    /// Is one of them much shorter than another? A change by so few points in an event may be small by chance.
+    bool
+    has_events(const std::vector<double> &ends)
+    {
+      constexpr double much = 8.;
+      double shortest = HUGE_VAL, longest = 0.;
+      for (std::size_t i = 1; i < ends.size(); ++i)
+      {
+        shortest = std::min(shortest, ends[i] - ends[i - 1]);
+        longest  = std::max(longest, ends[i] - ends[i - 1]);
+      }
+      return longest > much * shortest;
     }
 
     std::vector<double>
@@ -264,19 +278,16 @@ namespace crawler
             const double tolerance,
             const std::function<bool()> &keep_going)
   {
-    constexpr double floor = 1e-12, share = 0.25;
+    constexpr double floor = 1e-12, share = 0.25, least_part = 0.1;
     constexpr unsigned int most_space = 1024, most_time = 1u << 17, most_in_all = 1u << 20;
     KinematicResult result;
     constexpr unsigned int most_at_start = 128; // panels that end where the strain is not smooth
     unsigned int n_space                 = GaussPanels::number_ending_at(scene.breaks_in_space(), 2, most_at_start);
-    // Half a wave of the strain in a panel, or two if there are too many: the eight points see these, too.
-    std::optional<std::vector<double>> panels;
-    for (const double most_changes : {3., 12.})
-      if (!panels)
-        panels = time_panels(strain, scene.active_stress->breaks_in_time(), most_changes, most_time / 4);
-    const bool sees_all       = panels.has_value();
-    std::vector<double> &ends = result.time_panels;
-    ends                      = sees_all ? *panels : std::vector<double>{0., 0.25, 0.5, 0.75, 1.};
+    const auto panels                    = time_panels(strain, scene.active_stress->breaks_in_time(), most_time / 4);
+    const bool sees_all                  = panels.has_value();
+    const double part                    = sees_all && has_events(*panels) ? least_part : 0.;
+    std::vector<double> &ends            = result.time_panels;
+    ends                                 = sees_all ? *panels : std::vector<double>{0., 0.25, 0.5, 0.75, 1.};
     for (;;)
     {
       const std::size_t n_time = ends.size() - 1;
@@ -296,6 +307,7 @@ namespace crawler
       result.space_error   = std::abs(in_space.displacement - coarse.displacement);
       result.time_error    = sees_all ? std::abs(in_time.displacement - coarse.displacement) : HUGE_VAL;
       const double allowed = share * std::max(tolerance * std::abs(in_time.displacement), floor);
+      result.time_error    = std::max(result.time_error, part * allowed);
       // At a = 0 nothing moves: what the works need decides there, and otherwise hardly ever.
       const auto settled = [&](const Sums &finer) {
         const double works = share * std::max(tolerance, floor) * coarse.energies.exchanged_work;

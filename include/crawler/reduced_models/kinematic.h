@@ -80,7 +80,7 @@ namespace crawler
 
   /**
    * The displacement and the works of a body with a given strain over 0 <= t <= 1. Panels in t are first such that
-   * the strain changes by a few times its size in each (by its bounds, so that no event is missed; if that takes too
+   * the strain changes by some times its size in each (by its bounds, so that no event is missed; if that takes too
    * many the error is infinite). The panels in s and in t are doubled
    * until the changes of the displacement that this makes are, each, below a quarter of @p tolerance times the
    * displacement (or of 1e-12), and the works balance to @p tolerance, or until there are a million of them; the
