@@ -48,6 +48,7 @@ class Peer:
     command: list
     build: tuple = ()
     version: tuple = ()
+    end: str = "\n"  # of a line
     process: subprocess.Popen = None
     words: str = ""
 
@@ -66,7 +67,7 @@ class Peer:
 
     def ask(self, method, body, size, tolerance, repeat=1):
         """Displacement and seconds of one run; not a number if it fails."""
-        self.process.stdin.write(" ".join(map(repr, body)).join((method + " ", f" {size[0]} {size[1]} {tolerance:.6g} {repeat}\n")))
+        self.process.stdin.write(" ".join(map(repr, body)).join((method + " ", f" {size[0]} {size[1]} {tolerance:.6g} {repeat}{self.end}")))
         self.process.stdin.flush()
         answer = self.process.stdout.readline().split()
         return (float(answer[0]), float(answer[1])) if len(answer) == 2 else (math.nan, math.inf)
@@ -87,7 +88,7 @@ def peers():
         Peer("FEniCSx", ("bdf5",), [size for size in ELEMENTS if size[0] in (4, 6)],
              [python, str(HERE / "fenicsx_peer.py")], (), (python, "-c", "import dolfinx; print(dolfinx.__version__)")),
         Peer("Octave", ("lsode", "ode15s"), POINTS, ["octave-cli", "-q", "--no-history", str(HERE / "octave_peer.m")], (),
-             ("octave-cli", "-q", "--eval", "disp(version)"))]
+             ("octave-cli", "-q", "--eval", "disp(version)"), end="\n\n")]  # fgetl waits for what follows a line
 
 
 def in_words(setting):

@@ -83,6 +83,9 @@ end
 
 warning("off", "all");
 while ischar(line = fgetl(stdin))
+  if isempty(line)
+    continue;
+  end
   words = strsplit(strtrim(line), " ");
   n = cellfun(@str2double, words(2:end));
   begin = cputime();
