@@ -115,7 +115,7 @@ CHECKS = (
     Check("notebooks", 2, "{root}/tests/python/documents.py {build}/python all"),
     Check("octave", 0.5, "{root}/tests/long/octave_tutorial.py {crawler}"),
     # Other programs.
-    Check("peers", 60, "{root}/contrib/peers/compare.py {build}"),
+    Check("peers", 10, "{root}/contrib/peers/compare.py {build}"),
 )
 
 
