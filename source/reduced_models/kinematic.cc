@@ -52,11 +52,12 @@ namespace crawler
       energies.add_works(works);
     }
 
-    /// The strain at some points of the box, as far as it has no bounds of its own.
+    /// The strain at some points of the box, as far as it has no bounds of its own, or an enclosure is too wide to say
+    /// anything.
     FieldBounds
     bounds_of(const StrainHistory &strain, const SpaceTimeBox &box)
     {
-      if (const auto bounds = strain.bounds(box))
+      if (const auto bounds = strain.bounds(box); bounds && std::isfinite(bounds->value) && std::isfinite(bounds->rate))
         return *bounds;
       constexpr unsigned int n_s = 9, n_t = 3;
       std::vector<double> points, values(n_s);

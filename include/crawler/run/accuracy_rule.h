@@ -156,8 +156,7 @@ namespace crawler::accuracy_rule
     inline constexpr double least_order = 1.5, largest_order = 2.7;
     /// A time tolerance, relative to the strain, that is so many times too large or small is chosen anew.
     inline constexpr double too_large = 2., too_small = 0.05;
-    /// An inversion whose time is not known better, relative to it, may be none; meshes that move it more are too
-    /// coarse.
+    /// Relative to its time: an inversion that is known worse may be none; meshes that move it more are too coarse.
     inline constexpr double believed = 0.3, largest_change_of_inversion = 0.2;
     /// No displacement is known better than this, in lengths of the body.
     inline constexpr double round_off = 4e-15;
