@@ -79,8 +79,7 @@ namespace crawler
     }
 
     /// Where panels in time begin and end such that the strain changes by at most some times its size in each (two
-    /// waves of a sine), so that their eight points see all that it does, however short it is. Nothing if that takes
-    /// more than
+    /// waves of a sine), so that their points see all that it does, however short it is. Nothing if there are more than
     /// @p most.
     std::optional<std::vector<double>>
     time_panels(const StrainHistory &strain, std::vector<double> breaks, const std::size_t most)
