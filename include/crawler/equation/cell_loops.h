@@ -20,9 +20,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   };
 
   /// at_points = offset + factor * table nodal.
-  template <int n, typename Number>
+  template <int n, typename Number, typename Factor>
   inline void
-  evaluate(const double *table, const Number *nodal, const double factor, const double offset, Number *at_points)
+  evaluate(const double *table, const Number *nodal, const Factor &factor, const double offset, Number *at_points)
   {
     for (int p = 0; p < n; ++p)
     {
@@ -65,7 +65,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Number e[n], w[n], v[n];
 
     /// Without a velocity @p v at the nodes the body is at rest.
-    [[gnu::always_inline]] StateAtPoints(const ElementTables &tables, const double h, const Number *u, const Number *v)
+    template <typename Size>
+    [[gnu::always_inline]] StateAtPoints(const ElementTables &tables, const Size &h, const Number *u, const Number *v)
     {
       evaluate<n>(tables.derivatives, u, 1. / h, 0., e);
       for (int p = 0; p < n; ++p)
@@ -96,10 +97,16 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     evaluate<n>(tables.derivatives, v, 1. / h, 0., rate);
   }
 
-  /// Adds int N phi_i,s, and int f phi_i unless @p f is null.
-  template <int n, typename Number>
-  inline void
-  add_forces(const ElementTables &tables, const double h, const Number *N, const Number *f, Number *F)
+  /// Adds int N phi_i,s, and int f phi_i unless @p f is null, to the nodes from @p first to before @p end.
+  template <int n, typename Number, typename Size>
+  [[gnu::always_inline]] inline void
+  add_forces(const ElementTables &tables,
+             const Size &h,
+             const Number *N,
+             const Number *f,
+             Number *F,
+             const int first = 0,
+             const int end   = n)
   {
     Number force[n], friction[n];
     for (int p = 0; p < n; ++p)
@@ -109,33 +116,20 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int p = 0; p < n; ++p)
         friction[p] = h * tables.weights[p] * f[p];
       for (int p = 0; p < n; ++p)
-        for (int i = 0; i < n; ++i)
+        for (int i = first; i < end; ++i)
           F[i] += friction[p] * tables.values[p * n + i] + force[p] * tables.derivatives[p * n + i];
     }
     else
       for (int p = 0; p < n; ++p)
-        for (int i = 0; i < n; ++i)
+        for (int i = first; i < end; ++i)
           F[i] += force[p] * tables.derivatives[p * n + i];
   }
 
-  /// Adds the residual of a cell to @p F, without friction if @p v is null; returns the state.
-  template <int n, typename Number, typename Laws>
-  inline StateAtPoints<n, Number>
-  cell_residual(
-    const ElementTables &tables, const double h, const Laws &laws, const Number *u, const Number *v, Number *F)
-  {
-    const StateAtPoints<n, Number> at(tables, h, u, v);
-    Number N[n], f[n];
-    laws.forces(at.e, at.w, v != nullptr ? at.v : nullptr, N, f);
-    add_forces<n, Number>(tables, h, N, v != nullptr ? f : nullptr, F);
-    return at;
-  }
-
-  /// The force in the body @p N and the friction @p f at the points of a cell.
-  template <int n, typename Number, typename Laws>
-  inline void
+  /// The force in the body @p N and, unless @p v is null, the friction @p f at the points of a cell; returns the state.
+  template <int n, typename Number, typename Size, typename Laws>
+  [[gnu::always_inline]] inline StateAtPoints<n, Number>
   cell_forces(const ElementTables &tables,
-              const double h,
+              const Size &h,
               const Laws &laws,
               const Number *u,
               const Number *v,
@@ -143,13 +137,26 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
               Number *f)
   {
     const StateAtPoints<n, Number> at(tables, h, u, v);
-    laws.forces(at.e, at.w, at.v, N, f);
+    laws.forces(at.e, at.w, v != nullptr ? at.v : nullptr, N, f);
+    return at;
+  }
+
+  /// Adds the residual of a cell to @p F, without friction if @p v is null; returns the state.
+  template <int n, typename Number, typename Size, typename Laws>
+  inline StateAtPoints<n, Number>
+  cell_residual(
+    const ElementTables &tables, const Size &h, const Laws &laws, const Number *u, const Number *v, Number *F)
+  {
+    Number N[n], f[n];
+    const auto at = cell_forces<n>(tables, h, laws, u, v, N, f);
+    add_forces<n, Number>(tables, h, N, v != nullptr ? f : nullptr, F);
+    return at;
   }
 
   /// The derivatives at the points of a cell.
-  template <int n, bool by_state, typename Number, typename Laws>
+  template <int n, bool by_state, typename Number, typename Size, typename Laws>
   inline PointDerivatives<n, Number>
-  cell_derivatives(const ElementTables &tables, const double h, const Laws &laws, const Number *u, const Number *v)
+  cell_derivatives(const ElementTables &tables, const Size &h, const Laws &laws, const Number *u, const Number *v)
   {
     const StateAtPoints<n, Number> at(tables, h, u, v);
     PointDerivatives<n, Number> D;
@@ -158,10 +165,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   }
 
   /// dF/du (@p K, unless not by_state) and dF/dv (@p M) of a cell, dense blocks.
-  template <int n, bool by_state, typename Number, typename Laws>
+  template <int n, bool by_state, typename Number, typename Size, typename Laws>
   inline void
   cell_blocks(const ElementTables &tables,
-              const double h,
+              const Size &h,
               const Laws &laws,
               const Number *u,
               const Number *v,
@@ -171,7 +178,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     auto D = cell_derivatives<n, by_state, Number>(tables, h, laws, u, v);
     for (int p = 0; p < n; ++p)
     {
-      const double ds = h * tables.weights[p], d_by_s = tables.weights[p] * (1. / h);
+      const Size ds = h * tables.weights[p], d_by_s = tables.weights[p] * (1. / h);
       D.f_v[p] = ds * D.f_v[p];
       if constexpr (by_state)
         D.f_w[p] = tables.weights[p] * D.f_w[p]; // h * (1/h)
@@ -238,23 +245,39 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     sum.abs_friction += ds * (force > 0. ? force : -force);
   }
 
+  /// Displacement, velocity and densities at the points of a cell.
+  template <int n, typename Number>
+  struct CellDensities
+  {
+    Number u[n], v[n];
+    PointDensities<Number> at[n];
+
+    template <typename Size, typename Laws>
+    [[gnu::always_inline]] CellDensities(
+      const ElementTables &tables, const Size &h, const Laws &laws, const Number *u, const Number *v)
+    {
+      const StateAtPoints<n, Number> state(tables, h, u, v);
+      Number v_s[n];
+      evaluate<n>(tables.values, u, 1., 0., this->u);
+      evaluate<n>(tables.derivatives, v, 1. / h, 0., v_s);
+      laws.densities(state.e, state.w, state.v, v_s, at);
+      for (int p = 0; p < n; ++p)
+        this->v[p] = state.v[p];
+    }
+  };
+
   /// Adds the integrals of a cell to @p sum, which has the members of CellIntegrals (cell_kernels.h).
   template <int n, typename Number, typename Laws, typename Sums>
   inline void
   cell_integrals(
     const ElementTables &tables, const double h, const Laws &laws, const Number *u, const Number *v, Sums &sum)
   {
-    const StateAtPoints<n, Number> at(tables, h, u, v);
-    Number u_at[n], v_s[n];
-    evaluate<n>(tables.values, u, 1., 0., u_at);
-    evaluate<n>(tables.derivatives, v, 1. / h, 0., v_s);
-    PointDensities<Number> densities[n];
-    laws.densities(at.e, at.w, at.v, v_s, densities);
+    const CellDensities<n, Number> densities(tables, h, laws, u, v);
     for (int p = 0; p < n; ++p)
     {
       const double ds = h * tables.weights[p];
-      sum.displacement += ds * u_at[p];
-      add_densities(ds, densities[p], at.v[p], sum);
+      sum.displacement += ds * densities.u[p];
+      add_densities(ds, densities.at[p], densities.v[p], sum);
     }
   }
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

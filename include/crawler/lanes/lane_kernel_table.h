@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/lanes/group_kernels.h>
 #include <crawler/lanes/lane_kernels.h>
 
 /// The loops over all cells for a degree that is chosen at run time (included by lane_systems.h).
@@ -31,9 +32,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void (*backward)(int, const Pack *, Pack *);
     void (*complex_forward)(int, const Complex<Pack> *, Complex<Pack> *);
     void (*complex_backward)(int, const Complex<Pack> *, Complex<Pack> *);
+    int (*n_blocks)(int); ///< for which blocks have room
     Pack (*integral)(const LaneMesh<Pack> &, const Pack *);
     void (*end_derivatives)(const LaneMesh<Pack> &, int, const double *, const Pack *, Pack *);
-    void (*extremes)(const LaneMesh<Pack> &, int, const double *, const Pack *, Pack *, Pack *, Pack *, Pack *);
+    void (*extremes)(const LaneMesh<Pack> &, int, const double *, const Pack *, LaneLook<Pack> &);
   };
 
   template <typename Pack, int q>
@@ -49,32 +51,67 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                                                        LaneKernels<Pack, q>::template backward<Pack>,
                                                        LaneKernels<Pack, q>::template forward<Complex<Pack>>,
                                                        LaneKernels<Pack, q>::template backward<Complex<Pack>>,
+                                                       LaneKernels<Pack, q>::n_blocks,
                                                        LaneKernels<Pack, q>::integral,
                                                        LaneKernels<Pack, q>::end_derivatives,
                                                        LaneKernels<Pack, q>::extremes};
 
+  /// Kernels of one body whose cells are side by side.
+  template <int q>
+  constexpr LaneKernelTable<double>
+  kernels_of_groups()
+  {
+    LaneKernelTable<double> table = lane_kernel_table<double, q>;
+    table.residual                = GroupKernels<q>::residual;
+    table.balance                 = GroupKernels<q>::balance;
+    table.integrals               = GroupKernels<q>::integrals;
+    table.extremes                = GroupKernels<q>::extremes;
+    table.factorize               = GroupKernels<q>::template factorize<false>;
+    table.factorize_transposed    = GroupKernels<q>::template factorize<true>;
+    table.forward                 = GroupKernels<q>::template forward<double>;
+    table.backward                = GroupKernels<q>::template backward<double>;
+    table.complex_forward         = GroupKernels<q>::template forward<Complex<double>>;
+    table.complex_backward        = GroupKernels<q>::template backward<Complex<double>>;
+    table.n_blocks                = GroupKernels<q>::n_blocks;
+    return table;
+  }
+
+  template <int q>
+  constexpr LaneKernelTable<double> group_kernel_table = kernels_of_groups<q>();
+
+  /// Kernels for bodies with so many cells. Of one body alone the cells take the lanes if they fill half of them.
+  template <typename Pack, int q>
+  inline const LaneKernelTable<Pack> &
+  lane_kernels_for(const std::size_t n_cells)
+  {
+    if constexpr (PackTraits<Pack>::size == 1)
+      if (2 * n_cells >= std::size_t(CellGroup::width))
+        return group_kernel_table<q>;
+    return lane_kernel_table<Pack, q>;
+  }
+
   template <typename Pack>
   inline const LaneKernelTable<Pack> &
-  lane_kernels(const unsigned int degree)
+  lane_kernels(const unsigned int degree, const std::size_t n_cells)
   {
     switch (degree)
     {
       case 1:
-        return lane_kernel_table<Pack, 1>;
+        return lane_kernels_for<Pack, 1>(n_cells);
       case 2:
-        return lane_kernel_table<Pack, 2>;
+        return lane_kernels_for<Pack, 2>(n_cells);
       case 3:
-        return lane_kernel_table<Pack, 3>;
+        return lane_kernels_for<Pack, 3>(n_cells);
       case 4:
-        return lane_kernel_table<Pack, 4>;
+        return lane_kernels_for<Pack, 4>(n_cells);
       case 5:
-        return lane_kernel_table<Pack, 5>;
+        return lane_kernels_for<Pack, 5>(n_cells);
       case 6:
-        return lane_kernel_table<Pack, 6>;
+        return lane_kernels_for<Pack, 6>(n_cells);
       case 7:
-        return lane_kernel_table<Pack, 7>;
+        return lane_kernels_for<Pack, 7>(n_cells);
       default:
-        return lane_kernel_table<Pack, 8>;
+        return lane_kernels_for<Pack, 8>(n_cells);
     }
   }
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

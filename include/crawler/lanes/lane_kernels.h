@@ -191,6 +191,18 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
     }
 
+    static void
+    transpose(Pack *K)
+    {
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < i; ++j)
+        {
+          const Pack lower = K[i * n + j];
+          K[i * n + j]     = K[j * n + i];
+          K[j * n + i]     = lower;
+        }
+    }
+
     /// The factors of K + real M, and of K + (re + i im) M for each pair; with the transposed K if so wished.
     template <bool is_transposed>
     [[gnu::flatten]] static void
@@ -210,13 +222,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         Pack K[n * n], M[n * n];
         cell_blocks<n, true>(mesh.tables, mesh.sizes[c], laws, u + c * q, v + c * q, K, M);
         if constexpr (is_transposed)
-          for (int i = 0; i < n; ++i)
-            for (int j = 0; j < i; ++j)
-            {
-              const Pack lower = K[i * n + j];
-              K[i * n + j]     = K[j * n + i];
-              K[j * n + i]     = lower;
-            }
+          transpose(K);
         Pack *A = blocks + c * n * n;
         for (int i = 0; i < n * n; ++i)
           A[i] = K[i] + real * M[i];
@@ -229,6 +235,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           condense_cell<q>(B, complex_schur + 4 * (j * mesh.n_cells + c), any_pivot);
         }
       });
+    }
+
+    static int
+    n_blocks(const int n_cells)
+    {
+      return n_cells;
     }
 
     template <typename Number>
@@ -284,37 +296,34 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
     }
 
+    /// Compares the stretch at the sample @p place of a cell with the extremes so far.
+    template <typename Size>
+    [[gnu::always_inline]] static inline void
+    look_at_sample(
+      const double *derivatives, const Size &inverse_size, const Pack *u, const Pack &place, LaneLook<Pack> &look)
+    {
+      Pack w{};
+      for (int j = 0; j < n; ++j)
+        w += derivatives[j] * u[j];
+      w             = 1. + inverse_size * w;
+      look.least_at = w < look.least ? place : look.least_at;
+      look.least    = smaller(w, look.least);
+      look.most_at  = w > look.most ? place : look.most_at;
+      look.most     = w > look.most ? w : look.most;
+    }
+
     /// Smallest and largest stretch among the samples of all cells.
     static void
     extremes(const LaneMesh<Pack> &mesh,
              const int n_samples,
              const double *sample_derivatives,
              const Pack *u,
-             Pack *least,
-             Pack *least_at,
-             Pack *most,
-             Pack *most_at)
+             LaneLook<Pack> &look)
     {
-      *least    = broadcast<Pack>(HUGE_VAL);
-      *most     = broadcast<Pack>(-HUGE_VAL);
-      *least_at = *most_at = Pack{};
       for (int c = 0; c < mesh.n_cells; ++c)
-      {
-        const double inverse_size = 1. / mesh.sizes[c];
         for (int i = 0; i < n_samples; ++i)
-        {
-          Pack w;
-          const Pack place = broadcast<Pack>(c * n_samples + i);
-          w                = Pack{};
-          for (int j = 0; j < n; ++j)
-            w += sample_derivatives[i * n + j] * u[c * q + j];
-          w         = 1. + inverse_size * w;
-          *least_at = w < *least ? place : *least_at;
-          *least    = smaller(w, *least);
-          *most_at  = w > *most ? place : *most_at;
-          *most     = w > *most ? w : *most;
-        }
-      }
+          look_at_sample(
+            sample_derivatives + i * n, 1. / mesh.sizes[c], u + c * q, broadcast<Pack>(c * n_samples + i), look);
     }
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

@@ -22,6 +22,24 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return a + b;
   }
 
+  /// Sum of the squares of @p n numbers or the largest of them, by several sums that do not wait for each other.
+  template <bool largest, typename Pack>
+  inline Pack
+  squared_size(const Pack *x, const int n)
+  {
+    constexpr int n_sums = 8;
+    Pack sums[n_sums]    = {};
+    int d                = 0;
+    for (; d + n_sums <= n; d += n_sums)
+      for (int i = 0; i < n_sums; ++i)
+        sums[i] = added<largest>(sums[i], x[d + i] * x[d + i]);
+    for (; d < n; ++d)
+      sums[0] = added<largest>(sums[0], x[d] * x[d]);
+    for (int i = 1; i < n_sums; ++i)
+      sums[0] = added<largest>(sums[0], sums[i]);
+    return sums[0];
+  }
+
   template <typename Pack, int s>
   struct LaneStates
   {
@@ -83,20 +101,23 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     /// Takes a correction in the basis of the eigenvectors of A^-1 from z where @p moves; returns the sum of its
-    /// squares, or the largest of them.
+    /// squares, or the largest of them. Overwrites u.
     template <bool largest>
     Pack
     correct(const Pack *real, const Complex<Pack> *complex, const typename PackTraits<Pack>::Mask &moves)
     {
       Pack square{};
-      for (int d = 0; d < n; ++d)
-        for (int i = 0; i < s; ++i)
-        {
-          const Pack change = radau::from_eigenbasis(stages, setup.vectors, i, d, n, real, complex);
-          square            = added<largest>(square, change * change);
-          Pack &moved       = z[i * n + d];
-          moved             = moves ? moved - change : moved;
-        }
+      for (int i = 0; i < s; ++i)
+      {
+        Pack *const moved = z + i * n;
+#pragma GCC ivdep
+        for (int d = 0; d < n; ++d)
+          u[d] = radau::from_eigenbasis(stages, setup.vectors, i, d, n, real, complex);
+#pragma GCC ivdep
+        for (int d = 0; d < n; ++d)
+          moved[d] = moves ? moved[d] - u[d] : moved[d];
+        square = added<largest>(square, squared_size<largest>(u, n));
+      }
       return square;
     }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/lanes/lane_corners.h>
 #include <crawler/lanes/lane_engine.h>
 #include <crawler/lanes/lane_kernel_table.h>
 #include <crawler/lanes/lane_laws.h>
@@ -27,7 +28,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       : setup_(setup)
       , is_general_((setup.laws & LaneLaws::general) != 0)
       , general_(setup, host)
-      , kernels_(lane_kernels<Pack>(setup.degree))
+      , kernels_(lane_kernels<Pack>(setup.degree, setup.n_cells))
     {
       mesh_.n_cells = static_cast<int>(setup.n_cells);
       mesh_.sizes   = setup.sizes;
@@ -81,14 +82,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     look(const double *t, const Pack *u, const Pack *v, const Pack *m, const bool rates, LaneLook<Pack> &result)
     {
-      kernels_.extremes(mesh_,
-                        static_cast<int>(setup_.n_samples),
-                        setup_.sample_derivatives,
-                        u,
-                        &result.least,
-                        &result.least_at,
-                        &result.most,
-                        &result.most_at);
+      kernels_.extremes(mesh_, static_cast<int>(setup_.n_samples), setup_.sample_derivatives, u, result);
       if (!rates)
         return;
       if (is_general_)
@@ -116,14 +110,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       const std::size_t cells = setup_.n_cells, block = block_size(), corners = cells + 1;
       memory.piece(blocks_, block);
       memory.piece(schur_, 4 * cells);
-      memory.piece(lower_, corners);
-      memory.piece(pivot_, corners);
-      memory.piece(upper_, corners);
+      real_.lay_out(corners, memory);
       memory.piece(complex_blocks_, pairs * block);
       memory.piece(complex_schur_, pairs * 4 * cells);
-      memory.piece(complex_lower_, pairs * corners);
-      memory.piece(complex_pivot_, pairs * corners);
-      memory.piece(complex_upper_, pairs * corners);
+      for (LaneCorners<Number> &one : complex_)
+        one.lay_out(corners, memory);
     }
 
     /// Memory for slopes().
@@ -176,42 +167,43 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                 schur_,
                 complex_blocks_,
                 complex_schur_);
-      const int N = mesh_.n_cells;
-      factorize_corners(schur_, lower_, pivot_, upper_);
-      for (int j = 0; j < pairs; ++j)
-        factorize_corners(complex_schur_ + 4 * j * N,
-                          complex_lower_ + j * (N + 1),
-                          complex_pivot_ + j * (N + 1),
-                          complex_upper_ + j * (N + 1));
+      factorize_corners(pairs);
     }
 
     /// With K + (g/h) M.
     void
     solve(Pack *x) const
     {
-      kernels_.forward(mesh_.n_cells, blocks_, x);
-      solve_corners(lower_, pivot_, upper_, x);
-      kernels_.backward(mesh_.n_cells, blocks_, x);
+      solve_all(x, nullptr);
     }
 
-    /// With K + (l_j/h) M.
-    void
-    solve_complex(const int j, Number *x) const
-    {
-      const int N         = mesh_.n_cells;
-      const Number *block = complex_blocks_ + j * block_size();
-      kernels_.complex_forward(N, block, x);
-      solve_corners(complex_lower_ + j * (N + 1), complex_pivot_ + j * (N + 1), complex_upper_ + j * (N + 1), x);
-      kernels_.complex_backward(N, block, x);
-    }
-
-    /// The real system and those of all pairs, @p y [pair][unknown].
+    /// The real system and, unless @p y is null, K + (l_j/h) M for all pairs, @p y [pair][unknown].
     void
     solve_all(Pack *x, Number *y) const
     {
-      solve(x);
-      for (int p = 0; p < pairs; ++p)
-        solve_complex(p, y + p * n_unknowns());
+      const int N = mesh_.n_cells, q = static_cast<int>(setup_.degree), n = n_unknowns();
+      const int n_pairs = y != nullptr ? pairs : 0;
+      kernels_.forward(N, blocks_, x);
+      for (int j = 0; j < n_pairs; ++j)
+        kernels_.complex_forward(N, complex_blocks_ + j * block_size(), y + j * n);
+      for (int c = 0; c < N; ++c)
+      {
+        real_.eliminate(c, q, x);
+        for (int j = 0; j < n_pairs; ++j)
+          complex_[j].eliminate(c, q, y + j * n);
+      }
+      x[N * q] *= real_.pivot[N];
+      for (int j = 0; j < n_pairs; ++j)
+        y[j * n + N * q] *= complex_[j].pivot[N];
+      for (int c = N - 1; c >= 0; --c)
+      {
+        real_.substitute(c, q, x);
+        for (int j = 0; j < n_pairs; ++j)
+          complex_[j].substitute(c, q, y + j * n);
+      }
+      kernels_.backward(N, blocks_, x);
+      for (int j = 0; j < n_pairs; ++j)
+        kernels_.complex_backward(N, complex_blocks_ + j * block_size(), y + j * n);
     }
 
     /// The velocity @p v in which all forces balance; of general bodies by Newton's method from what @p v is before.
@@ -224,7 +216,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       if (!is_general_)
       {
         kernels_.balance(mesh_, u, nullptr, m, v, blocks_, schur_);
-        factorize_corners(schur_, lower_, pivot_, upper_);
+        factorize_corners(0);
         solve(v);
         return Pack{};
       }
@@ -233,7 +225,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       {
         evaluate(t, u, v, m, /*slopes=*/true);
         kernels_.balance(mesh_, u, v, m, correction, blocks_, schur_);
-        factorize_corners(schur_, lower_, pivot_, upper_);
+        factorize_corners(0);
         solve(correction);
         const auto is_done = left <= 1.; // a lane does not move because others do
         Pack change{}, size{};
@@ -267,42 +259,21 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     std::size_t
     block_size() const
     {
-      return std::size_t(setup_.degree + 1) * (setup_.degree + 1) * setup_.n_cells;
+      return std::size_t(setup_.degree + 1) * (setup_.degree + 1) * kernels_.n_blocks(mesh_.n_cells);
     }
 
-    /// Factors below the diagonal, 1/pivots, upper diagonal.
-    template <typename Type>
+    /// Of the real system and of the first @p n_pairs complex ones.
     void
-    factorize_corners(const Type *schur, Type *lower, Type *pivot, Type *upper) const
+    factorize_corners(const int n_pairs) const
     {
-      const int N   = mesh_.n_cells;
-      Type diagonal = schur[0];
+      const int N = mesh_.n_cells;
+      Pack diagonal;
+      Number diagonals[pairs];
       for (int c = 0; c < N; ++c)
       {
-        const Type *S = schur + 4 * c;
-        pivot[c]      = 1. / diagonal;
-        upper[c]      = S[1];
-        lower[c]      = S[2] * pivot[c];
-        diagonal      = S[3];
-        diagonal -= lower[c] * upper[c];
-        if (c + 1 < N)
-          diagonal += S[4];
-      }
-      pivot[N] = 1. / diagonal;
-    }
-
-    template <typename Type>
-    void
-    solve_corners(const Type *lower, const Type *pivot, const Type *upper, Type *x) const
-    {
-      const int N = mesh_.n_cells, q = static_cast<int>(setup_.degree);
-      for (int c = 0; c < N; ++c)
-        x[(c + 1) * q] -= lower[c] * x[c * q];
-      x[N * q] *= pivot[N];
-      for (int c = N - 1; c >= 0; --c)
-      {
-        x[c * q] -= upper[c] * x[(c + 1) * q];
-        x[c * q] *= pivot[c];
+        real_.factorize(c, N, schur_, diagonal);
+        for (int j = 0; j < n_pairs; ++j)
+          complex_[j].factorize(c, N, complex_schur_ + 4 * j * N, diagonals[j]);
       }
     }
 
@@ -311,7 +282,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     GeneralLaws<Pack> general_;
     LaneMesh<Pack> mesh_;
     const LaneKernelTable<Pack> &kernels_;
-    Pack *blocks_, *schur_, *lower_, *pivot_, *upper_;
-    Number *complex_blocks_, *complex_schur_, *complex_lower_, *complex_pivot_, *complex_upper_; ///< [pair][...]
+    Pack *blocks_, *schur_;
+    Number *complex_blocks_, *complex_schur_; ///< [pair][...]
+    LaneCorners<Pack> real_;
+    LaneCorners<Number> complex_[pairs];
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

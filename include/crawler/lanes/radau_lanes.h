@@ -215,12 +215,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       {
         system_.residual(start_, states_.u, states_.v, m_start_, real_);
         system_.solve(real_);
-        Pack square{};
-        for (int d = 0; d < system_.n_controlled(); ++d)
-          square = added<System<Pack, pairs>::largest>(square, real_[d] * real_[d]);
+        const Pack square = relative(squared_size<System<Pack, pairs>::largest>(real_, system_.n_controlled()), n_);
         for (int d = 0; d < n_; ++d)
           states_.u[d] = states_.y[d] - real_[d];
-        square     = relative(square, n_);
         bool again = false;
         for (int l = 0; l < lanes; ++l)
         {

@@ -58,10 +58,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     schur[3] = s11;
   }
 
-  /// Eliminates the inner nodes from the right-hand side @p y of the cell's nodes.
+  /// Solves for the inner nodes of the right-hand side @p y of the cell's nodes, those at its ends being 0.
   template <int q, typename Number>
   inline void
-  forward_cell(const Number *A, Number *y)
+  solve_inner(const Number *A, Number *y)
   {
     constexpr int n = q + 1;
     for (int i = 2; i < q; ++i)
@@ -73,11 +73,25 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         y[i] -= A[i * n + j] * y[j];
       y[i] *= A[i * n + i];
     }
+  }
+
+  /// Takes the inner nodes out of the right-hand side of the node @p end, 0 or q.
+  template <int q, typename Number>
+  inline void
+  eliminate_inner(const Number *A, const int end, Number *y)
+  {
     for (int i = 1; i < q; ++i)
-    {
-      y[0] -= A[i] * y[i];
-      y[q] -= A[q * n + i] * y[i];
-    }
+      y[end] -= A[end * (q + 1) + i] * y[i];
+  }
+
+  /// Eliminates the inner nodes from the right-hand side @p y of the cell's nodes.
+  template <int q, typename Number>
+  inline void
+  forward_cell(const Number *A, Number *y)
+  {
+    solve_inner<q>(A, y);
+    eliminate_inner<q>(A, 0, y);
+    eliminate_inner<q>(A, q, y);
   }
 
   /// From the solution at the end nodes to that at the inner ones.

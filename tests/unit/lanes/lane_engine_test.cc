@@ -190,6 +190,19 @@ TEST(LaneEngine, InstructionSetsAgree)
   }
 }
 
+/// The cells of one body are side by side in groups of a register's width, the last of which is not full.
+TEST(LaneEngine, CellsSideBySideAreThoseOfABodyInALane)
+{
+  LaneRuns runs;
+  for (unsigned int degree = 1; degree <= 8; ++degree)
+    for (const unsigned int cells : {1u, 3u, 4u, 7u, 8u, 16u, 21u})
+      add(runs,
+          wave(degree % 2 == 0 ? -1. : 1.3, 0.3),
+          degree % 3 == 0 ? "radau 9" : "radau 5",
+          {.degree = degree, .n_cells = cells, .tolerance = 1e-6, .initial_step = 1e-3});
+  expect_agreement(runs, *test::batch_engines().back(), single_engine());
+}
+
 /// A Simulation has the engine with one lane. In a batch that engine takes the same steps to the last bit.
 TEST(LaneEngine, ASimulationTakesTheStepsOfABatchWithOneLane)
 {
