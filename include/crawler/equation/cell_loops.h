@@ -5,8 +5,8 @@
 #include <crawler/equation/crawler_equation.h>
 
 /**
- * The integrals over one cell in the position form, for one body (Number is double) or for several side by side
- * (Number is a pack of them). Included by what compiles them; users want cell_kernels.h.
+ * Integrals over one cell in the position form, for one body (Number is double) or for several side by side (Number is
+ * a pack of them). Included by the files that compile them; users want cell_kernels.h.
  */
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
@@ -19,7 +19,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     const double *stiffness;   ///< [n nodes][n nodes]
   };
 
-  /// at_points = offset + factor * table nodal.
+  /// Interpolation to the points: at_points = offset + factor * table nodal.
   template <int n, typename Number>
   inline void
   evaluate(const double *table, const Number *nodal, const double factor, const double offset, Number *at_points)
@@ -34,22 +34,23 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   }
 
   /**
-   * The equation in a cell: the loops below are all that the program has, for any number type and any laws. Laws tell,
+   * Equation in a cell: the loops below are the only ones in the program, for any number type and any laws. Laws give,
    * at the n points of a cell, for strains e, stretches w and velocities v and their gradients v_s:
    *
    *   forces(e, w, v, N, f)        force in the body N and, unless v is null, friction per reference length f
    *   derivatives(e, w, v, D)      derivatives of both: PointDerivatives; without by_state those by v and v_s only
    *   densities(e, w, v, v_s, at)  PointDensities
    *
-   * A new term of the equation is a line in each of these, and in nothing else.
+   * A new term of the equation is a line in each of these, and nowhere else.
    */
   template <int n, typename Number>
   struct PointDerivatives
   {
-    Number f_v[n], f_w[n]; ///< of the friction by velocity and stretch
-    Number N_w[n];         ///< of the force in the body by the stretch; not set if the laws have one modulus k
-    Number f_u[n];         ///< of the friction by the place; not set unless the laws have_place()
-    Number N_rate[n];      ///< of the force in the body by the rate of the stretch; not set unless they have_rate()
+    Number f_v[n], f_w[n]; ///< derivatives of the friction by velocity and stretch
+    Number N_w[n];         ///< derivative of the force in the body by the stretch; not set if the laws have one modulus
+                           ///< k
+    Number f_u[n];         ///< derivative of the friction by the place; not set unless the laws have_place()
+    Number N_rate[n];      ///< derivative of the force in the body by the stretch rate; not set unless they have_rate()
   };
 
   template <typename Number>
@@ -64,7 +65,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   {
     Number e[n], w[n], v[n];
 
-    /// Without a velocity @p v at the nodes the body is at rest.
+    /// @p v at the nodes; null: the body is at rest.
     [[gnu::always_inline]] StateAtPoints(const ElementTables &tables, const double h, const Number *u, const Number *v)
     {
       evaluate<n>(tables.derivatives, u, 1. / h, 0., e);
@@ -78,7 +79,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
   };
 
-  /// Place, velocity, strain and rate of the stretch at the points of a cell.
+  /// Place, velocity, strain and stretch rate at the points of a cell.
   template <int n, typename Number>
   inline void
   cell_states(const ElementTables &tables,
@@ -131,7 +132,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     return at;
   }
 
-  /// The force in the body @p N and the friction @p f at the points of a cell.
+  /// Force in the body @p N and friction @p f at the points of a cell.
   template <int n, typename Number, typename Laws>
   inline void
   cell_forces(const ElementTables &tables,
@@ -146,7 +147,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     laws.forces(at.e, at.w, at.v, N, f);
   }
 
-  /// The derivatives at the points of a cell.
+  /// Derivatives at the points of a cell.
   template <int n, bool by_state, typename Number, typename Laws>
   inline PointDerivatives<n, Number>
   cell_derivatives(const ElementTables &tables, const double h, const Laws &laws, const Number *u, const Number *v)
@@ -157,7 +158,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     return D;
   }
 
-  /// dF/du (@p K, unless not by_state) and dF/dv (@p M) of a cell, dense blocks.
+  /// Derivatives dF/du (@p K, unless not by_state) and dF/dv (@p M) of a cell, dense blocks.
   template <int n, bool by_state, typename Number, typename Laws>
   inline void
   cell_blocks(const ElementTables &tables,
@@ -221,7 +222,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
   }
 
-  /// Adds what a point with the weight @p ds and the velocity @p v gives to @p sum, which has the members of
+  /// Adds the contribution of a point with the weight @p ds and the velocity @p v to @p sum, which has the members of
   /// CellIntegrals (cell_kernels.h).
   template <typename Number, typename Sums>
   inline void

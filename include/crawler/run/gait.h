@@ -32,7 +32,7 @@ namespace crawler
 
     double length = 1.; ///< of the body [length]
     std::optional<double> efficiency =
-      {}; ///< part of what any gait with this dissipation could (gait_efficiency.h) [1]
+      {}; ///< share of the largest displacement with this dissipation (gait_efficiency.h) [1]
 
     void
     exchange(auto &archive)

@@ -35,7 +35,7 @@ namespace crawler
       double value, error; ///< [its unit/unit of the entry]
     };
     std::vector<OfNumber> others = {};   ///< derivatives that are known
-    bool may_vary                = true; ///< false for an entry that must stay at its value
+    bool may_vary                = true; ///< true if the entry may be varied from its value
     double standard_deviation    = 0.;   ///< of the entry, if it is uncertain
 
     /// Derivative of a number by its key, the displacement included.
