@@ -344,12 +344,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         a[d] += factor * b[d];
     }
 
-    /// One correction; lanes that are done keep what they have. A lane is done if it would not change any more though
-    /// the residual is known anew. Returns whether that should be looked at.
+    /// Makes one correction; lanes that are done keep their values. A lane is done if it would not change any more
+    /// although the residual was computed anew. Returns true if the residual should be evaluated.
     bool
     correct()
     {
-      // On graded meshes round-off may be larger than what counts as settled.
+      // Round-off on graded meshes may be larger than `settled`.
       constexpr double settled = 1e-13, nearly_settled = 1e-8;
       const bool is_new   = n_directions_ == 0;
       const std::size_t n = std::size_t(s) * n_;
@@ -399,7 +399,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         if (!lane.iterating)
           continue;
         const double its_change = get_lane(change, l), its_size = get_lane(size, l);
-        const bool is_settled = its_change <= settled * its_size; // not if they are no numbers
+        const bool is_settled = its_change <= settled * its_size; // false for NaN
         if (is_new && (is_settled || (its_change <= nearly_settled * its_size && its_change >= 0.5 * lane.last_change)))
           lane.iterating = false;
         else if (is_settled)

@@ -114,7 +114,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       error              = filtered < least ? least : filtered;
     }
 
-    /// Accepts or rejects the step, and finds the size of the next one. @p keeps_try: what Newton's method has found
+    /// Accepts or rejects the step, and finds the size of the next one. @p keeps_try: the result of Newton's method
     /// before it became too slow is the next guess, since it tells the direction of the friction.
     void
     control_step(const int n_stages, const bool keeps_try)

@@ -271,7 +271,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return sum;
     }
 
-    /// The derivative by s at both ends, from a table of derivatives at @p n_samples places that begin and end there.
+    /// Derivatives by s at both ends, from a table of derivatives at @p n_samples places that begin and end there.
     static void
     end_derivatives(
       const LaneMesh<Pack> &mesh, const int n_samples, const double *sample_derivatives, const Pack *u, Pack *ends)

@@ -79,7 +79,7 @@ namespace crawler
     {
       std::unique_ptr<Discretization> discretization;
       std::unique_ptr<Assembler> assembler;
-      PositionForm *position = nullptr; ///< the assembler, if the form is that
+      PositionForm *position = nullptr; ///< the assembler, if it has this form
       StretchForm *stretch   = nullptr;
       std::unique_ptr<StateVelocity> velocity;
       std::unique_ptr<EndPower> end_power; ///< created once it is needed
