@@ -6,7 +6,7 @@
 
 namespace crawler
 {
-  /// At one time; lists over the points of the quadrature.
+  /// State at one time; lists over the points of the quadrature.
   struct StrainFunctional::State
   {
     explicit State(const std::size_t n)
@@ -139,7 +139,7 @@ namespace crawler
         }
       else
       {
-        std::vector<double> &by_m = state.by_rate, &by_force = state.by_B; // of g v
+        std::vector<double> &by_m = state.by_rate, &by_force = state.by_B; // derivatives by m and g v
         for (std::size_t i = 0; i < n_; ++i)
           by_m[i] = -state.m[i] * e_t[i] > 0. ? -weight * w[i] * e_t[i] : 0.;
         space_.running_integral_transposed(by_m, by_force);

@@ -24,7 +24,8 @@ namespace crawler
       return {1. + e.strain, e.s, e.t};
     }
 
-    /// Of quadrature alone: the motion of the kinematic level is one that a body can have. That of a series is not.
+    /// Sets the error, by quadrature alone, of the kinematic level, whose motion a body can have. That of a series is
+    /// not.
     void
     set_error_of_efficiency(const std::string &key, const std::optional<double> &efficiency, SimulationResult &result)
     {
@@ -86,7 +87,7 @@ namespace crawler
     result.net_friction   = motion.net_friction;
   }
 
-  /// Is the error as small as was asked for?
+  /// Fails the result unless its error is as small as requested.
   void
   ReducedModel::judge(SimulationResult &result, const double accuracy) const
   {
