@@ -85,7 +85,7 @@ namespace crawler
       return stride && *stride <= 1. + 1e-9 ? stride : std::nullopt;
     }
 
-    /// A backward sweep for each quantity, and one that puts together what they give.
+    /// Sweeps: a backward one for each quantity, and one that assembles their results.
     class Sweep
     {
     public:

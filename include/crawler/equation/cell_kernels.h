@@ -17,10 +17,10 @@ namespace crawler
     const double *cell_size;
     const ReferenceElement *element;
     const FrictionLaw *friction;
-    double k;        ///< elastic modulus
-    const double *u; ///< displacement at the nodes
-    const double *v; ///< velocity at the nodes; may be null in residual(), for no friction
-    const double *m; ///< active stress at the quadrature points
+    double k;                                ///< elastic modulus
+    const double *u;                         ///< displacement at the nodes
+    const double *v;                         ///< velocity at the nodes; may be null in residual(), for no friction
+    const double *m;                         ///< active stress at the quadrature points
     const PointLaws<double> *laws = nullptr; ///< laws of a general scene, in place of k, m and friction
   };
 

@@ -474,7 +474,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Pack *lambda_, *zeta_;                   ///< [unknown]
     Pack *mu_, *old_mu_;                     ///< [stage][unknown] of this step, and of the following one
     Pack *K_mu_, *M_mu_, *residual_, *real_; ///< products, and right-hand sides in both bases
-    Pack *directions_; ///< [direction][stage][unknown], then their images under the equations
+    Pack *directions_;                       ///< [direction][stage][unknown], then their images under the equations
     int n_directions_ = 0;
     Pack *by_u_, *by_velocity_; ///< [stage][unknown] sources
     double *scratch_;           ///< scratch of one lane

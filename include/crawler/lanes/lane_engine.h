@@ -196,8 +196,8 @@ namespace crawler
     const double *end           = nullptr;           ///< [unknowns] last state
     const unsigned char *starts = nullptr;           ///< [n_steps] true if a body starts anew with this step; null:
                                                      ///< never
-    const double *gradient      = nullptr; ///< [unknowns] derivative of the quantity of interest by the last state
-    bool has_sources            = false;   ///< true if the quantity of interest depends on the steps, too
+    const double *gradient = nullptr; ///< [unknowns] derivative of the quantity of interest by the last state
+    bool has_sources       = false;   ///< true if the quantity of interest depends on the steps, too
   };
 
   /// Derivatives of the quantity of interest by the states of a step themselves. The arrays are 0 before.

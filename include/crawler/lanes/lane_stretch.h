@@ -25,9 +25,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   class StretchSystem
   {
   public:
-    using Number                  = Complex<Pack>;
-    static constexpr int lanes    = PackTraits<Pack>::size;
-    static constexpr bool largest = true; ///< the size of a vector is its largest element, else the mean square
+    using Number                      = Complex<Pack>;
+    static constexpr int lanes        = PackTraits<Pack>::size;
+    static constexpr bool largest     = true;  ///< the size of a vector is its largest element, else the mean square
     static constexpr bool gives_rates = false; ///< for LaneHost::look_inside
     static constexpr bool keeps_tries = false;
 

@@ -11,7 +11,7 @@ namespace crawler
   /// Estimated model errors of the displacement of the approximate levels, in natural units.
   struct ModelErrors
   {
-    bool known          = false;     ///< false if a stretch is not positive, or if the corrections do not become
+    bool known = false;              ///< false if a stretch is not positive, or if the corrections do not become
                                      ///< smaller
     double perturbation = 0.;        ///< error of the series; only for the optimal wave
     double kinematic    = 0.;        ///< error of the body with the approximate strain

@@ -81,9 +81,9 @@ namespace crawler
     std::optional<EnergyBalance> energy_balance;
     /// Energy residual of a balance that is discarded, since works that do not balance are not known [1].
     std::optional<double> residual_of_unknown_works;
-    bool jumps_move     = false; ///< true if the energy balance's integrals in time are not those of a smooth active
-                                 ///< stress
-    double net_friction = 0.;    ///< largest |int g v ds| over largest int |g v| ds, both over time [1]
+    bool jumps_move = false;  ///< true if the energy balance's integrals in time are not those of a smooth active
+                              ///< stress
+    double net_friction = 0.; ///< largest |int g v ds| over largest int |g v| ds, both over time [1]
 
     using Extreme = crawler::Extreme;
     Extreme min_stretch, max_stretch;
