@@ -217,7 +217,7 @@ namespace crawler
   {
     DisplacementError &error = result.error.emplace();
     double total             = choice.promised_error;
-    std::optional<double> space; // of the total, if it was measured
+    std::optional<double> space; // part of the total, if it was measured
     if (finer != nullptr)
     {
       if (finer->time.status != Status::finished ||

@@ -201,7 +201,7 @@ namespace crawler
 
       const GradedTask &task_;
       Numerics now_;
-      const unsigned int n_pieces_; ///< of the body, between breaks
+      const unsigned int n_pieces_; ///< number of pieces of the body, between breaks
       SimulationResult result_;
       double wanted_ = 0., time_change_ = 0., space_change_ = 0.;
       double rest_         = 0.; ///< last change by more cells, if no more are admitted

@@ -271,7 +271,7 @@ namespace crawler
         double value;        ///< extrapolated value
         double work    = 0.; ///< extrapolated work of the active stress; 0 if it was not computed
         double change  = 0.,
-               settled = HUGE_VAL; ///< of the value itself and of the extrapolated one since the last level
+               settled = HUGE_VAL; ///< changes of the value itself and of the extrapolated one since the last level
       };
 
       /// Error by thin features: diffusion smooths the stretch over `length` in a stride, and the displacements of
@@ -428,8 +428,7 @@ namespace crawler
         else if (latest_.inversion)
         {
           result = extrapolated_;
-          if (std::isfinite(space_error_)) // Accuracy, which is relative to the duration, requires nothing of an early
-                                           // one
+          if (std::isfinite(space_error_)) // Accuracy, relative to the duration, does not bind an early one
             result.inversion_error =
               std::max(space_error_, least_part * std::min(wanted(), believed * latest_.inversion->t)) + time_error_;
           end_before_inversion(result);

@@ -170,7 +170,7 @@ namespace crawler
                                 : "the error of the displacement is not known: steeper fronts have no answer";
       }
 
-      RunParameters parameters_; ///< of the runs
+      RunParameters parameters_; ///< parameters of the runs
       const Scene &scene_;
       const AnswerOf &answer_of_;
       Answer answer_;

@@ -76,7 +76,7 @@ namespace crawler
         if (user_cells_ && (user_tolerance_ || fixed) && mesh != MeshKind::adaptive)
         {
           choice_.numerics.n_cells   = *user_cells_;
-          choice_.numerics.tolerance = user_tolerance_.value_or(1e-10 * L_); // of Newton's method only
+          choice_.numerics.tolerance = user_tolerance_.value_or(1e-10 * L_); // tolerance of Newton's method only
           choice_.explanation        = "cells and time steps as set by the user";
           return choice_;
         }
@@ -101,8 +101,7 @@ namespace crawler
           stretch_form();
           return choice_;
         }
-        // Steep solutions, not fine ones, remain unresolved by few cells if the active stress is smooth: fronts of
-        // friction.
+        // Solutions unresolved by few cells are steep, not fine, if the active stress is smooth: fronts of friction.
         const bool may_be_steep = may_be_stretch() && scene_.friction_exponent() < 0. &&
                                   is_cheaper_than_many_cells(L_ / scales_.length, accuracy_);
         bool enough = false;
@@ -210,7 +209,7 @@ namespace crawler
       {
         if (!scene_.is_plain() || !scales_.is_smooth || scales_.sudden > sudden_part * std::sqrt(accuracy_))
           return false;
-        double time = T_; // in which the active stress changes
+        double time = T_; // time in which the active stress changes
         for (const StepLimit &limit : scales_.step_limits)
           time = std::min(time, limit.longest);
         return std::sqrt(stiffness_over_friction() * time / T_) * degree * n_cells >= widest_hidden_layer;
@@ -420,8 +419,7 @@ namespace crawler
         return !may_be_steep || choice_.numerics.n_cells <= most_uniform_cells;
       }
 
-      /// Chooses an adaptive mesh: pilots measure the strain, to which its tolerance is relative, and the number of
-      /// steps.
+      /// Chooses an adaptive mesh: pilots measure the strain, which scales its tolerance, and the number of steps.
       void
       adaptive()
       {
@@ -460,8 +458,7 @@ namespace crawler
         const double part = parameters_.discretization.mesh_tolerance.value_or(
           std::min(accuracy_ / indicator_factor, tighter * resolved));
         n.mesh.tolerance = part * strain;
-        // Method bdf restarts with each mesh, a one-step method continues; but where the stretch collapses bdf is
-        // faster.
+        // Method bdf restarts with each mesh, unlike one-step methods; but where the stretch collapses it is faster.
         if (adaptive_steps_ && pilot_.min_stretch.value > emptied)
           n.integrator = "radau 5";
       }
@@ -706,7 +703,7 @@ namespace crawler
       const double T_, L_, accuracy_, scale_;
       const bool adaptive_steps_;
       TimeParameters pilot_time_;
-      std::optional<CycleWish> cycles_; ///< of pilots
+      std::optional<CycleWish> cycles_; ///< cycle request of pilots
       NumericsChoice choice_;
       SimulationResult pilot_; ///< last one that counts
       double tolerance_ = 0., size_ = 0.;

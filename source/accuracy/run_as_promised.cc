@@ -261,8 +261,7 @@ namespace crawler
         if (has_tries && first_.least_error <= wanted())
           try
           {
-            // Smooth solutions need few more cells; where these have not helped errors fall with a power of the cell
-            // size.
+            // Smooth solutions need few more cells; where these do not help errors fall by a power of the cell size.
             const double total = result_.error->total;
             make_finer(answer_.refinements == 0 || !(total > wanted())
                          ? refined_cells
@@ -303,8 +302,7 @@ namespace crawler
         return std::isnan(wanted()) || total <= wanted() || stopped;
       }
 
-      /// True if the energy balance closes. If not, a finer run is needed, too; should that not help, it is left to the
-      /// self-check.
+      /// True if the energy balance closes. If not, a finer run is tried, too; the self-check judges the last one.
       bool
       closes() const
       {
@@ -339,8 +337,7 @@ namespace crawler
       SimulationResult &result_ = answer_.result;
     };
 
-    /// Answer of the family, or of the position form if it meets Accuracy where the family does not, or comes nearer to
-    /// it.
+    /// Answer of the family, or of the position form if that alone meets Accuracy, or comes nearer to it.
     Answer
     better_of_both_forms(const RunParameters &parameters,
                          const Scene &scene,

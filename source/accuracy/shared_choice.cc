@@ -56,7 +56,7 @@ namespace crawler
       {
         bool finished = false;
         std::vector<double> displacements;
-        double cost = std::numeric_limits<double>::infinity(); ///< of the time integration
+        double cost = std::numeric_limits<double>::infinity(); ///< cost of the time integration
       };
 
       /// Begins with the finest of the choices for all examples, with the tolerance relative to the displacement.

@@ -301,8 +301,7 @@ namespace crawler
       double fine_difference_ = 0., coarse_difference_ = 0.;
     };
 
-    /// Limits that make no step longer than the time in which m can change by the largest |m|: where it is fast, and
-    /// elsewhere.
+    /// Limits of steps to the time in which m can change by the largest |m|: where it is fast, and elsewhere.
     std::vector<StepLimit>
     step_limits(const std::vector<FastChange> &changes,
                 const double largest,

@@ -193,7 +193,7 @@ namespace crawler
               return;
             }
             fine_forces_.evaluate(times_[i], steps_.time(step), states[i]);
-            if (round + 1 >= rounds) // of the last two
+            if (round + 1 >= rounds) // the last two rounds
             {
               fine_.evaluate(mu + i * n, mu_at, mu_s);
               for (std::size_t p = 0; p < fine_.size(); ++p)
@@ -216,7 +216,7 @@ namespace crawler
       LaneAdjoint adjoint_;
       const LaneSetup &setup_;
       const RadauTableau &tableau_;
-      const LaneRecord steps_; ///< with the states at the stages of the method with more of them
+      const LaneRecord steps_; ///< steps with the states at the stages of the method with more of them
       BackwardStages stages_;
       const CellPoints cells_, fine_;
       const Bubbles bubbles_;
@@ -224,8 +224,8 @@ namespace crawler
       ForcesAtPoints forces_, fine_forces_;
       const std::size_t n_bubbles_;
       StateAtPoints at_;
-      std::vector<StateAtPoints> fine_at_; ///< of the stages, without bubbles
-      std::vector<double> times_;          ///< of the stages
+      std::vector<StateAtPoints> fine_at_; ///< points of the stages, without bubbles
+      std::vector<double> times_;          ///< times of the stages
       SweptErrors result_{};
       double before_last_ = 0.; ///< error in space with one round less, in natural units
       bool lost_          = false;

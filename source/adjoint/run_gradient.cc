@@ -46,7 +46,7 @@ namespace crawler
       struct Change
       {
         std::array<double, 4> sums = {};
-        double at_breaks           = 0.; ///< by jumps at start and end, or that come together where that is not known
+        double at_breaks           = 0.; ///< change by jumps at start and end, or that come together; infinity: unknown
       };
       std::array<std::unique_ptr<ForcesOfScene>, 4> forces;
       std::array<double, 4> strides = {}; ///< the last ones, if they are known
@@ -60,7 +60,7 @@ namespace crawler
     {
       StretchPlace place;
       std::size_t step;
-      std::vector<double> weights; ///< of the stages; the start has the rest
+      std::vector<double> weights; ///< weights of the stages; the start has the rest
       std::size_t cell           = 0;
       std::vector<double> slopes = {};
       double strain              = 0.;
@@ -69,12 +69,12 @@ namespace crawler
     /// Adjoint of a requested quantity in all steps, and its value.
     struct Adjoint
     {
-      std::size_t slot;                      ///< of all_quantities, and behind them the stretches
+      std::size_t slot;                      ///< index in all_quantities, followed by the stretches
       Quantity quantity;                     ///< the displacement if it is none of these
-      StretchInRun *stretch;                 ///< if it is one
+      StretchInRun *stretch;                 ///< null unless a stretch is asked for
       std::vector<double> mu;                ///< [step][stage][unknown]
       std::vector<std::vector<double>> zeta; ///< [step], mostly empty
-      double value = 0.;                     ///< in natural units
+      double value = 0.;                     ///< value in natural units
     };
 
     /// Last stride, in units of the duration, if the active stress declares its length.
@@ -515,7 +515,7 @@ namespace crawler
       std::vector<StretchInRun> stretches_;
       std::vector<Adjoint> adjoints_;
       bool keeps_stress_ = true;
-      std::optional<double> stride_;  ///< of the run, if it is known
+      std::optional<double> stride_;  ///< stride of the run, if it is known
       std::size_t before_stride_ = 0; ///< the step that ends where the last stride starts
       StateAtPoints at_, at_ends_;
       std::vector<double> mu_, mu_s_, zeta_, zeta_s_; ///< adjoint at the points, and its derivatives by s

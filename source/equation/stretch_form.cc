@@ -145,7 +145,7 @@ namespace crawler
       const auto to     = [&](const std::size_t other) { return (w[other] - w[j]) / (0.5 * (h[j] + h[other])); };
       const double left = j > 0 ? -to(j - 1) : to(j + 1), right = j + 1 < n ? to(j + 1) : left;
       slopes[j] = left * right > 0. ? std::copysign(std::min(std::abs(left), std::abs(right)), left) * h[j] : 0.;
-      if (j == 0 || j + 1 == n) // not below 0 at the end of the body
+      if (j == 0 || j + 1 == n) // keeps it above 0 at the end of the body
         slopes[j] = std::clamp(slopes[j], -2. * w[j], 2. * w[j]);
     }
     return slopes;

@@ -40,7 +40,7 @@ namespace crawler
       }
     };
 
-    /// Motion with f = m_s + k e_s, the velocity of leading order c sum a sin q(s+ct) + b cos q(s+ct); B_t is f(s) -
+    /// Motion with f = m_s + k e_s = c sum a sin q(s+ct) + b cos q(s+ct), the leading-order velocity; B_t = f(s) -
     /// f(0).
     Motion
     motion_of(const NaturalWave &wave, const std::size_t n_s, const std::size_t n_t)

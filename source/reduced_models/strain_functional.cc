@@ -112,7 +112,7 @@ namespace crawler
       const double *const e = &samples.strain[first], *const e_t = &samples.rate[first];
       double *const by_e = &result.strain[first], *const by_rate = &result.rate[first];
       const double weight = time_weights_[time];
-      if (number == stress_work && weight == 0.) // its energies at start and end
+      if (number == stress_work && weight == 0.) // energies at start and end
         for (std::size_t i = 0; i < n_; ++i)
           by_e[i] = (time + 1 == times_.size() ? 1. : -1.) * k[i] * w[i] * e[i];
       if (weight == 0.)

@@ -95,16 +95,16 @@ namespace crawler
         bool has_known_ends = true;           ///< see Assembler
         Units units;
         TimeSegments segments;
-        std::optional<Scene> scene; ///< in natural units, if it is general
+        std::optional<Scene> scene; ///< general scene, in natural units
         std::optional<HostLaws> laws;
-        std::unique_ptr<FeedbackAtPoints> end_feedback; ///< at the ends of the body, if there is one
+        std::unique_ptr<FeedbackAtPoints> end_feedback; ///< feedback at the ends of the body, if there is one
         std::vector<double> output_times;               ///< ends of the segments, and those that the record needs
         std::vector<unsigned char> restarts;            ///< flags of those at which a new segment starts
         std::vector<StepLimit> limits;
         std::optional<Recorder> recorder;
-        std::unique_ptr<ActiveStressAtPoints> stress; ///< at the quadrature points and the ends of the body
+        std::unique_ptr<ActiveStressAtPoints> stress; ///< stress at the quadrature points and the ends of the body
         std::optional<StressWatch> watch;
-        std::vector<double> breaks; ///< in space, in lengths of the body
+        std::vector<double> breaks; ///< breaks in space, in lengths of the body
         std::vector<double> m;
         std::vector<std::array<double, 2>> end_stress; ///< m at the ends, in the stages of the step that is tried
         std::size_t n_stress_calls = 0;
@@ -215,8 +215,7 @@ namespace crawler
         lane.recorder->see_step(0., false, 1., 1., [](double) { return Recorder::BodySample{rest, 0.}; });
       }
 
-      /// Supplies m: the engine asks for it at the start of a run or segment, and then in all stages of each step it
-      /// tries.
+      /// Supplies m, asked for at the start of a run or segment, and then in all stages of each step that is tried.
       static void
       stress(void *context, const unsigned int l, const double t, double *m)
       {

@@ -24,8 +24,7 @@ namespace crawler
       return {1. + e.strain, e.s, e.t};
     }
 
-    /// Sets the error, by quadrature alone, of the kinematic level, whose motion a body can have. That of a series is
-    /// not.
+    /// Sets the error, by quadrature alone, for the kinematic level; the motion of a series is not one of a body.
     void
     set_error_of_efficiency(const std::string &key, const std::optional<double> &efficiency, SimulationResult &result)
     {
@@ -210,7 +209,7 @@ namespace crawler
       ends.push_back(static_cast<double>(i) / GaitMeter::n_pieces);
     replay(meter.times(), ends, [&](const double t, const State &state) {
       meter.see(state.fields.displacement, state.displacement);
-      meter.see_extremes(result.min_stretch.value, result.max_stretch.value); // of the whole motion
+      meter.see_extremes(result.min_stretch.value, result.max_stretch.value); // extremes of the whole motion
       meter.see_extremes(1. + state.smallest.strain, 1. + state.largest.strain);
       meter.see_step(t, state.displacement, &state.energies);
       return true;

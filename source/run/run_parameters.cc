@@ -65,7 +65,7 @@ namespace crawler
                          "Discretization/Formulation");
     }
 
-    /// Rejects, for general scenes, the settings that only plain scenes have.
+    /// Requires settings that fit a general scene.
     void
     require_general(const RunParameters &p, const Scene &scene)
     {

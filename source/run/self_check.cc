@@ -32,8 +32,7 @@ namespace crawler
 
   namespace
   {
-    /// Covers the energy residual, which stems from the errors of all energies; any one of them may account for all of
-    /// it.
+    /// Covers the energy residual |W - Q - (elastic energy) ...|: any one of the energies may account for all of it.
     void
     cover_residual(SimulationResult &result)
     {

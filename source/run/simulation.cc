@@ -409,8 +409,7 @@ namespace crawler
     return outcome;
   }
 
-  /// Starts a run of its own from the last accepted state: the active stress has jumped, and with it velocities and all
-  /// derivatives.
+  /// Starts anew from the last accepted state: the active stress has jumped, and so have velocities and derivatives.
   void
   Simulation::begin_segment()
   {

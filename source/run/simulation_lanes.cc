@@ -41,7 +41,7 @@ namespace crawler
             {end.max_stretch, lanes.tables().place_of_sample(end.max_sample)}};
   }
 
-  /// Observes the stretch of stage @p i of an accepted step. Its end is left to the full evaluation, if there is one.
+  /// Observes the stretch of stage @p i of an accepted step; with observers its end has that of run_->stretch.
   void
   Simulation::see_stretch_of_lanes(const unsigned int i)
   {

@@ -37,8 +37,7 @@ namespace crawler
     }
   }
 
-  /// Continues with PETSc from the last accepted state, with a step as small as the first one, or as the engine wanted
-  /// it.
+  /// Continues with PETSc from the last accepted state, with a step as small as the first one or the engine's.
   void
   Simulation::go_on_with_petsc(const TimeOutcome &outcome)
   {

@@ -123,8 +123,7 @@ namespace crawler
     search(const Pieces &E)
     {
       const std::size_t half = E.n / 2, n_table = steps_per_wave * half + 1;
-      // Folding of the body about its middle: cosines see the even part, sines the odd one, and both directions are
-      // one.
+      // Folding the body about its middle: cosines see the even part, sines the odd one; both directions are one.
       std::vector<Complex> even(half), odd(half);
       std::vector<double> cosines(half, 1.), sines(half, 0.);
       std::vector<std::array<double, 2>> step(half);

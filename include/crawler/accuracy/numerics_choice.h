@@ -42,8 +42,7 @@ namespace crawler
     /// relative to the widest that fit; 0: the jumps themselves.
     bool has_fronts   = false;
     double front_part = 0.;
-    /// Floor of the size of the displacement, which is known after the run [length]; not a number if the user chose the
-    /// numerics.
+    /// Floor of the size of the displacement, known after the run [length]; NaN if the user chose the numerics.
     double least_size = std::numeric_limits<double>::quiet_NaN();
     /// Advice for an Accuracy that is not met; empty if there is none.
     std::string advice;

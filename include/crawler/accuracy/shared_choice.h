@@ -21,8 +21,8 @@ namespace crawler
   struct SharedChoice
   {
     NumericsChoice choice;
-    double relative_tolerance; ///< of the time integration, relative to the size of the displacement
-    std::vector<double> sizes; ///< of the displacements of the examples [length]
+    double relative_tolerance; ///< tolerance of the time integration, relative to the size of the displacement
+    std::vector<double> sizes; ///< sizes of the displacements of the examples [length]
 
     /// Numerics of a scene whose displacement is about of this @p size [length].
     NumericsChoice

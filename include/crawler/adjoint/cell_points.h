@@ -68,7 +68,7 @@ namespace crawler
   private:
     const LaneSetup &setup_;
     const std::size_t per_cell_;
-    std::vector<double> places_, weights_, values_, slopes_; ///< of a cell of size 1: [point], [point][node]
+    std::vector<double> places_, weights_, values_, slopes_; ///< tables of a cell of size 1: [point], [point][node]
     std::vector<double> points_;
   };
 
@@ -107,6 +107,6 @@ namespace crawler
     const RadauTableau &tableau_;
     std::size_t step_ = 0;
     double time_      = 1.;
-    std::vector<double> y_, u_, v_; ///< at the start of the step; in the stage
+    std::vector<double> y_, u_, v_; ///< state at the start of the step; in the stage
   };
 } // namespace crawler

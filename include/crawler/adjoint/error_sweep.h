@@ -16,7 +16,7 @@ namespace crawler
     double space_change;        ///< change by the last improvement of the part that the elements cannot represent
     std::vector<double> of_steps, of_cells;
 
-    /// True if the estimate of the part in space settles: it does not where a coarse mesh misses the motion of a soft
+    /// True if the estimate of the part in space settles, unlike on a coarse mesh that misses the motion of a soft
     /// body.
     bool
     is_good() const

@@ -17,7 +17,7 @@ namespace crawler
   {
     std::array<const Scene *, 4> scenes;
     double step;               ///< d, in units of p
-    bool is_one_sided = false; ///< where p is at a limit
+    bool is_one_sided = false; ///< true where p is at a limit
   };
 
   /// Sensitivity of the displacement to a local change of the body: for k(s) (1 + x(s)) it is int density x ds.

@@ -73,8 +73,8 @@ namespace crawler
     virtual ConstVector
     displacement(ConstVector y) const = 0;
 
-    /// Stretches of the cells, valid until the next call; empty in the position form, where they follow from the
-    /// displacement.
+    /// Stretches of the cells, valid until the next call; empty in the position form, where the displacement gives
+    /// them.
     virtual ConstVector
     stretch(ConstVector) const
     {

@@ -16,7 +16,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   {
     static constexpr bool has_one_modulus = true;
     Number k;
-    const Number *m; ///< at the points
+    const Number *m; ///< active stress at the points
     Friction friction;
 
     static constexpr bool

@@ -47,8 +47,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   struct PointDerivatives
   {
     Number f_v[n], f_w[n]; ///< derivatives of the friction by velocity and stretch
-    Number N_w[n];         ///< derivative of the force in the body by the stretch; not set if the laws have one modulus
-                           ///< k
+    Number N_w[n];         ///< derivative of the force in the body by the stretch; not set if laws have one k
     Number f_u[n];         ///< derivative of the friction by the place; not set unless the laws have_place()
     Number N_rate[n];      ///< derivative of the force in the body by the stretch rate; not set unless they have_rate()
   };

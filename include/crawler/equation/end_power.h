@@ -18,8 +18,7 @@ namespace crawler
     double
     operator()(double t, std::span<const double> y, std::span<const double> v);
 
-    /// Power from known values at s = 0 and L: velocity, and the stretch and its rate, which only a local feedback
-    /// sees.
+    /// Power from known velocities at s = 0 and L, and the stretches and rates there, used by local feedback only.
     struct Ends
     {
       double t;

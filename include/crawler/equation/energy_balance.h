@@ -26,7 +26,7 @@ namespace crawler
     double positive_work  = 0.; ///< int int max(-m zeta_st, 0) ds dt, not a number if it is not known [energy]
     double exchanged_work = 0.; ///< int int |m zeta_st| ds dt [energy]
     double end_work       = 0.; ///< int [m v] from s = 0 to L dt [energy]
-    double elastic_energy = 0.; ///< of the present state [energy]
+    double elastic_energy = 0.; ///< elastic energy of the present state [energy]
     double transfer_loss  = 0.; ///< elastic energy lost by changes of the mesh [energy]
     double initial_energy = 0.; ///< elastic energy at t = 0, of a body that starts stretched [energy]
 
@@ -98,7 +98,7 @@ namespace crawler
   private:
     struct Point
     {
-      double offset; ///< from the start of the step [time]: steps may be as short as round-off of the time
+      double offset; ///< time from the start of the step [time]: steps may be as short as round-off of the time
       Rates rates;
     };
     std::deque<Point> points_; ///< newest first

@@ -38,8 +38,8 @@ namespace crawler
     evaluate(std::span<const double> u, std::span<const double> v);
 
     std::vector<double> force; ///< b c d v [velocity]; times g(w) it is the friction per reference length
-    std::vector<double> by_v;  ///< its derivative by v
-    std::vector<double> by_u;  ///< its derivative by u
+    std::vector<double> by_v;  ///< derivative by v
+    std::vector<double> by_u;  ///< derivative by u
 
     BadLaw
     describe(long point, const Units &units) const;

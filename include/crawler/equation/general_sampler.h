@@ -12,7 +12,7 @@ namespace crawler
     struct Place
     {
       unsigned int cell; ///< number among this rank's cells
-      double x;          ///< from 0 to 1 in the cell
+      double x;          ///< place in the cell, from 0 to 1
     };
 
     GeneralSampler(const Assembler &assembler, const std::vector<Place> &places);

@@ -9,8 +9,7 @@ namespace crawler
   struct StretchMethod
   {
     unsigned char node_rule; ///< a NodeRule
-    /// True if the unknown of a cell is w^(1+a)/(1+a), which passes 0 at a finite rate where a body inverts (-1 < a <
-    /// 0).
+    /// True if the unknown is w^(1+a)/(1+a), which passes 0 at a finite rate where a body inverts (-1 < a < 0).
     bool is_power;
   };
 

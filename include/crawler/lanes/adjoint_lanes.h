@@ -467,8 +467,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Pack inverse_h_;
     double times_[s][lanes]; ///< times of the stages
     bool friction_changed_ = true;
-    double rows_[2 * (1 + pairs) * s], vectors_[2 * (1 + pairs) * s]; ///< rows and vectors of the transposed matrix
-                                                                      ///< A^-1
+    double rows_[2 * (1 + pairs) * s], vectors_[2 * (1 + pairs) * s]; ///< eigenvectors of the transposed A^-1
     LaneSlopes<Pack> slopes_[s];                                      ///< slopes at the stages
 
     Pack *lambda_, *zeta_;                   ///< [unknown]

@@ -39,11 +39,11 @@ namespace crawler
   {
     unsigned int degree, n_cells, n_stages;
     const double *sizes;                                      ///< [n_cells] sizes of the cells
-    const double *values, *derivatives, *weights, *stiffness; ///< of the element
+    const double *values, *derivatives, *weights, *stiffness; ///< tables of the element
     unsigned int n_samples;                                   ///< samples of the stretch per cell
     const double *sample_derivatives;                         ///< [n_samples][degree+1]
-    const double *c, *b, *inverse, *error_weights;            ///< of the method
-    double newton_fraction; ///< of the method: remaining error of Newton's method, relative to the tolerance
+    const double *c, *b, *inverse, *error_weights;            ///< coefficients of the method
+    double newton_fraction; ///< remaining error of Newton's method, relative to the tolerance
     double real_eigenvalue;
     const double *eigenvalues; ///< [pairs][real, imaginary]
     const double *vectors;     ///< [stages][1 + pairs][real, imaginary]
@@ -54,7 +54,7 @@ namespace crawler
     // The stretch form (lane_stretch.h), whose points are the middles of its cells.
     bool is_stretch = false, is_power = false;           ///< see StretchSystem
     unsigned char node_rule = 0;                         ///< NodeRule of equation/stretch_loops.h
-    double backward_ratio = 1., switching_velocity = 1.; ///< of the ground (scene/ground.h)
+    double backward_ratio = 1., switching_velocity = 1.; ///< numbers of the ground (scene/ground.h)
   };
 
   /// Progress of a body from step to step, besides its state.
@@ -80,8 +80,7 @@ namespace crawler
   struct LaneJob
   {
     double k, a;          ///< elastic modulus, friction exponent
-    double tolerance;     ///< root mean square of the error of a step; in the stretch form the largest error of a
-                          ///< stretch
+    double tolerance;     ///< root mean square error of a step; in the stretch form the largest error
     double newton_factor; ///< factor on LaneSetup::newton_fraction
     double initial_step;
     const StepLimit *limits; ///< limits of its steps
@@ -102,7 +101,7 @@ namespace crawler
 
     // Profiles and ground of a general body in the position form.
     const double *k_profile = nullptr, *friction_profile = nullptr; ///< [points] k(s)/k and b(s)
-    double backward_ratio = 1., switching_velocity = 1.;            ///< of the ground (scene/ground.h)
+    double backward_ratio = 1., switching_velocity = 1.;            ///< numbers of the ground (scene/ground.h)
   };
 
   /// State of a lane at all quadrature points, and the arrays into which the host writes the values of the laws there.
@@ -119,11 +118,11 @@ namespace crawler
   /// Stage of an accepted step (the last one is its end).
   struct LaneStage
   {
-    double min_stretch, max_stretch;     ///< among the samples
+    double min_stretch, max_stretch;     ///< extremes among the samples
     unsigned int min_sample, max_sample; ///< cell*n_samples + sample
     // Rates, if they are asked for (CellIntegrals).
     double stress_power, positive_power, absolute_power, dissipation, net_friction, abs_friction;
-    double left_velocity, right_velocity; ///< of the ends of the body
+    double left_velocity, right_velocity; ///< velocities of the ends of the body
     // Stretch at both ends and its rate, if the active stress depends on them, too.
     double end_stretch[2], end_rate[2];
   };
@@ -140,7 +139,7 @@ namespace crawler
     const double *y;         ///< [unknowns] displacement
     const double *z;         ///< [stages][unknowns] displacements in the stages relative to the start of the step
     const LaneStage *stages; ///< [n_stages]; the last one alone is filled unless `look_inside` is set
-    double elastic_energy;   ///< at the end, if rates are asked for
+    double elastic_energy;   ///< elastic energy at the end, if rates are asked for
     bool is_settled;         ///< the velocity at the end was found, if rates are asked for
     const LaneProgress *progress;
   };
@@ -150,10 +149,10 @@ namespace crawler
     enum Status
     {
       finished,
-      stopped, ///< by the host, or at most_steps
-      gave_up  ///< for a reason that only the full path can tell
+      stopped, ///< stopped by the host, or at most_steps
+      gave_up  ///< given up for a reason that only the full path can tell
     } status;
-    double time, step_size; ///< of the last accepted state; step that would follow
+    double time, step_size; ///< time of the last accepted state; step that would follow
     unsigned int steps, rejected;
     unsigned long newton_iterations;
     double displacement; ///< int u ds at that time
@@ -194,10 +193,9 @@ namespace crawler
     const double *times = nullptr, *sizes = nullptr; ///< [n_steps] ends and lengths of the steps
     const double *z             = nullptr;           ///< [n_steps][stages][unknowns] as in LaneStep
     const double *end           = nullptr;           ///< [unknowns] last state
-    const unsigned char *starts = nullptr;           ///< [n_steps] true if a body starts anew with this step; null:
-                                                     ///< never
-    const double *gradient = nullptr; ///< [unknowns] derivative of the quantity of interest by the last state
-    bool has_sources       = false;   ///< true if the quantity of interest depends on the steps, too
+    const unsigned char *starts = nullptr;           ///< [n_steps] true if a body starts anew; null: never
+    const double *gradient      = nullptr; ///< [unknowns] derivative of the quantity of interest by the last state
+    bool has_sources            = false;   ///< true if the quantity of interest depends on the steps, too
   };
 
   /// Derivatives of the quantity of interest by the states of a step themselves. The arrays are 0 before.
@@ -210,7 +208,7 @@ namespace crawler
   /// Step traversed backwards; element i is at [i*stride].
   struct LaneAdjointStep
   {
-    unsigned int number; ///< from 0
+    unsigned int number; ///< counted from 0
     std::size_t stride;
     const double
       *mu; ///< [stages][unknowns] derivative of the quantity of interest by the residuals, with the sign of dF

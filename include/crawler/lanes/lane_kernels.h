@@ -16,8 +16,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     ElementTables tables;
     Pack k;
     LaneFriction<Pack> friction;
-    const PointLaws<Pack> *laws = nullptr; ///< laws of general bodies, for the present state: in place of k and
-                                           ///< friction
+    const PointLaws<Pack> *laws = nullptr; ///< laws of general bodies for the present state, replacing k and friction
   };
 
   /// CellIntegrals of a pack of bodies.

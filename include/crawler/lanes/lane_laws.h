@@ -117,7 +117,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return least;
     }
 
-    PointLaws<Pack> laws{}; ///< what was evaluated
+    PointLaws<Pack> laws{}; ///< laws at the last evaluation
 
     Pack *u, *v, *e, *rate; ///< [points] displacement, velocity, strain and its rate: to be written first
 
@@ -211,7 +211,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return good;
     }
 
-    static constexpr int n_read = 4, n_arrays = 11; ///< of LanePoints
+    static constexpr int n_read = 4, n_arrays = 11; ///< numbers of arrays of LanePoints
 
     const unsigned int bits_;
     const LaneHost &host_;

@@ -28,7 +28,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static constexpr radau::Stages<s> stages{};
     const LaneSetup &setup;
     const int n;                         ///< unknowns
-    Pack *y = nullptr;                   ///< at the start of the step
+    Pack *y = nullptr;                   ///< state at the start of the step
     Pack *z = nullptr, *old_z = nullptr; ///< [stage][unknown] relative to the start, of this step and the last
     Pack *u = nullptr, *v = nullptr;     ///< displacement and velocity at which the equation is evaluated
 

@@ -82,7 +82,7 @@ namespace crawler
     const std::shared_ptr<const LaneTables> tables_owner_;
     const LaneTables &tables_;
     LaneSetup setup_;
-    std::optional<HostLaws> laws_;         ///< of a general body in the position form
+    std::optional<HostLaws> laws_;         ///< laws of a general body in the position form
     std::optional<StretchLaws> cell_laws_; ///< laws in the stretch form
     const RadauTableau &tableau_;
     const std::unique_ptr<ActiveStressAtPoints> stress_;
@@ -94,11 +94,11 @@ namespace crawler
     LaneJob job_;
     LaneHost host_{};
     bool started_ = false, looks_inside_ = false, goes_on_ = false, has_step_ = false;
-    LaneProgress progress_; ///< if it continues; with the last step's stages:
+    LaneProgress progress_; ///< progress of a run that continues; the last step's stages:
     std::vector<double> old_z_;
     std::vector<double> y_, rate_;
     LaneStep lane_step_;
     Step step_;
-    std::optional<TimeOutcome> end_; ///< if the run has ended
+    std::optional<TimeOutcome> end_; ///< outcome, if the run has ended
   };
 } // namespace crawler

@@ -305,7 +305,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Pack *w_, *slope_;                                                               ///< [cell]
     Pack *own_mobility_, *own_mobility_slope_, *own_force_, *own_force_by_w_;        ///< [cell] of plain bodies
     Pack *rate_;                                                                     ///< [cell] scratch
-    const Pack *mobility_, *mobility_slope_, *force_, *force_by_w_, *force_by_rate_; ///< [cell] own arrays or the
-                                                                                     ///< host's
+    const Pack *mobility_, *mobility_slope_, *force_, *force_by_w_, *force_by_rate_; ///< [cell] own arrays or host's
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

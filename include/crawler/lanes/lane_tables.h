@@ -15,7 +15,7 @@ namespace crawler
   struct LaneMethod
   {
     unsigned int degree, n_cells, n_stages;
-    std::vector<double> cell_ends = {};    ///< of a body of length 1 (mesh/graded_mesh.h)
+    std::vector<double> cell_ends = {};    ///< cell ends of a body of length 1 (mesh/graded_mesh.h)
     bool is_stretch               = false; ///< the stretch form, of degree 1
     bool other_rule               = false; ///< see stretch_method()
     unsigned int laws             = 0;     ///< LaneLaws::Bits of the scene

@@ -143,8 +143,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         result[i] = function(x[i], y);
   }
 
-  /// Power x^y = exp(y log x) at n points, x > 0: half the cost of pow, whose last digits it lacks where y log x is
-  /// large.
+  /// Power x^y = exp(y log x) at n points, x > 0: half the cost of pow, without its last digits if y log x is large.
   template <typename Pack>
   inline void
   power_at_points(const Pack *x, const Pack &y, Pack *result, const int n)

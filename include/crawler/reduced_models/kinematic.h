@@ -73,7 +73,7 @@ namespace crawler
     EnergyBalance energies;
     double net_friction = 0.; ///< largest |int g v ds| over largest int |g v| ds, both over time
     StrainExtremes extremes{};
-    std::optional<StrainExtreme> inversion; ///< where the stretch is not positive; then the rest is unknown
+    std::optional<StrainExtreme> inversion; ///< place without a positive stretch; then the rest is unknown
     unsigned int n_space_panels = 0;
     std::vector<double> time_panels; ///< ends of the panels in time
   };

@@ -11,8 +11,7 @@ namespace crawler
   /// Estimated model errors of the displacement of the approximate levels, in natural units.
   struct ModelErrors
   {
-    bool known = false;              ///< false if a stretch is not positive, or if the corrections do not become
-                                     ///< smaller
+    bool known          = false;     ///< false if a stretch is not positive, or if the corrections do not shrink
     double perturbation = 0.;        ///< error of the series; only for the optimal wave
     double kinematic    = 0.;        ///< error of the body with the approximate strain
     double displacement = 0.;        ///< displacement after the corrections

@@ -95,8 +95,7 @@ namespace crawler::accuracy_rule
     inline constexpr double coarse_ratio_is_enough = 1e-5;
     /// Change of the displacement, as a part of the wanted error, below which a refinement was not needed.
     inline constexpr double part = 0.25;
-    /// Relative difference between the displacement and the one assumed for the tolerance beyond which that is set
-    /// anew.
+    /// Relative change of the displacement assumed for the tolerance beyond which that is set anew.
     inline constexpr double same_size = 0.1;
     /// Limits at which the search is given up.
     inline constexpr unsigned int most_runs = 40, most_cells = 96, most_cells_of_piece = 12;
@@ -167,8 +166,7 @@ namespace crawler::accuracy_rule
     inline constexpr double fast = 5., credited = 3., fastest = 16., turned = 8., unseen_part = 0.15;
     /// Factor on the last change of the time of an inversion for its error, for a between least_slow_exponent and 0.
     inline constexpr double least_slow_exponent = -0.5, sticking_factor = 3.;
-    /// Distance of the order from 2 up to which that is accepted; else a first change counts unclean_factor times as
-    /// much.
+    /// Deviation of the order from 2 up to which that is accepted; else a first change counts unclean_factor times.
     inline constexpr double clean = 0.25, unclean_factor = 2.;
   } // namespace family
 
@@ -295,8 +293,7 @@ namespace crawler::accuracy_rule
   {
     /// Energy residual, relative: in units of Accuracy for each form, and at least.
     inline constexpr double of_accuracy = 10., of_accuracy_in_stretch_form = 300., least_residual = 1e-8;
-    /// Energy residuals where the user chose the numerics; for moving jumps; above which stretch-form works are
-    /// unknown.
+    /// Energy residuals with the user's numerics; for moving jumps; above which stretch-form works are unknown.
     inline constexpr double residual_of_users = 0.1, residual_of_moving_jumps = 0.2, residual_of_known_works = 0.1;
     /// Net friction, relative to the absolute one.
     inline constexpr double net_friction = 1e-6;

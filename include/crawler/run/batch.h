@@ -25,7 +25,7 @@ namespace crawler
     const Scene *scene;
     const TimeParameters *time;
     const Numerics *numerics;             ///< must have a batch_method()
-    std::optional<CycleWish> cycles = {}; ///< in place of that of the options
+    std::optional<CycleWish> cycles = {}; ///< request in place of that of the options
   };
 
   /**

@@ -21,8 +21,8 @@ namespace crawler
   /// Request to end a run when its cycles repeat.
   struct CycleWish
   {
-    double period;    ///< of the active stress [time]
-    double accuracy;  ///< of the displacement, relative; the bound takes a fifth of it at most
+    double period;    ///< period of the active stress [time]
+    double accuracy;  ///< relative accuracy of the displacement; the bound takes a fifth of it at most
     double from = 0.; ///< time at which the active stress begins to repeat [time]
 
     /// Returns the request with times in this unit.
@@ -116,13 +116,13 @@ namespace crawler
     const CycleWish wish_;
     const double tolerance_;
     unsigned int n_cycles_ = 0;     ///< whole cycles
-    double start_          = 0.;    ///< of the first cycle
+    double start_          = 0.;    ///< start of the first cycle
     bool from_rest_        = false; ///< the first cycle starts with the run
     std::vector<double> end_times_;
     bool repeats_ = false;
     double bound_ = 0.;
 
-    std::deque<std::vector<double>> stretches_; ///< of the pieces, over the last cycle
+    std::deque<std::vector<double>> stretches_; ///< stretches of the pieces, over the last cycle
     /// Root mean squares over the body of the strain and of its change since a cycle before, and the largest such
     /// change, of each state. The changes of the first cycle are not known.
     std::vector<double> strains_, changes_, largest_changes_;

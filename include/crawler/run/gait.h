@@ -19,10 +19,9 @@ namespace crawler
   struct Gait
   {
     double period;                                    ///< [time]
-    bool is_declared;                                 ///< true if the active stress declares it; otherwise it was found
-                                                      ///< in the stretch
+    bool is_declared;                                 ///< by the active stress; otherwise it was found in the stretch
     double n_strides;                                 ///< number of strides that fit into the run
-    double displacement;                              ///< of the centre of mass in this stride [length]
+    double displacement;                              ///< displacement of the centre of mass in this stride [length]
     std::optional<StretchWave> wave;                  ///< nothing if the stretch hardly changes, or too fast
     std::optional<EnergyBalance> energy_balance = {}; ///< works of this stride [energy], if there is an energy balance
 
@@ -30,7 +29,7 @@ namespace crawler
     Gait
     in_units(const Units &units) const;
 
-    double length = 1.; ///< of the body [length]
+    double length = 1.; ///< length of the body [length]
     std::optional<double> efficiency =
       {}; ///< share of the largest displacement with this dissipation (gait_efficiency.h) [1]
 
@@ -174,8 +173,7 @@ namespace crawler
     const bool ends_early_;
     unsigned long n_samples_ = 0, next_ = 0; ///< number of all samples, and index of the next one
     std::vector<Sample> samples_;            ///< those of the last n_phases if the period is known, otherwise all
-    std::vector<StepEnd> steps_;             ///< ends of strides if the period is known, otherwise all of the second
-                                             ///< half
+    std::vector<StepEnd> steps_;             ///< ends of strides if the period is known, otherwise of the second half
     Range smallest_, largest_;               ///< stretches since the last of steps_
   };
 } // namespace crawler

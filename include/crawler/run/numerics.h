@@ -16,16 +16,16 @@ namespace crawler
   struct Numerics
   {
     unsigned int degree                = 0;
-    unsigned int n_cells               = 0;  ///< of the first mesh
+    unsigned int n_cells               = 0;  ///< number of cells of the first mesh
     double tolerance                   = 0.; ///< [length]
     double initial_step                = 0.; ///< [time]
-    std::vector<StepLimit> step_limits = {}; ///< of adaptive steps [time]
+    std::vector<StepLimit> step_limits = {}; ///< limits of adaptive steps [time]
     double least_event = 0.; ///< size [force] from which on an event of the active stress within a step makes it be
                              ///< repeated; 0: events are not looked for
     Formulation formulation = Formulation::position;
-    MeshLimits mesh         = {};    ///< of an adaptive mesh
+    MeshLimits mesh         = {};    ///< limits of an adaptive mesh
     std::string integrator  = "";    ///< integrator that replaces an automatic one (time/integrators.h); empty: bdf
-    Grading grading         = {};    ///< of the first mesh, which has n_cells cells without it
+    Grading grading         = {};    ///< grading of the first mesh, which has n_cells cells without it
     double layer            = 0.;    ///< size of layers in the stretch form, see layered_cell_ends() [length]; 0: none
     unsigned int parts      = 1;     ///< cells of the stretch form into which each of n_cells is divided
     bool other_rule         = false; ///< stretch form with the other rule, see stretch_method()

@@ -137,9 +137,8 @@ namespace crawler
     std::optional<GaitMeter> gait_meter_;
     std::optional<SuddenChanges> sudden_changes_;
     ExtremeHistory smallest_{ExtremeHistory::smallest}, largest_{ExtremeHistory::largest};
-    bool started_    = false;
-    bool were_known_ = false;                                  ///< true if sudden_changes_ knew the extremes that were
-                                                               ///< seen last
+    bool started_            = false;
+    bool were_known_         = false;                          ///< sudden_changes_ knew the extremes seen last
     double largest_friction_ = 0., largest_net_friction_ = 0.; ///< over time
   };
 } // namespace crawler

@@ -27,9 +27,9 @@ namespace crawler
       cost ///< exchanged work of the stride per distance
     };
 
-    std::string key;     ///< in summary.json, dots for nesting
+    std::string key;     ///< key in summary.json, dots for nesting
     std::string unit;    ///< "length", "force length", "1"; empty of words
-    std::string meaning; ///< for tables
+    std::string meaning; ///< meaning, for tables
     ResultValue (*value)(const SimulationResult &);
     Scale scale     = Scale::none;
     bool is_sampled = false; ///< found by looking at Gauss points, or derived from such a number

@@ -31,7 +31,7 @@ namespace crawler
     load(std::string bytes);
 
     /// Begins the next run, identified by all inputs that decide on it as bytes: returns its result, if it is known. If
-    /// another run was here before, this one and those after it are forgotten.
+    /// another run was here before, its entry and all later ones are forgotten.
     std::optional<SimulationResult>
     begin(std::string identity);
 

@@ -99,7 +99,7 @@ namespace crawler
     {
       double delay = 0.; ///< 0: the feedback does not see it
       StretchHistory history;
-      std::shared_ptr<const std::vector<Cell>> cells; ///< of the present mesh
+      std::shared_ptr<const std::vector<Cell>> cells; ///< cells of the present mesh
     };
 
     /// Last accepted state, to which a change of mesh may go back.
@@ -134,21 +134,21 @@ namespace crawler
       OutputTimes output_times;
       StepLimiter limiter;
       Accepted accepted = {};
-      StretchRange stretch{};     ///< of the state under examination
-      std::vector<double> breaks; ///< in space
+      StretchRange stretch{};     ///< range of the state under examination
+      std::vector<double> breaks; ///< breaks in space
       CellIntegrals integrals{};
       bool lanes_look              = false; ///< the extremes and rates that they see in the stages of steps are used
       bool lanes_gave_up           = false;
-      RateQuadrature quadrature    = {}; ///< of works
-      EnergyBalance balance_before = {}; ///< at the start of the latest step
+      RateQuadrature quadrature    = {}; ///< quadrature of works
+      EnergyBalance balance_before = {}; ///< energy balance at the start of the latest step
       Resolution largest{};              ///< over time, if looked at
       TimeOutcome before{};              ///< counts of the parts of the run before the last change of mesh
       Step latest{};                     ///< last step that was tried, with the counts of the whole run
       std::optional<Diagnosis> diagnosis = {};
       unsigned int tiny_steps            = 0;
       std::vector<CellChange> changes    = {};
-      std::vector<double> indicators     = {};    ///< of all cells, for the present state of an adaptive mesh
-      unsigned long n_failures           = 0;     ///< of the active stress, before this run
+      std::vector<double> indicators     = {};    ///< indicators of all cells of an adaptive mesh, at present
+      unsigned long n_failures           = 0;     ///< failures of the active stress before this run
       double part_start                  = 0.;    ///< time at which the present integrator has started
       bool goes_on                       = false; ///< continues within a part that was left
     };
@@ -305,6 +305,6 @@ namespace crawler
     Past past_;
     std::optional<Run> run_;
     std::vector<double> y_, v_;               ///< the present state and its velocity
-    std::vector<double> y_inside_, v_inside_; ///< of a state within a step
+    std::vector<double> y_inside_, v_inside_; ///< state within a step
   };
 } // namespace crawler

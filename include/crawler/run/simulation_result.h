@@ -24,8 +24,7 @@ namespace crawler
   {
     std::string entry;
     double at;                          ///< value of the entry
-    std::optional<double> value, error; ///< derivative and its bound [length/unit of the entry]; nothing if it is not
-                                        ///< known
+    std::optional<double> value, error; ///< derivative and its bound [length/unit of the entry]; nothing if unknown
     std::string reason;                 ///< reason why it is not known
 
     /// Derivative of another number, by its key in the result table.
@@ -36,7 +35,7 @@ namespace crawler
     };
     std::vector<OfNumber> others = {};   ///< derivatives that are known
     bool may_vary                = true; ///< true if the entry may be varied from its value
-    double standard_deviation    = 0.;   ///< of the entry, if it is uncertain
+    double standard_deviation    = 0.;   ///< standard deviation of the entry, if it is uncertain
 
     /// Derivative of a number by its key, the displacement included.
     std::optional<OfNumber>
@@ -61,15 +60,15 @@ namespace crawler
     double displacement = std::numeric_limits<double>::quiet_NaN();
     /// Integrator of time/integrators.h; engine: petsc, fused, or "fused, petsc" where the fused engine gave up.
     std::string integrator, engine;
-    std::optional<DisplacementError> error; ///< of the displacement
+    std::optional<DisplacementError> error; ///< error of the displacement
     /// Displacement corrected by its errors in space and time, and a bound of its own error [length].
     struct Corrected
     {
       double value, error;
     };
     std::optional<Corrected> corrected;          ///< if the adjoint gave it
-    std::optional<NumberErrors> errors;          ///< of other numbers, if a finer run measured them
-    std::vector<EntrySensitivity> sensitivities; ///< if they are wanted, those that matter most first
+    std::optional<NumberErrors> errors;          ///< errors of other numbers, if a finer run measured them
+    std::vector<EntrySensitivity> sensitivities; ///< sensitivities, on request, the most important first
 
     /// Standard deviation of the number under a key of the result table that uncertain entries cause, to first order;
     /// nothing if there are none, or if a derivative is not known.
@@ -81,9 +80,8 @@ namespace crawler
     std::optional<EnergyBalance> energy_balance;
     /// Energy residual of a balance that is discarded, since works that do not balance are not known [1].
     std::optional<double> residual_of_unknown_works;
-    bool jumps_move = false;  ///< true if the energy balance's integrals in time are not those of a smooth active
-                              ///< stress
-    double net_friction = 0.; ///< largest |int g v ds| over largest int |g v| ds, both over time [1]
+    bool jumps_move     = false; ///< true if the active stress is not smooth in time for the energy balance
+    double net_friction = 0.;    ///< largest |int g v ds| over largest int |g v| ds, both over time [1]
 
     using Extreme = crawler::Extreme;
     Extreme min_stretch, max_stretch;
@@ -93,18 +91,17 @@ namespace crawler
     std::optional<double> inversion_error; ///< error of the time of inversion, where it was measured [time]
 
     std::optional<Gait> gait;              ///< last stride, if it is looked at and there is one
-    std::optional<double> gait_efficiency; ///< of the whole run (gait.h), if it is known [1]
-    std::optional<Cycles> cycles;          ///< if the run ended because they repeat; all numbers above are those of the
-                                           ///< end time
+    std::optional<double> gait_efficiency; ///< efficiency of the whole run (gait.h), if it is known [1]
+    std::optional<Cycles> cycles;          ///< set if the run ended as they repeat; numbers above are at the end time
 
     Formulation formulation   = Formulation::position;
-    unsigned int mesh_changes = 0, most_cells = 0; ///< of an adaptive mesh
+    unsigned int mesh_changes = 0, most_cells = 0; ///< counts of an adaptive mesh
     /// Last mesh; nothing if there was none.
     struct Mesh
     {
       unsigned int n_cells, degree;
       std::size_t n_unknowns;
-      bool is_shared; ///< by several ranks
+      bool is_shared; ///< true if several ranks share it
 
       void
       exchange(auto &archive)

@@ -27,8 +27,7 @@ namespace crawler
     double
     longest_step(double t) const;
 
-    /// True if the active stress had an event within the step [@p from, @p to]; then its time is limited to shorter
-    /// steps.
+    /// True if the active stress had an event within the step [@p from, @p to]; then shorter steps are set there.
     bool
     passed_over_event(double from, double to);
 

@@ -37,7 +37,7 @@ namespace crawler
     struct Stresses
     {
       std::pair<double, double> end_stretch; ///< 1 - m/k at both ends
-      std::vector<double> jumps;             ///< of m/k at the breaks in space
+      std::vector<double> jumps;             ///< jumps of m/k at the breaks in space
     };
 
     Stresses
@@ -52,6 +52,6 @@ namespace crawler
     std::size_t next_  = 0;               ///< index of the next start
     double thin_until_ = 0.;
     std::vector<double> m_;
-    std::unique_ptr<ActiveStressAtPoints> stress_; ///< at the ends of the body and both sides of the breaks in space
+    std::unique_ptr<ActiveStressAtPoints> stress_; ///< stress at the ends and both sides of the breaks in space
   };
 } // namespace crawler
