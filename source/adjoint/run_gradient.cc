@@ -71,7 +71,7 @@ namespace crawler
     {
       std::size_t slot;                      ///< index in all_quantities, followed by the stretches
       Quantity quantity;                     ///< the displacement if it is none of these
-      StretchInRun *stretch;                 ///< null unless a stretch is asked for
+      StretchInRun *stretch;                 ///< null unless a stretch is requested
       std::vector<double> mu;                ///< [step][stage][unknown]
       std::vector<std::vector<double>> zeta; ///< [step], mostly empty
       double value = 0.;                     ///< value in natural units

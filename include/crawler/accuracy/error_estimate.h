@@ -13,9 +13,10 @@ namespace crawler
    * finer run gives that of the displacement (doc/numerics.md, "Error bounds"): with x the difference of both
    * displacements and w the error that the choice promises,
    *
-   *   total = 1.5 x + w/5   (w/2 on adaptive meshes, 0.15 w on graded ones), and at least 1e-15 L, the error of
-   * round-off. Without a promise a third run with more cells only tells the parts in space and time, and total is twice
-   * their sum.
+   *   total = 1.5 x + w/5   (w/2 on adaptive meshes, 0.15 w on graded ones),
+   *
+   * and at least 1e-15 L, the error of round-off. Without a promise a third run with more cells only separates the
+   * parts in space and time, and total is twice their sum.
    *
    * The rule that chose the numerics predicts the split into space and time. Where the stretch collapses the choice has
    * measured the error, and no second run is made. The error is unknown if the finer run did not finish or was stopped

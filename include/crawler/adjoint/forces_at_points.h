@@ -12,9 +12,9 @@ namespace crawler
 {
   /**
    * Force N in a body and friction f at points, in natural units of the body. The state is that of another scene at the
-   * points; its breaks are mapped to those of this one: with S and R the resulting stretches of the body and of time, w
-   * = 1 + e/S, v -> v/R, and a piece of the body is S times as long. The contribution between jumps in time that come
-   * together in the other scene is in between().
+   * points; its breaks are mapped to those of this one: with S and R the resulting stretches of the body and of time,
+   * w = 1 + e/S, v -> v/R, and a piece of the body is S times as long. The contribution between jumps in time that
+   * come together in the other scene is in between().
    */
   class ForcesAtPoints
   {

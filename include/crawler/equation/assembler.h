@@ -73,8 +73,8 @@ namespace crawler
     virtual ConstVector
     displacement(ConstVector y) const = 0;
 
-    /// Stretches of the cells, valid until the next call; empty in the position form, where the displacement gives
-    /// them.
+    /// Stretches of the cells, valid until the next call; empty in the position form, which computes
+    /// them from the displacement.
     virtual ConstVector
     stretch(ConstVector) const
     {

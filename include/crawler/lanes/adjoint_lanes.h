@@ -19,8 +19,8 @@
  *   K_i^T mu_i + (1/h) sum_j W_ji M_j mu_j = -delta_is lambda,     lambda <- lambda + sum_i K_i^T mu_i,
  *
  * from the last step to the first; then dJ/dp = sum over steps and stages of mu_i . dF_i/dp. If J depends on the stages
- * themselves, a_j = dJ/du_j and c_j = dJ/dv_j, the right-hand side also has -a_j - (1/h) sum_i W_ij c_i, lambda also +
- * sum_i a_i, and dJ/dp its explicit parts.
+ * themselves, a_j = dJ/du_j and c_j = dJ/dv_j, the right-hand side also has -a_j - (1/h) sum_i W_ij c_i, lambda also
+ * + sum_i a_i, and dJ/dp its explicit parts.
  */
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
@@ -114,7 +114,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       memory_.piece(scratch_, (1 + 2 * s) * n);
     }
 
-    /// Takes the next body for a lane, or one at rest that asks nothing.
+    /// Takes the next body for a lane, or one at rest that needs nothing.
     void
     take_next(const int l)
     {
@@ -336,7 +336,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return sum;
     }
 
-    /// Adds: a += factor b
+    /// Adds a multiple, a += factor b.
     void
     add(const Pack &factor, const Pack *b, Pack *a) const
     {

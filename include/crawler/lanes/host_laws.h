@@ -20,7 +20,7 @@ namespace crawler
     void
     set(LaneJob &job) const;
 
-    /// Writes the laws that the engine asks for; false if one is not a positive number there.
+    /// Writes the laws that the engine requests; false if one is not a positive number there.
     bool
     evaluate(const LanePoints &at);
 

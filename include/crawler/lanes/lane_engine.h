@@ -105,7 +105,7 @@ namespace crawler
   };
 
   /// State of a lane at all quadrature points, and the arrays into which the host writes the values of the laws there.
-  /// Arrays that LaneLaws does not ask for are null, as are unwanted derivatives.
+  /// Arrays that LaneLaws does not need are null, as are unwanted derivatives.
   struct LanePoints
   {
     double t;
@@ -120,7 +120,7 @@ namespace crawler
   {
     double min_stretch, max_stretch;     ///< extremes among the samples
     unsigned int min_sample, max_sample; ///< cell*n_samples + sample
-    // Rates, if they are asked for (CellIntegrals).
+    // Rates, if they are requested (CellIntegrals).
     double stress_power, positive_power, absolute_power, dissipation, net_friction, abs_friction;
     double left_velocity, right_velocity; ///< velocities of the ends of the body
     // Stretch at both ends and its rate, if the active stress depends on them, too.
@@ -139,8 +139,8 @@ namespace crawler
     const double *y;         ///< [unknowns] displacement
     const double *z;         ///< [stages][unknowns] displacements in the stages relative to the start of the step
     const LaneStage *stages; ///< [n_stages]; the last one alone is filled unless `look_inside` is set
-    double elastic_energy;   ///< elastic energy at the end, if rates are asked for
-    bool is_settled;         ///< the velocity at the end was found, if rates are asked for
+    double elastic_energy;   ///< elastic energy at the end, if rates are requested
+    bool is_settled;         ///< the velocity at the end was found, if rates are requested
     const LaneProgress *progress;
   };
 

@@ -92,7 +92,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       memory_.piece(scratch_, n_points_);
     }
 
-    /// Takes the next body for a lane, or one at rest that asks nothing.
+    /// Takes the next body for a lane, or one at rest that needs nothing.
     void
     take_next(const int l)
     {
@@ -288,7 +288,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           arrive(l);
     }
 
-    /// Keeps the stretch, and the rates if they are asked for, of a stage with the state (@p u, v).
+    /// Keeps the stretch, and the rates if they are requested, of a stage with the state (@p u, v).
     void
     look_at_stage(const int i, const Pack *u)
     {

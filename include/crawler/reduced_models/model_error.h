@@ -24,10 +24,10 @@ namespace crawler
    *
    *   u_t = k u_ss - r,   u_s = 0 at the ends,
    *
-   * in cosine modes, which an exponential integrator (r linear in each step) takes through time. With the strain e +
-   * u_s the body travels another distance. Three corrections are made, each with the residual of the corrected motion.
-   * The error is the change of the displacement by all corrections, and a twentieth more for the grid, plus three times
-   * the change by the last one for the omitted ones.
+   * in cosine modes, which an exponential integrator (r linear in each step) takes through time. With the strain
+   * e + u_s the body travels another distance. Three corrections are made, each with the residual of the corrected
+   * motion. The error is the change of the displacement by all corrections, and a twentieth more for the grid, plus
+   * three times the change by the last one for the omitted ones.
    *
    * Version for the optimal wave; @p scene is in natural units.
    */

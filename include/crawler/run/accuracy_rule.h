@@ -76,8 +76,8 @@ namespace crawler::accuracy_rule
     inline constexpr double moving_factor = 1.5, moving_factor_of_first = 4.;
     /// First steps, relative to the duration: methods that start with order 1 need small ones.
     inline constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
-    /// Runs longer by long_run than their first strides that do not end when cycles repeat have their numerics chosen
-    /// by those strides. Strides are slow to repeat below this stiffness, in natural units of a stride.
+    /// Runs long_run times as long as their first strides that do not end when cycles repeat have their numerics
+    /// chosen by those strides. Strides are slow to repeat below this stiffness, in natural units of a stride.
     inline constexpr double first_strides = 3., long_run = 4., least_settling_stiffness = 0.02;
     /// Bodies softer than very_soft, in natural units, may have a relative error of soft_error on adaptive meshes
     /// whatever Accuracy is: the indicators do not see their layers, and uniform meshes do not see them at all.
@@ -161,8 +161,8 @@ namespace crawler::accuracy_rule
     inline constexpr double believed = 0.3, largest_change_of_inversion = 0.2;
     /// Round-off of the displacement, in lengths of the body.
     inline constexpr double round_off = 4e-15;
-    /// Rates of settling: extrapolations that settle by fast are credited with credited more; beyond fastest, or turned
-    /// where they turn round, it is chance. Regions thinner than cells count this part of their length.
+    /// Rates at which extrapolations settle: beyond fast a further factor credited counts; beyond fastest, the fourth
+    /// order, it is chance, as is a turning point. Regions thinner than cells count unseen_part of their length.
     inline constexpr double fast = 5., credited = 3., fastest = 16., turned = 8., unseen_part = 0.15;
     /// Factor on the last change of the time of an inversion for its error, for a between least_slow_exponent and 0.
     inline constexpr double least_slow_exponent = -0.5, sticking_factor = 3.;
@@ -178,7 +178,8 @@ namespace crawler::accuracy_rule
     inline constexpr double first_part = 0.32, last_part = 0.0025;
     /// Largest number of widths of an answer.
     inline constexpr unsigned int most_levels = 5;
-    /// Bound of its error: at most this multiple of the change by one width less, and of that since the answer before.
+    /// Error bound of the answer: at most this multiple of the change by one width less, and of that since the answer
+    /// before.
     inline constexpr double factor = 2., factor_of_change = 0.5;
     /// Accuracy of the runs, relative to the wanted one, and its limits.
     inline constexpr double part_of_runs = 0.1, least_accuracy = 1e-9, largest_accuracy = 1e-3;
@@ -193,9 +194,9 @@ namespace crawler::accuracy_rule
   namespace finer_run
   {
     inline constexpr double measured_factor = 1.5, promised_part = 0.2, factor_without_promise = 2.;
-    /// Part for adaptive meshes, two of which have more of their errors in common.
+    /// Promised part for adaptive meshes, two of which have more of their errors in common.
     inline constexpr double promised_part_if_adaptive = 0.5;
-    /// Part for graded meshes, where each part of the error was measured beforehand.
+    /// Promised part for graded meshes, where each part of the error was measured beforehand.
     inline constexpr double promised_part_if_graded = 0.15;
     /// Cells and tolerances of the finer run, relative to the run's.
     inline constexpr double more_cells = 1.1, finer_tolerance = 0.2, finer_mesh_tolerance = 0.1;

@@ -67,7 +67,7 @@ namespace crawler
     using Sampler = std::function<BodySample(double time)>;
 
     /// @p scene is in the @p units of the user, and must outlive this; @p tolerance is that of the time integration in
-    /// natural units. A gait whose period is not declared is looked for only if @p may_search.
+    /// natural units. A gait whose period is not declared is searched only if @p may_search.
     Recorder(const Scene &scene, const Units &units, const RecordOptions &options, double tolerance, bool may_search);
 
     /// Tells that the mesh is of high order with cells no smaller than this, in natural units: its values in thin

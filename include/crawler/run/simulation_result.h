@@ -55,7 +55,7 @@ namespace crawler
     TimeOutcome time; ///< status may also be "inverted"
     Model model = Model::nonlinear;
 
-    /// Displacement of the centre of mass, (1/L) int u ds [length]; not a number if it was not looked at before the run
+    /// Displacement of the centre of mass, (1/L) int u ds [length]; not a number if it was not computed before the run
     /// broke off.
     double displacement = std::numeric_limits<double>::quiet_NaN();
     /// Integrator of time/integrators.h; engine: petsc, fused, or "fused, petsc" where the fused engine gave up.
@@ -75,8 +75,8 @@ namespace crawler
     std::optional<double>
     standard_deviation(const std::string &key) const;
     double largest_u  = 0.; ///< root mean square of u over the body, largest over time [length]
-    double unresolved = 0.; ///< Resolution: largest highest_mode over largest strain, if looked at
-    double strain     = 0.; ///< largest int (w - 1)^2 ds over time, if the resolution is looked at [length]
+    double unresolved = 0.; ///< Resolution: largest highest_mode over largest strain, if computed
+    double strain     = 0.; ///< largest int (w - 1)^2 ds over time, if the resolution is computed [length]
     std::optional<EnergyBalance> energy_balance;
     /// Energy residual of a balance that is discarded, since works that do not balance are not known [1].
     std::optional<double> residual_of_unknown_works;
@@ -90,7 +90,7 @@ namespace crawler
     std::optional<std::pair<double, double>> inverted_places;
     std::optional<double> inversion_error; ///< error of the time of inversion, where it was measured [time]
 
-    std::optional<Gait> gait;              ///< last stride, if it is looked at and there is one
+    std::optional<Gait> gait;              ///< last stride, on request and if there is one
     std::optional<double> gait_efficiency; ///< efficiency of the whole run (gait.h), if it is known [1]
     std::optional<Cycles> cycles;          ///< set if the run ended as they repeat; numbers above are at the end time
 
