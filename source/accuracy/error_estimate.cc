@@ -24,8 +24,8 @@ namespace crawler
   {
     using namespace accuracy_rule::finer_run;
 
-    /// Is the error known beforehand? The rule of the numerics does not know what a point value of the stretch, seen
-    /// from elsewhere, does.
+    /// True if the error is known beforehand: the rule of the numerics does not cover the effect of a point value of
+    /// the stretch, seen from elsewhere.
     bool
     is_promised(const NumericsChoice &choice, const Scene &scene)
     {
@@ -33,8 +33,8 @@ namespace crawler
       return std::isfinite(choice.promised_error) && (feedback == nullptr || !feedback->sees_near());
     }
 
-    /// Steps for a tolerance that is so many times as large. Their limits go with it, as the steps of radau 9 do: steps
-    /// that only the limits make have an error, too.
+    /// Changes the tolerance by @p factor. The limits of the steps change with it, as the steps of radau 9 do: steps
+    /// set by the limits alone have an error, too.
     void
     change_steps(Numerics &numerics, const double factor)
     {
@@ -48,15 +48,15 @@ namespace crawler
     {
       Numerics n          = choice.numerics;
       const bool promised = is_promised(choice, scene);
-      // Where the friction switches its direction kinks move through cells and steps: errors fall by low powers.
-      // A displacement that is 0 says nothing of the works. Inside soft bodies layers are as thin as at their ends.
+      // Kinks move through cells and steps where the friction switches its direction: errors fall by low powers. A
+      // displacement of 0 does not tell the error of the works. Inside soft bodies layers are as thin as at their ends.
       const bool is_soft = scene.body.elastic_modulus / natural_units(scene).force < soft;
       const bool much_finer =
         !promised || choice.is_steep || is_soft || scene.ground.direction.is_uneven() || scene.keeps_its_centre();
       if (n.mesh.tolerance > 0.)
       {
         n.mesh.tolerance *= finer_mesh_tolerance;
-        // Two tolerances may leave the same cells where they matter; halves of them do not.
+        // Adaptive meshes of two tolerances may have the same cells where they matter; halved cells differ.
         if (!promised)
           n.n_cells *= 2;
       }
@@ -74,7 +74,7 @@ namespace crawler
                    : integrator == best_integrator ? finer_tolerance
                                                    : finer_tolerance_than_others);
       n.integrator = best_integrator;
-      // Layers that neither mesh sees would be missed by the difference.
+      // Layers that neither mesh resolves would be missed by the difference.
       if (promised && is_soft && n.mesh.tolerance == 0. && n.grading.levels == 0)
       {
         const double k      = scene.body.elastic_modulus / natural_units(scene).force;
@@ -89,7 +89,7 @@ namespace crawler
       return n;
     }
 
-    /// Efficiencies are relative to what the extreme stretches allow.
+    /// Sets the errors of efficiencies, which are relative to a limit by the extreme stretches.
     void
     set_errors_of_efficiencies(const Scene &scene, SimulationResult &result)
     {
@@ -103,7 +103,7 @@ namespace crawler
           set_error_bound(result, key, std::max(*known, part * *value));
     }
 
-    /// The run with more cells and its own steps: where nothing is promised it tells both parts of the error apart,
+    /// Runs with more cells and its own steps: where nothing is promised this separates the two parts of the error,
     /// since their sum may be small by chance.
     SimulationResult
     run_on_finer_mesh(MPI_Comm communicator,
@@ -127,7 +127,7 @@ namespace crawler
         .run({}, options_of_finer_run(result, cycles), {}, keep_going);
     }
 
-    /// What the finer run gives; it may not have finished.
+    /// Result of the finer run, which may be unfinished.
     SimulationResult
     finer_run(MPI_Comm communicator,
               const RunParameters &parameters,
@@ -140,8 +140,8 @@ namespace crawler
       const Numerics numerics   = numerics_of_finer_run(choice, parameters.time, scene, result.cycles.has_value());
       const auto cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false);
       const auto options        = options_of_finer_run(result, cycles);
-      // Most runs fit the fused engine; then nothing else has to be built. A long one is left to a simulation, which
-      // can be stopped and taken up again.
+      // Fused engine for most runs, so that nothing else has to be built. A long one is left to a simulation, which can
+      // be stopped and continued.
       constexpr double much_work = 1e8; // unknowns times steps: about a minute
       const double work          = result.mesh ? static_cast<double>(result.mesh->n_unknowns) * result.time.steps : 0.;
       if (work < much_work && size_of(communicator) == 1 && batch_method(scene, time, numerics))
@@ -217,7 +217,7 @@ namespace crawler
   {
     DisplacementError &error = result.error.emplace();
     double total             = choice.promised_error;
-    std::optional<double> space; // of the total, if it was measured
+    std::optional<double> space; // part of the total, if it was measured
     if (finer != nullptr)
     {
       if (finer->time.status != Status::finished ||
@@ -233,7 +233,7 @@ namespace crawler
       if (finer_mesh != nullptr)
       {
         space = factor * std::abs(finer_mesh->displacement - result.displacement);
-        // A kink that moves with the place where the velocity changes its sign makes errors that change their sign from
+        // Kinks that move with the place where the velocity changes its sign make errors that change their sign from
         // mesh to mesh: a difference may be small by chance, and so may be that which ended the search.
         if (scene.ground.direction.is_uneven() && choice.numerics.grading.levels > 0 &&
             std::isfinite(choice.promised_error))
@@ -247,7 +247,7 @@ namespace crawler
           total += part * choice.promised_error;
       }
       total = std::max(total, choice.least_error);
-      // Works of cycles that were extrapolated are so far off as the displacement is.
+      // Works of extrapolated cycles have the same relative error as the displacement.
       const double size   = std::max(std::abs(result.displacement),
                                    std::isfinite(choice.wanted_error) ? choice.wanted_error / parameters.accuracy : 0.);
       const double cycles = result.cycles && size > 0. ? result.cycles->bound / size : 0.;
@@ -259,11 +259,11 @@ namespace crawler
         for (std::size_t i = 0; i < NumberErrors::n; ++i)
           result.errors->values[i] += in_time.values[i];
       }
-      if (scene.keeps_its_centre()) // few steps are enough for all but the kinks of positive power
+      if (scene.keeps_its_centre()) // few steps suffice except for the kinks of positive power
         set_error_bound(result, "positive_power", std::numeric_limits<double>::quiet_NaN());
       set_errors_of_efficiencies(scene, result);
     }
-    if (scene.keeps_its_centre()) // to round-off of each step, whatever the other errors are
+    if (scene.keeps_its_centre()) // round-off of each step, whatever the other errors are
     {
       total = round_off * scene.body.length * result.time.steps;
       if (std::isfinite(choice.wanted_error))
@@ -291,7 +291,7 @@ namespace crawler
       set_errors(choice, result, nullptr, parameters, scene);
     else
     {
-      // Whatever becomes of the finer run, the answer is there.
+      // Failures of the finer run do not affect the answer.
       SimulationResult finer, finer_mesh;
       const bool promised = is_promised(choice, scene);
       try

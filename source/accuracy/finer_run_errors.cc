@@ -35,7 +35,7 @@ namespace crawler
       errors.values[i] = entry.is_sampled
                            ? more_if_sampled * factor * x + (part + sampling_error / (n_points * n_points)) * S
                            : factor * x + part * S;
-      // Two meshes may be wrong alike at the ends of their cells.
+      // Two meshes may have the same error at the ends of their cells.
       for (const auto &[key, extreme] :
            {std::pair("min_stretch.value", &result.min_stretch), {"max_stretch.value", &result.max_stretch}})
         if (entry.key == key)

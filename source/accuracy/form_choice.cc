@@ -24,7 +24,7 @@ namespace crawler
   {
     const DiscretizationParameters &own = parameters.discretization;
     const TimeParameters &time          = parameters.time;
-    // Its meshes are as fine as the displacement asks for.
+    // Meshes of the stretch form are as fine as the displacement requires.
     return !scene.keeps_its_centre() && own.formulation == FormulationEntry::automatic &&
            own.mesh == MeshKind::automatic && !own.degree && !own.n_cells && !time.tolerance &&
            time.step_control == StepControl::adaptive && time.engine == Engine::automatic &&
@@ -47,7 +47,7 @@ namespace crawler
   bool
   empties(const double smallest_stretch, const double exponent, const double accuracy)
   {
-    if (exponent >= 0.) // what is contracted then slides easily
+    if (exponent >= 0.) // contracted regions then slide easily
       return false;
     return smallest_stretch < falling(exponent > -1. ? emptied_if_it_inverts : emptied, accuracy, stretch_power);
   }

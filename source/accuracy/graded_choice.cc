@@ -12,7 +12,7 @@ namespace crawler
   {
     using namespace accuracy_rule::graded;
 
-    /// Relative to the length.
+    /// Size of the smallest cell, relative to the length.
     double
     smallest_size(const Scene &scene, const Numerics &numerics)
     {
@@ -26,7 +26,7 @@ namespace crawler
     Grading
     finer(const Grading &grading)
     {
-      // As far down as before, with fewer levels of the larger cells in between.
+      // Levels for the same smallest size, with a larger ratio.
       const double levels = grading.levels * std::log(grading.ratio) / std::log(fine_ratio);
       return {static_cast<unsigned int>(std::ceil(levels)), fine_ratio};
     }
@@ -50,7 +50,7 @@ namespace crawler
           ++now_.grading.levels;
         if (task_.choose_tolerance)
           now_.tolerance = 1e-3 * task_.scale;
-        // Too coarse a mesh or step can lose a stretch that is not lost.
+        // Coarse meshes or steps can lose a stretch that is not lost.
         double largest = 1e-2 * task_.scale; // tolerance
         for (unsigned int beginnings = 1; !run(now_, result_); ++beginnings)
         {
@@ -61,7 +61,7 @@ namespace crawler
           if (task_.choose_tolerance)
             largest = now_.tolerance *= finer_tolerance;
         }
-        // The tolerance is relative to a size that the runs tell.
+        // Tolerance relative to a size that the runs tell.
         for (unsigned int i = 0; i < 2; ++i)
         {
           const double before = wanted_;
@@ -131,7 +131,7 @@ namespace crawler
         return possible_;
       }
 
-      /// Is the displacement with numerics @p next another one? @p change is by how much.
+      /// True if the displacement with numerics @p next differs; @p change is the difference.
       bool
       matters(const Numerics &next, SimulationResult &result, double &change)
       {
@@ -141,7 +141,7 @@ namespace crawler
         return change > part * wanted_;
       }
 
-      /// Takes one refinement if it matters.
+      /// Makes one refinement if it matters.
       template <typename Refinement>
       bool
       try_one(double &change, const Refinement &refinement)
@@ -156,7 +156,7 @@ namespace crawler
         return true;
       }
 
-      /// The same again and again; has there been one?
+      /// Repeats a refinement while it matters; returns true if there has been one.
       template <typename Refinement>
       bool
       refine(double &change, const Refinement &refinement)
@@ -167,7 +167,7 @@ namespace crawler
         return any;
       }
 
-      /// What is wanted of a displacement like the last one; false if that is 0.
+      /// Sets the wanted error of a displacement like the last one; false if that is 0.
       bool
       measure()
       {
@@ -175,14 +175,14 @@ namespace crawler
         return wanted_ > 0.;
       }
 
-      /// By how much a level makes the error at a discontinuity smaller, at least.
+      /// Factor by which a level reduces the error at a discontinuity, at least.
       double
       gain_of_level() const
       {
         return part_of_gain / (now_.grading.ratio * now_.grading.ratio);
       }
 
-      /// One level after the other. The last change tells what is still missing.
+      /// Adds one level after the other. The last change tells the remaining error.
       void
       climb(double &change, const auto &one_more_level)
       {
@@ -201,17 +201,17 @@ namespace crawler
 
       const GradedTask &task_;
       Numerics now_;
-      const unsigned int n_pieces_; ///< of the body, between breaks
+      const unsigned int n_pieces_; ///< number of pieces of the body, between breaks
       SimulationResult result_;
       double wanted_ = 0., time_change_ = 0., space_change_ = 0.;
-      double rest_         = 0.; ///< the last change by more cells, if there may not be still more
+      double rest_         = 0.; ///< last change by more cells, if no more are admitted
       unsigned int n_runs_ = 0;
       bool possible_       = true;
-      bool is_too_fine_    = false; ///< the last mesh that was tried
+      bool is_too_fine_    = false; ///< property of the last mesh that was tried
     };
   } // namespace
 
-  /// The rate of the smallest cell's highest modes is about k q^4/(gamma h^2).
+  /// First step from the rate of the smallest cell's highest modes, about k q^4/(gamma h^2).
   double
   first_step_on_graded_mesh(const Scene &scene, const Numerics &numerics)
   {

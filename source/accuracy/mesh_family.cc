@@ -33,7 +33,7 @@ namespace crawler
       {
         answer_.choice          = choice;
         options_.resolution     = ResolutionWish::size; // the size of the deformation
-        options_.energy_balance = true;                 // the works tell whether displacements agree by chance
+        options_.energy_balance = true;                 // works tell whether displacements agree by chance
         if (options_.cycles)
           options_.cycles->accuracy *= 0.1; // displacements are compared
       }
@@ -88,7 +88,7 @@ namespace crawler
       {
         if (latest_.inversion && space_error_ <= believed * latest_.inversion->t)
           return most_cells_if_inverted;
-        if (levels_.size() == 2) // a third one that agrees with these tells their error
+        if (levels_.size() == 2) // a third mesh that agrees with these tells their error
           return most_cells_if_accurate;
         return accuracy_ < accurate ? most_cells_if_accurate : most_cells;
       }
@@ -112,7 +112,7 @@ namespace crawler
         return result.time.status == Status::finished;
       }
 
-      /// Does a finer mesh not say more?
+      /// True if a finer mesh gives no more information.
       static bool
       is_final(const SimulationResult &result)
       {
@@ -120,7 +120,7 @@ namespace crawler
                result.time.reason == "law_not_positive" || result.time.reason == "nonfinite";
       }
 
-      /// What has to settle: the displacement, or the time when the body inverts.
+      /// Value that has to settle: the displacement, or the time of inversion.
       static std::optional<double>
       value(const SimulationResult &result)
       {
@@ -154,7 +154,7 @@ namespace crawler
         return std::max(accuracy_ * size_, round_off * scene_.body.length);
       }
 
-      /// The time tolerance: on the coarsest mesh a tenth of it must not change much.
+      /// Settles the time tolerance: on the coarsest mesh a tenth of it must make little difference.
       void
       settle_time()
       {
@@ -166,7 +166,7 @@ namespace crawler
           numerics().tolerance = std::min(right, numerics().tolerance * 100.);
           latest_              = run(numerics());
         }
-        // What is left in cells that become empty decides how they fill again.
+        // Cells that become empty refill according to the little that is left in them.
         if (!parameters_.time.tolerance && latest_.min_stretch.value < empty &&
             numerics().tolerance > tolerance_if_empty)
         {
@@ -198,9 +198,9 @@ namespace crawler
         }
       }
 
-      /// The error in time grows with the number of cells on stiff bodies: so it is measured again on the last mesh but
+      /// Measures the error in time, which grows with the number of cells on stiff bodies, again on the last mesh but
       /// one, or on the last one itself if this takes few steps, whose errors grow fast. If it is too large the last
-      /// mesh must be done again, with the smaller tolerance.
+      /// mesh must be repeated with the smaller tolerance. Returns true if it is not.
       bool
       is_fine_in_time()
       {
@@ -220,7 +220,7 @@ namespace crawler
         const double error = 2. * std::abs(*value(result) - *value(own));
         if (error <= time_part * wanted() || ++n_corrections_ > most_tolerances)
         {
-          // One difference may be small by chance.
+          // Differences may be small by chance.
           time_error_ = std::max(error, std::min(time_error_, time_part * wanted()));
           return true;
         }
@@ -242,7 +242,7 @@ namespace crawler
           levels_.clear();
           return;
         }
-        if (!levels_.empty() && !are_alike(result, levels_.back().result)) // what was believed before is not true
+        if (!levels_.empty() && !are_alike(result, levels_.back().result)) // earlier assumptions are false
           levels_.clear();
         Level now{result, *value(result)};
         now.work = work_of(result);
@@ -256,7 +256,7 @@ namespace crawler
           now.work    = work_of(extrapolated_);
           now.change  = change;
           now.settled = now.value - before.value;
-          // Two displacements may agree by chance; times that have changed by much show no order yet.
+          // Displacements of two meshes may agree by chance; times that have changed by much show no order yet.
           const bool inverts_elsewhere =
             latest_.inversion && std::abs(before.change) > largest_change_of_inversion * latest_.inversion->t;
           if (levels_.size() > 1 && !inverts_elsewhere)
@@ -268,14 +268,14 @@ namespace crawler
       struct Level
       {
         SimulationResult result;
-        double value;        ///< extrapolated
-        double work    = 0.; ///< of the active stress, extrapolated; 0 if it was not looked at
+        double value;        ///< extrapolated value
+        double work    = 0.; ///< extrapolated work of the active stress; 0 if it was not computed
         double change  = 0.,
-               settled = HUGE_VAL; ///< of the value itself and of the extrapolated one since the last level
+               settled = HUGE_VAL; ///< changes of the value itself and of the extrapolated one since the last level
       };
 
-      /// Diffusion smooths the stretch over such a length in a stride; the displacements of meshes with larger cells
-      /// seem to converge without what is as thin.
+      /// Error by thin features: diffusion smooths the stretch over `length` in a stride, and the displacements of
+      /// meshes with larger cells seem to converge without features as thin.
       double
       unseen(const Level &now) const
       {
@@ -286,7 +286,8 @@ namespace crawler
         return finished(now.result) && !is_seen ? unseen_part * length * std::abs(now.value) : 0.;
       }
 
-      /// There the last half of a cell has friction unlike that of its middle, and order 2 shows late.
+      /// True if an end is nearly lost: the last half of a cell then has friction unlike that of its middle, and order
+      /// 2 shows late.
       bool
       end_is_nearly_lost() const
       {
@@ -294,11 +295,11 @@ namespace crawler
         return latest_.min_stretch.value < 0.1 && (s < 0.02 * L || s > 0.98 * L);
       }
 
-      /// Of the extrapolated value, from the last two changes.
+      /// Error of the extrapolated value, from the last two changes.
       double
       error_of(const Level &before, const Level &now)
       {
-        // Changes that turn round have no order.
+        // Changes of alternating sign have no order.
         const double change = std::abs(now.change), last = std::abs(before.change);
         const double order  = now.change * before.change < 0. ? 0. : std::log2(last / change);
         const bool is_clean = std::abs(order - 2.) < clean;
@@ -311,12 +312,12 @@ namespace crawler
           return std::max(std::abs(now.settled), change / (std::exp2(order) - 1.));
         if (order > largest_order)
           return std::max(std::abs(now.settled), change / 3.);
-        // Displacements may agree by chance; their works do not, too.
+        // Displacements may agree by chance; their works rarely do at the same time.
         const double settled = std::max(std::abs(now.settled), unsettled_work(before, now) * change);
         if (levels_.size() == 2) // one change of the extrapolated value alone
           return is_clean ? settled : unclean_factor * settled;
         const double settled_before = std::abs(before.settled);
-        if (now.settled * before.settled < 0.) // the small change is where they turn round
+        if (now.settled * before.settled < 0.) // the small change is at a turning point
           return std::max(settled, settled_before / turned);
         if (settled_before > fastest * settled)
           return settled_before / fastest;
@@ -329,7 +330,7 @@ namespace crawler
         return result.energy_balance ? result.energy_balance->stress_work : 0.;
       }
 
-      /// The change of the extrapolated work since the level before, relative to that of the work itself.
+      /// Change of the extrapolated work since the level before, relative to that of the work itself.
       double
       unsettled_work(const Level &before, const Level &now) const
       {
@@ -337,8 +338,8 @@ namespace crawler
         return finished(now.result) && change > 0. ? std::abs(now.work - before.work) / change : 0.;
       }
 
-      /// Near an inversion the last of the stretch may be fed by tiny flows, and the time converges slowly; what the
-      /// rule for the nodes makes of them is a part of the error.
+      /// Checks an inversion: near it the last of the stretch may be fed by tiny flows, and the time converges slowly;
+      /// the effect of the node rule on these flows is a part of the error.
       void
       check_inversion()
       {
@@ -379,7 +380,8 @@ namespace crawler
         return errors;
       }
 
-      /// With the largest error in time that is admissible; what that was on the coarsest mesh does not count here.
+      /// True if the mesh is good enough with the largest error in time that is admissible; that on the coarsest mesh
+      /// does not count here.
       bool
       is_good_in_space() const
       {
@@ -426,7 +428,7 @@ namespace crawler
         else if (latest_.inversion)
         {
           result = extrapolated_;
-          if (std::isfinite(space_error_)) // of an early one Accuracy, which is relative to the duration, asks nothing
+          if (std::isfinite(space_error_)) // Accuracy, relative to the duration, does not bind an early one
             result.inversion_error =
               std::max(space_error_, least_part * std::min(wanted(), believed * latest_.inversion->t)) + time_error_;
           end_before_inversion(result);
@@ -454,11 +456,11 @@ namespace crawler
       const double accuracy_;
       Answer answer_;
       SimulationResult latest_, extrapolated_;
-      std::vector<Level> levels_; ///< those that agree
+      std::vector<Level> levels_; ///< levels that agree
       NumberErrors time_errors_;
       double size_ = 0., time_error_ = 0., space_error_ = HUGE_VAL;
       unsigned int n_runs_ = 0, n_corrections_ = 0;
-      bool has_order_ = false; ///< observed between the last meshes
+      bool has_order_ = false; ///< order observed between the last meshes
     };
   } // namespace
 
@@ -470,7 +472,7 @@ namespace crawler
                    const KeepGoing &keep_going)
   {
     Answer answer = Family(parameters, scene, choice, options, keep_going).compute();
-    if (!options.energy_balance) // nobody asked for it
+    if (!options.energy_balance) // not requested
     {
       answer.result.energy_balance.reset();
       if (answer.result.gait)

@@ -16,7 +16,7 @@ namespace crawler
   {
     using namespace accuracy_rule::level;
 
-    /// A body that starts from rest starts with the stretch 1.
+    /// Requires the stretch 1 at the start of a body that starts from rest.
     void
     require_start_at_rest(const Scene &scene, const Model model)
     {
@@ -62,7 +62,7 @@ namespace crawler
           "Model");
     }
 
-    /// An approximate level that was tried.
+    /// Approximate level that was tried.
     struct Candidate
     {
       Model model;

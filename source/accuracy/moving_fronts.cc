@@ -38,7 +38,7 @@ namespace crawler
           const bool inverted = next.result.time.status == Status::inverted;
           const bool is_known = next.result.error && std::isfinite(next.result.error->total);
           const bool stopped  = next.result.time.status == Status::stopped;
-          if (!inverted && !is_known && !stopped && answer_.result.error) // what is there is better
+          if (!inverted && !is_known && !stopped && answer_.result.error) // the earlier answer is better
             break;
           answer_                            = std::move(next);
           answer_.choice.has_fronts          = true;
@@ -73,7 +73,7 @@ namespace crawler
         SimulationResult result;
       };
 
-      /// The time of the inversion has to settle.
+      /// Confirms an inversion, whose time has to settle.
       bool
       confirms_inversion()
       {
@@ -95,7 +95,7 @@ namespace crawler
         return wanted_part_ * size;
       }
 
-      /// The results of the levels from @p first on, extrapolated.
+      /// Extrapolated results of the levels from @p first on.
       SimulationResult
       extrapolated(const std::size_t first) const
       {
@@ -132,7 +132,7 @@ namespace crawler
         double time                       = 0.;
         for (std::size_t i = 0; i < levels_.size(); ++i)
           time += std::abs(weights[i]) * levels_[i].result.error->total;
-        // Fewer widths agree better than they should now and then: the answer before is looked at, too.
+        // Extrapolations of fewer widths sometimes agree too well: the previous answer counts, too.
         result.error.emplace();
         if (before_)
         {
@@ -149,7 +149,7 @@ namespace crawler
         answer_.choice.promised_error = answer_.result.error->total;
       }
 
-      /// What is not as accurate as wanted, or of one width of fronts only, is no answer.
+      /// Judges the answer: one not as accurate as wanted, or of one width of fronts only, is none.
       void
       judge()
       {
@@ -170,13 +170,13 @@ namespace crawler
                                 : "the error of the displacement is not known: steeper fronts have no answer";
       }
 
-      RunParameters parameters_; ///< of the runs
+      RunParameters parameters_; ///< parameters of the runs
       const Scene &scene_;
       const AnswerOf &answer_of_;
       Answer answer_;
       std::vector<Level> levels_;
-      std::optional<double> inversion_; ///< of the fronts before
-      std::optional<double> before_;    ///< the displacement extrapolated to fewer widths
+      std::optional<double> inversion_; ///< time of inversion of the previous fronts
+      std::optional<double> before_;    ///< displacement extrapolated to fewer widths
       double wanted_part_    = 0.;
       unsigned long n_steps_ = 0;
     };

@@ -23,12 +23,12 @@ namespace crawler
     using namespace accuracy_rule::choice;
     using accuracy_rule::displacement_floor;
 
-    /// A stop was requested during the pilots.
+    /// Exception for a stop that was requested during the pilots.
     struct Interrupted
     {
     };
 
-    /// The choice as it grows; each function below makes one decision.
+    /// Chooser of the numerics; each function below makes one decision.
     class Chooser
     {
     public:
@@ -76,7 +76,7 @@ namespace crawler
         if (user_cells_ && (user_tolerance_ || fixed) && mesh != MeshKind::adaptive)
         {
           choice_.numerics.n_cells   = *user_cells_;
-          choice_.numerics.tolerance = user_tolerance_.value_or(1e-10 * L_); // of Newton's method only
+          choice_.numerics.tolerance = user_tolerance_.value_or(1e-10 * L_); // tolerance of Newton's method only
           choice_.explanation        = "cells and time steps as set by the user";
           return choice_;
         }
@@ -101,7 +101,7 @@ namespace crawler
           stretch_form();
           return choice_;
         }
-        // What few cells do not resolve is steep, not fine, if the active stress is smooth: fronts of friction.
+        // Solutions unresolved by few cells are steep, not fine, if the active stress is smooth: fronts of friction.
         const bool may_be_steep = may_be_stretch() && scene_.friction_exponent() < 0. &&
                                   is_cheaper_than_many_cells(L_ / scales_.length, accuracy_);
         bool enough = false;
@@ -126,7 +126,7 @@ namespace crawler
       }
 
     private:
-      /// Motions below this are nothing, and their squares underflow.
+      /// Displacements below this count as zero: their squares underflow.
       double
       smallest() const
       {
@@ -142,7 +142,7 @@ namespace crawler
           simulation.run({}, {.energy_balance = false, .resolution = resolution, .cycles = cycles_}, {}, keep_going_);
         if (result.time.status == Status::stopped && result.time.reason.empty())
           throw Interrupted();
-        // A displacement that is 0 whatever the numerics are tells nothing about them; the deformation does.
+        // Displacements that are 0 whatever the numerics are tell nothing about them; the deformation does.
         if (scene_.keeps_its_centre())
           result.displacement = result.largest_u;
         return result;
@@ -167,7 +167,7 @@ namespace crawler
         return (name.starts_with("radau") ? one_step_start : multistep_start) * T_;
       }
 
-      /// Of the last pilot, whether it went there or its cycles were extrapolated.
+      /// Number of steps of the last pilot to the end, whether it went there or its cycles were extrapolated.
       double
       steps_to_the_end() const
       {
@@ -175,7 +175,7 @@ namespace crawler
         return pilot_.cycles ? steps * (1. + 1. * pilot_.cycles->extrapolated / pilot_.cycles->computed) : steps;
       }
 
-      /// The size of the displacement, of which Accuracy is a part.
+      /// Measures the size of the displacement, to which Accuracy is relative.
       void
       measure_size()
       {
@@ -185,14 +185,14 @@ namespace crawler
           size_ = std::max(size_, least_size());
       }
 
-      /// k T/(gamma L^2)
+      /// Stiffness k T/(gamma L^2).
       double
       stiffness() const
       {
         return scene_.body.elastic_modulus / natural_units(scene_).force;
       }
 
-      /// k T/(g L^2) for the largest friction g of the last pilot, which thin layers are a matter of.
+      /// Stiffness k T/(g L^2) for the largest friction g of the last pilot, which determines thin layers.
       double
       stiffness_over_friction() const
       {
@@ -201,21 +201,21 @@ namespace crawler
         return stiffness() / largest;
       }
 
-      /// Are all layers wide enough to show in the modes of the stretch on so many cells? Where nothing starts suddenly
-      /// they are as wide as elasticity evens out, against the largest friction of the last pilot, while the active
-      /// stress changes.
+      /// True if all layers are wide enough to show in the modes of the stretch on this mesh. Where nothing starts
+      /// suddenly they are as wide as elasticity smooths against the largest friction of the last pilot while the
+      /// active stress changes.
       bool
       sees_layers(const unsigned int degree, const unsigned int n_cells) const
       {
         if (!scene_.is_plain() || !scales_.is_smooth || scales_.sudden > sudden_part * std::sqrt(accuracy_))
           return false;
-        double time = T_; // in which the active stress changes
+        double time = T_; // time in which the active stress changes
         for (const StepLimit &limit : scales_.step_limits)
           time = std::min(time, limit.longest);
         return std::sqrt(stiffness_over_friction() * time / T_) * degree * n_cells >= widest_hidden_layer;
       }
 
-      /// Does the active stress make layers suddenly, and may a graded mesh be chosen for that?
+      /// True if the active stress makes layers suddenly, and a graded mesh may be chosen for that.
       bool
       starts_or_jumps() const
       {
@@ -225,9 +225,9 @@ namespace crawler
                adaptive_steps_ && !parameters_.discretization.mesh_tolerance;
       }
 
-      /// A sudden stress makes velocities like that to the power -1/2 of the time since then: so at first they are
-      /// above the one at which friction switches its direction, in a layer of this thickness, relative to the length.
-      /// No refinement shows that to a mesh that is much coarser.
+      /// Thickness, relative to the length, of the layer in which velocities after a sudden stress, which fall with
+      /// time to the power -1/2, are above the one at which friction switches its direction. No refinement shows this
+      /// layer to a mesh that is much coarser.
       double
       fast_layer() const
       {
@@ -237,7 +237,7 @@ namespace crawler
                                      : 0.;
       }
 
-      /// A mesh that is graded towards the ends and breaks in space; returns whether there is one that is enough.
+      /// Chooses a mesh that is graded towards the ends and breaks in space; returns true if one is good enough.
       bool
       graded()
       {
@@ -247,7 +247,7 @@ namespace crawler
         start.n_cells  = static_cast<unsigned int>(
           std::clamp(std::ceil(0.25 * L_ / scales_.length), 1. * fewest_cells, 1. * most_cells));
         const std::string &own = parameters_.time.integrator;
-        // Each piece between breaks has a cell at least.
+        // Pieces between breaks have a cell at least.
         start.n_cells          = std::max(start.n_cells, static_cast<unsigned int>(scales_.in_space) + 1);
         start.integrator       = accuracy_ < radau_9_accuracy_if_graded ? "radau 9" : "radau 5";
         const std::string name = own == "automatic" ? start.integrator : own;
@@ -287,14 +287,15 @@ namespace crawler
         return true;
       }
 
-      /// When an end has inverted in the last pilot.
+      /// Time at which an end has inverted in the last pilot.
       std::optional<double>
       end_inversion() const
       {
         return pilot_.time.reason == "inverted_at_end" ? std::optional(pilot_.inversion->t) : std::nullopt;
       }
 
-      /// The conditions at the ends say when these invert, on any mesh: two pilots that get there are enough.
+      /// True if the ends invert at the same time in two pilots, which suffice since the end conditions determine this
+      /// time on any mesh.
       bool
       ends_invert_then(const std::optional<double> &before)
       {
@@ -318,7 +319,7 @@ namespace crawler
             return;
           const bool finished = pilot_.time.status == Status::finished;
           const bool resolves = user_cells_ || pilot_.unresolved <= std::max(resolved, accuracy_) || n_cells >= most;
-          // Too coarse a mesh or step can look like an inversion; if finer ones say the same the real run will name it.
+          // Coarse meshes or steps can look like an inversion; if finer ones agree the real run will name it.
           if (ends_invert_then(inversion_before))
             good = true;
           else if (!finished && !user_cells_ && n_cells < std::min(most, 64u))
@@ -335,17 +336,17 @@ namespace crawler
         }
       }
 
-      /// A uniform mesh from pilots with up to @p most cells; returns whether there is one, and, if the solution
-      /// @p may_be_steep, whether few cells are enough.
+      /// Chooses a uniform mesh from pilots with up to @p most cells; returns true if there is one, and, if the
+      /// solution @p may_be_steep, if few cells are enough.
       bool
       uniform(const unsigned int most, const bool may_be_steep)
       {
         Numerics &n = choice_.numerics;
         if (adaptive_steps_)
           n.integrator = "radau 5";
-        // The stretch of a linear element has no mode that could show what is missing: one degree more shows it.
+        // Linear elements have no mode of the stretch that could show the error: one degree more shows it.
         const unsigned int pilot_degree = std::max(choice_.numerics.degree, 2u);
-        // A cell of this degree resolves a stress whose scale is a quarter of its size.
+        // Cells of this degree resolve a stress whose scale is a quarter of their size.
         const double seen    = std::clamp(std::ceil(0.25 * L_ / scales_.length), 1. * fewest_cells, 0.25 * most_cells);
         unsigned int n_cells = user_cells_.value_or(static_cast<unsigned int>(seen));
         if (n_cells > most && !user_cells_)
@@ -356,18 +357,18 @@ namespace crawler
           return true;
         const bool predicts = pilot_.time.status == Status::finished;
         if (!predicts || pilot_.unresolved > std::max(resolved, accuracy_))
-          return most == most_cells; // whatever it is, there is no more
+          return most == most_cells; // nothing else is left, whatever the reason
         if (most < most_cells && stiffness() < very_soft)
-          return false; // a pilot may pass over such layers by luck
+          return false; // a pilot may pass over these layers by luck
         return user_cells_ || extrapolate_cells(pilot_degree, n_cells, may_be_steep);
       }
 
       /**
-       * The number of cells from that of a pilot that resolves the deformation; false if the solution @p may_be_steep
-       * and few cells are not enough.
-       * On smooth solutions `unresolved` goes down as (cell size)^(2q-2), q the pilot's degree, and the error of the
-       * displacement at least as fast. Thin layers look resolved before they are: so the rate is measured, with smaller
-       * steps whose errors do not hide it, on meshes twice as fine each time until it is at least half of that.
+       * Finds the number of cells from that of a pilot that resolves the deformation; false if the solution @p
+       * may_be_steep and few cells are not enough. On smooth solutions `unresolved` falls as (cell size)^(2q-2), q the
+       * pilot's degree, and the error of the displacement at least as fast. Thin layers look resolved before they are:
+       * so the rate is measured, with smaller steps whose errors do not hide it, on meshes twice as fine each time
+       * until it is at least half of that.
        */
       bool
       extrapolate_cells(const unsigned int pilot_degree, unsigned int n_cells, const bool may_be_steep)
@@ -400,8 +401,8 @@ namespace crawler
             break;
         }
         double cells = rate > 0. ? n_cells * std::pow(unresolved / wanted_part, 1. / rate) : n_cells;
-        // Layers that are thinner than the cells are not seen in the stretch, but the balance of forces tells; its
-        // rate, too, must be that of a smooth solution.
+        // Layers thinner than the cells do not show in the stretch, but the balance of forces shows them; its rate,
+        // too, must be that of a smooth solution.
         const double gain      = std::pow(std::max(1., cells / n_cells), full_rate);
         const double too_large = indicator_factor * indicator / (accuracy_ * gain * pilot_.strain);
         if (may_be_steep && too_large > 1.)
@@ -413,12 +414,12 @@ namespace crawler
         choice_.numerics.n_cells =
           static_cast<unsigned int>(std::clamp(std::ceil(cells), enough_cells, static_cast<double>(most_cells)));
         choice_.is_steep = !choice_.is_rough && rate > 0. && std::min(rate, indicator_rate) < 0.5 * full_rate;
-        // The rule's own idea of the error in space, relative to the wanted one.
+        // Error in space predicted by the rule, relative to the wanted one.
         space_over_time_ = std::pow(cells / choice_.numerics.n_cells, rate > 0. ? rate : full_rate);
         return !may_be_steep || choice_.numerics.n_cells <= most_uniform_cells;
       }
 
-      /// An adaptive mesh: pilots measure the strain, to which its tolerance is relative, and the number of steps.
+      /// Chooses an adaptive mesh: pilots measure the strain, which scales its tolerance, and the number of steps.
       void
       adaptive()
       {
@@ -429,7 +430,7 @@ namespace crawler
           static_cast<unsigned int>(std::clamp(std::ceil(L_ / scales_.length), 8., 1. * most_cells)));
         n.mesh        = {1., parameters_.discretization.smallest_cell.value_or(1e-6 * L_)};
         double strain = pilot_.strain > 0. ? pilot_.strain : scale_ * scale_ / L_;
-        // What needs more than this collapses, and the scheme that is safe then costs less.
+        // Pilots that need more steps than this collapse, and the scheme that is safe then costs less.
         const TimeParameters usual = pilot_time_;
         pilot_time_.max_steps      = std::min(pilot_time_.max_steps, most_adaptive_pilot_steps);
         double tighter             = 1.;
@@ -446,7 +447,7 @@ namespace crawler
             strain = pilot_.strain;
           const bool strain_known = strain < 4. * before && strain > 0.25 * before;
           if (!finished)
-            tighter *= 0.01; // the stretch may have been lost because of the mesh
+            tighter *= 0.01; // the mesh may have caused the loss of the stretch
           const bool coarse_steps = finished && size_ > 0. && tolerance_ > 0.03 * size_;
           if (coarse_steps || (!finished && i < 2))
             tolerance_ = finished ? std::max(0.01 * size_, 1e-3 * tolerance_) : 0.03 * tolerance_;
@@ -457,7 +458,7 @@ namespace crawler
         const double part = parameters_.discretization.mesh_tolerance.value_or(
           std::min(accuracy_ / indicator_factor, tighter * resolved));
         n.mesh.tolerance = part * strain;
-        // bdf starts anew with each mesh, a one-step method goes on; but where the stretch collapses bdf is the faster.
+        // Method bdf restarts with each mesh, unlike one-step methods; but where the stretch collapses it is faster.
         if (adaptive_steps_ && pilot_.min_stretch.value > emptied)
           n.integrator = "radau 5";
       }
@@ -468,17 +469,17 @@ namespace crawler
         return may_be_stretch_form(parameters_, scene_);
       }
 
-      /// Did the last pilot come near an emptied state?
+      /// True if the last pilot came near an emptied state.
       bool
       is_for_stretch() const
       {
-        // It has few digits; so for a smaller Accuracy only where the position form cannot go on.
+        // Stretch form has few digits; so for a smaller Accuracy only where the position form cannot go on.
         return may_be_stretch() && pilot_.time.reason != "inverted_at_end" &&
                (accuracy_ >= 1e-7 || pilot_.time.status != Status::finished) &&
                empties(pilot_.min_stretch.value, scene_.friction_exponent(), accuracy_);
       }
 
-      /// The stretch form: the first of a family of meshes (mesh_family.h), or what the user has set.
+      /// Chooses the stretch form: the first of a family of meshes (mesh_family.h), or the user's settings.
       void
       stretch_form()
       {
@@ -514,8 +515,8 @@ namespace crawler
             : "stretch form, with cells as set by the user";
       }
 
-      /// Jumps that move and are known to be waves become fronts, each with numerics of its own (moving_fronts.h).
-      /// These here are those of a first look.
+      /// Chooses fronts for moving jumps that are known to be waves, each with numerics of its own (moving_fronts.h).
+      /// The numerics set here are those of a first run.
       void
       fronts()
       {
@@ -530,9 +531,9 @@ namespace crawler
       }
 
       /**
-       * Where jumps of the active stress move through the cells every method is of order 1 in their size: the mesh is
-       * doubled until the displacement settles, or until it is clear that too many cells would be needed. The error
-       * that is left is the one that is reported.
+       * Chooses the mesh for moving jumps of the active stress, where every method is of order 1 in the cell size: the
+       * mesh is doubled until the displacement settles, or until too many cells would be needed. The error that is left
+       * is the one that is reported.
        */
       void
       moving_jumps()
@@ -548,7 +549,7 @@ namespace crawler
         double change       = std::numeric_limits<double>::infinity();
         for (n.n_cells = first_moving_cells;; n.n_cells *= 2)
         {
-          // Steps that pass over many cells at once miss what happens on the way, and their errors look small.
+          // Steps that pass over many cells at once miss the motion in between, and their errors look small.
           n.step_limits        = {{0., period / (moving_steps * n.n_cells)}};
           tolerance_           = moving_tolerance * scale_ / n.n_cells;
           const double before  = pilot_.displacement;
@@ -557,8 +558,8 @@ namespace crawler
           measure_size();
           const bool finished = pilot_.time.status == Status::finished;
           if (!finished && (n.n_cells > first_moving_cells || pilot_.time.reason == "inverted_at_end"))
-            return; // the run will say why
-          // Each next mesh has twice the cells and up to twice the steps.
+            return; // the run will report the reason
+          // Meshes double their cells and take up to twice the steps.
           unsigned int last = n.n_cells;
           for (double work = 4. * n.n_cells * pilot_.time.steps;
                2 * last <= last_moving_cells && work < most_moving_work;
@@ -568,7 +569,7 @@ namespace crawler
           {
             const double change_before = change;
             change                     = std::abs(pilot_.displacement - before);
-            // One change alone may be small by chance.
+            // Changes may be small by chance if there is only one.
             const bool is_first = !std::isfinite(change_before);
             const double error =
               is_first ? moving_factor_of_first * change : moving_factor * std::max(change, 0.5 * change_before);
@@ -588,7 +589,7 @@ namespace crawler
         }
       }
 
-      /// The order of the error estimate of the run, by which its number of steps grows.
+      /// Order of the error estimate of the run, on which the growth of its number of steps depends.
       unsigned int
       estimated_order() const
       {
@@ -598,21 +599,21 @@ namespace crawler
         return method.petsc_type == "radau" ? method.n_stages : parameters_.time.order;
       }
 
-      /// Of a displacement whose wanted error is round-off.
+      /// Smallest size of a displacement whose wanted error is round-off.
       double
       least_size() const
       {
         return least_error * L_ / accuracy_;
       }
 
-      /// Where the friction switches its direction kinks pass through the steps.
+      /// True where the friction switches its direction, so that kinks pass through the steps.
       bool
       kinks_move() const
       {
         return scene_.ground.direction.is_uneven();
       }
 
-      /// How much larger than by the rule the tolerance may be.
+      /// Factor by which the tolerance may exceed that of the rule.
       double
       superconvergence() const
       {
@@ -623,7 +624,7 @@ namespace crawler
         return name == "radau 9" ? radau_9_superconvergence : name == "radau 5" ? radau_5_superconvergence : 1.;
       }
 
-      /// The time tolerance, and the explanation.
+      /// Sets the time tolerance, and the explanation.
       void
       finish(const bool fixed)
       {
@@ -631,14 +632,13 @@ namespace crawler
         const bool predicts = pilot_.time.status == Status::finished;
         if (size_ == 0.)
           size_ = scale_;
-        const bool is_graded = n.grading.levels > 0; // then all is chosen already
+        const bool is_graded = n.grading.levels > 0; // all is chosen already
         if (!jumps_move_ && !is_graded && n.integrator == "radau 5" && n.mesh.tolerance == 0. &&
             accuracy_ < radau_9_accuracy)
           n.integrator = "radau 9";
         if (!parameters_.time.initial_step && !is_graded)
           n.initial_step = first_step(parameters_.time);
-        // The number of steps goes up as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy *
-        // size.
+        // Number of steps grows as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy * size.
         const double r      = 1. / (1. + estimated_order());
         const double wanted = accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
         const double by_rule =
@@ -703,19 +703,19 @@ namespace crawler
       const double T_, L_, accuracy_, scale_;
       const bool adaptive_steps_;
       TimeParameters pilot_time_;
-      std::optional<CycleWish> cycles_; ///< of pilots
+      std::optional<CycleWish> cycles_; ///< cycle request of pilots
       NumericsChoice choice_;
-      SimulationResult pilot_; ///< the last one that counts
+      SimulationResult pilot_; ///< last one that counts
       double tolerance_ = 0., size_ = 0.;
       unsigned int n_pilots_ = 0;
       bool jumps_move_ = false, inverts_at_end_ = false;
-      double space_over_time_ = 1.; ///< errors as the rule expects them
+      double space_over_time_ = 1.; ///< ratio of the errors predicted by the rule
     };
   } // namespace
 
   namespace
   {
-    /// The beginning of a scene, with the same active stress.
+    /// Beginning of a scene, with the same active stress.
     class Beginning
     {
     public:
@@ -744,7 +744,8 @@ namespace crawler
       Scene scene_;
     };
 
-    /// When the first strides of a run end, if it has many more and they are all computed: what these need all need.
+    /// End of the first strides of a run, if it has many more and they are all computed: numerics good for these are
+    /// good for all.
     std::optional<double>
     end_of_first_strides(const RunParameters &parameters, const Scene &scene)
     {

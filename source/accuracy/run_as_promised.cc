@@ -22,8 +22,8 @@ namespace crawler
     using accuracy_rule::finer_run::most_refined_cells, accuracy_rule::finer_run::refined_cells;
 
     /**
-     * Where the user chose the numerics a coarse mesh or long steps can fake a stretch that is lost inside: finer runs
-     * must lose it, too, at nearly the same time.
+     * Confirms an inversion where the user chose the numerics, since a coarse mesh or long steps can fake a stretch
+     * that is lost inside: finer runs must lose it, too, at nearly the same time.
      */
     void
     confirm_inversion(MPI_Comm communicator,
@@ -75,7 +75,7 @@ namespace crawler
       result.inversion.reset();
     }
 
-    /// May a run with finer numerics end where this one did not?
+    /// True if a run with finer numerics may end where this one did not.
     bool
     is_for_finer_numerics(const TimeOutcome &outcome)
     {
@@ -84,7 +84,7 @@ namespace crawler
       return outcome.status == Status::failed && std::ranges::find(reasons, outcome.reason) != std::end(reasons);
     }
 
-    /// Of one rank, without files.
+    /// Answer on one rank, without files.
     Answer
     answer_with(const NumericsChoice &choice,
                 const RunParameters &parameters,
@@ -107,8 +107,8 @@ namespace crawler
         keep_going);
     }
 
-    /// The stretch form has few digits: where its meshes do not meet Accuracy a uniform mesh of the position form may
-    /// do, or come nearer. Nothing if it gives no displacement with a bound.
+    /// Answer of the position form where the meshes of the stretch form, which has few digits, do not meet Accuracy: a
+    /// uniform mesh may meet it, or come nearer. Nothing if it gives no displacement with a bound.
     std::optional<Answer>
     answer_of_position_form(const RunParameters &parameters,
                             const Scene &scene,
@@ -128,8 +128,8 @@ namespace crawler
       return answer;
     }
 
-    /// The position form may fail shortly before an end inverts, where the stretch nearby is tiny; the stretch form
-    /// does not mind. Nothing if it gives no answer either.
+    /// Answer of the stretch form where the position form fails shortly before an end inverts, since the stretch nearby
+    /// is tiny. Nothing if it gives no answer either.
     std::optional<Answer>
     answer_of_stretch_form(const RunParameters &parameters,
                            const Scene &scene,
@@ -149,8 +149,8 @@ namespace crawler
       return answer;
     }
 
-    /// The answer with the files of one more run. Its output times make its steps a little different; the numbers are
-    /// those that the bounds are for. Where the body inverts they are those of the last state in the files.
+    /// Answer with the files of one more run. Its output times change its steps a little; the numbers are those to
+    /// which the bounds belong. Where the body inverts they are those of the last state in the files.
     Answer
     with_files(Answer answer, const std::function<SimulationResult(const NumericsChoice &)> &simulate)
     {
@@ -203,7 +203,7 @@ namespace crawler
 
   namespace
   {
-    /// One run after the other, each with finer numerics, until one is as good as it should be.
+    /// Tries: successive runs with finer numerics, until one is as accurate as required.
     class Tries
     {
     public:
@@ -241,7 +241,7 @@ namespace crawler
       bool
       tries_again()
       {
-        // What has been measured on one mesh after the other is not tried again.
+        // Choices measured on successive meshes get no further tries.
         const bool has_tries = !first_.is_measured && answer_.refinements < most_refinements;
         if (is_for_finer_numerics(result_.time))
         {
@@ -261,14 +261,14 @@ namespace crawler
         if (has_tries && first_.least_error <= wanted())
           try
           {
-            // A smooth solution needs few more; where that has not helped errors go with a power of the size of cells.
+            // Smooth solutions need few more cells; where these do not help errors fall by a power of the cell size.
             const double total = result_.error->total;
             make_finer(answer_.refinements == 0 || !(total > wanted())
                          ? refined_cells
                          : std::clamp(std::cbrt(total / wanted()), refined_cells, most_refined_cells));
             return true;
           }
-          catch (...) // the answer that is there stays
+          catch (...) // the earlier answer stays
           {
             problem = "; the next try failed: " + failure_of(std::current_exception()).message;
             if (size_of(communicator_) > 1) // the other ranks may be waiting
@@ -302,8 +302,7 @@ namespace crawler
         return std::isnan(wanted()) || total <= wanted() || stopped;
       }
 
-      /// An energy balance that does not asks for a finer run, too; if that does not help it is the self-check's
-      /// business.
+      /// True if the energy balance closes. If not, a finer run is tried, too; the self-check judges the last one.
       bool
       closes() const
       {
@@ -338,7 +337,7 @@ namespace crawler
       SimulationResult &result_ = answer_.result;
     };
 
-    /// Of the family, or of the position form if it meets Accuracy where the family does not, or comes nearer to it.
+    /// Answer of the family, or of the position form if that alone meets Accuracy, or comes nearer to it.
     Answer
     better_of_both_forms(const RunParameters &parameters,
                          const Scene &scene,
@@ -356,7 +355,7 @@ namespace crawler
                       other->result.error->total < answer.result.error->total))
           return std::move(*other);
       }
-      catch (...) // the answer that is there stays
+      catch (...) // the earlier answer stays
       {
         answer.result.time.message +=
           "; the position form failed, too: " + failure_of(std::current_exception()).message;

@@ -16,11 +16,11 @@ namespace crawler
   {
     using namespace accuracy_rule::shared;
 
-    /// What an answer of shared numerics needs: a bound that can be compared with what is wanted.
+    /// True if an answer of shared numerics can have a bound that is comparable with the wanted error.
     bool
     may_share(const NumericsChoice &choice, const SceneToCompute &one)
     {
-      return !choice.is_measured && !one.scene->keeps_its_centre() && // whose displacement tells nothing
+      return !choice.is_measured && !one.scene->keeps_its_centre() && // displacements of 0 tell nothing
              !choice.is_of_several_runs() && std::isfinite(choice.promised_error) &&
              batch_method(*one.scene, one.parameters->time, choice.numerics);
     }
@@ -51,15 +51,15 @@ namespace crawler
       }
 
     private:
-      /// The same runs of all examples.
+      /// Runs of all examples with the same numerics.
       struct Runs
       {
         bool finished = false;
         std::vector<double> displacements;
-        double cost = std::numeric_limits<double>::infinity(); ///< of the time integration
+        double cost = std::numeric_limits<double>::infinity(); ///< cost of the time integration
       };
 
-      /// The finest of the choices for all examples, with the tolerance relative to the displacement.
+      /// Begins with the finest of the choices for all examples, with the tolerance relative to the displacement.
       bool
       begin_by_rule()
       {
@@ -121,7 +121,7 @@ namespace crawler
         return result;
       }
 
-      /// Do the displacements differ by so little that it does not count?
+      /// True if the displacements differ negligibly.
       bool
       are_near(const Runs &some, const Runs &others) const
       {
@@ -137,7 +137,7 @@ namespace crawler
       make_cheaper(const Runs &reference)
       {
         Numerics &best = found_.choice.numerics;
-        Runs on_mesh   = reference; // exact in time, as far as it counts
+        Runs on_mesh   = reference; // exact in time, as far as it matters
         for (unsigned int n = accuracy_rule::choice::fewest_cells; n < best.n_cells; ++n)
         {
           Numerics fewer   = best;
@@ -158,7 +158,7 @@ namespace crawler
             continue;
           Numerics other   = mesh;
           other.integrator = name;
-          // One difference may be small by chance.
+          // Differences may be small by chance.
           Runs looser;
           for (double tolerance = loosest_tolerance; tolerance > found_.relative_tolerance; tolerance *= next_tolerance)
           {
@@ -193,7 +193,7 @@ namespace crawler
     NumericsChoice own = choice;
     own.numerics.tolerance =
       std::max(relative_tolerance * size, accuracy_rule::choice::least_error * scene.body.length);
-    // Each stress has events of its own.
+    // Stress events differ from scene to scene.
     own.numerics.step_limits =
       similar_step_limits(scene, choice.numerics.step_limits, choice.numerics.least_event / least_event);
     return own;

@@ -15,11 +15,11 @@ namespace crawler
 {
   namespace
   {
-    /// Places or times between samples, where they are close; and how many of them apart smoothness shows, not
-    /// round-off.
+    /// Number of places or times between samples where they are close; number of these intervals over which differences
+    /// show smoothness, not round-off.
     constexpr unsigned int fine = 512, near = 4;
 
-    /// The largest |x_i|, i < @p n, of what @p x gives; several of them grow side by side, so that none waits for
+    /// Largest |x_i|, i < @p n, of the values of @p x; several maxima are formed side by side, so that none waits for
     /// itself.
     template <typename Numbers>
     double
@@ -36,7 +36,7 @@ namespace crawler
       return *std::ranges::max_element(largest);
     }
 
-    /// Is one of @p breaks (ascending) between @p from and @p to?
+    /// True if one of @p breaks (ascending) is between @p from and @p to.
     bool
     any_between(const std::vector<double> &breaks, const double from, const double to)
     {
@@ -44,8 +44,8 @@ namespace crawler
       return next != breaks.end() && *next <= to;
     }
 
-    /// A place where m jumps by more than @p least at the time @p t, without being one of the breaks @p in_space: where
-    /// the largest difference of neighbours of a sampling does not become smaller when the neighbours come closer.
+    /// Place where m jumps by more than @p least at the time @p t, without being one of the breaks @p in_space: where
+    /// the largest difference of neighbours of a sampling does not shrink when the neighbours come closer.
     std::optional<double>
     undeclared_jump(const Scene &scene, const std::vector<double> &in_space, const double t, const double least)
     {
@@ -70,12 +70,12 @@ namespace crawler
       return jump.change() > least ? std::optional(jump.middle()) : std::nullopt;
     }
 
-    /// Are there such jumps that are elsewhere at another time?
+    /// True if undeclared jumps are at different places at different times.
     bool
     jumps_that_move(const Scene &scene, const std::vector<double> &in_space, const double least)
     {
       constexpr unsigned int n_times = 8;
-      constexpr double golden        = 0.6180339887498949; // no multiple of a period
+      constexpr double golden        = 0.6180339887498949; // not a multiple of a period
       const double L = scene.body.length, beside = 1e-6 * L;
       struct Jump
       {
@@ -104,7 +104,7 @@ namespace crawler
     class Samples
     {
     public:
-      /// Over [0, @p duration], which is a period of m or all the time; @p in_time are breaks relative to that.
+      /// @p duration is a period of m or the whole time; @p in_time are breaks relative to it.
       Samples(const Scene &scene,
               const double duration,
               const std::vector<double> &in_space,
@@ -117,18 +117,18 @@ namespace crawler
         constexpr unsigned int coarse = 16, very_fine = 8192;
         look(fine, coarse);
         look(coarse, fine);
-        // Where m is nearly 0 most of the time a short event may have been missed, unless the generator can tell.
+        // Short events may have been missed where m is nearly 0 most of the time, unless the generator can tell.
         if (is_often_quiet() && !scene.active_stress->bounds({0., scene.body.length, 0., T_}))
           look(coarse, very_fine);
       }
 
-      /// Samples that are farther apart than m may change say nothing of its rate; bounds at points do. Where an event
-      /// lies between samples its stress has not been seen either.
+      /// Examines m between samples, which do not show its rate if they are too far apart; bounds at points do. Where
+      /// an event lies between samples its stress has not been seen either.
       void
       look_between()
       {
         constexpr unsigned int n_places = 3;
-        constexpr double between        = 0.381966; // of two samples: no simple fraction
+        constexpr double between        = 0.381966; // fraction of the distance of two samples that is not simple
         const ActiveStress &stress      = *scene_.active_stress;
         const double L = scene_.body.length, dt = T_ / static_cast<double>(rates_.size());
         if (const auto all = stress.bounds({0., L, 0., T_}); !all || all->rate * dt <= largest)
@@ -149,7 +149,7 @@ namespace crawler
         }
       }
 
-      /// At many places at one more time.
+      /// Samples many places at one more time.
       void
       look_at(const double t)
       {
@@ -166,7 +166,7 @@ namespace crawler
                                  rates_.begin() + static_cast<std::ptrdiff_t>(std::max(j, i + 1)));
       }
 
-      /// The largest |m_t| but for rare times, a tenth of all at the most, in which it is far larger.
+      /// Largest |m_t| except for rare times, a tenth of all at the most, in which it is far larger.
       double
       usual_rate() const
       {
@@ -182,19 +182,19 @@ namespace crawler
         return largest;
       }
 
-      /// The rare times.
+      /// Changes at the rare times.
       std::vector<FastChange>
       rare_changes(const double usual) const
       {
         std::vector<FastChange> list;
         const double dt = T_ / static_cast<double>(rates_.size());
         for (std::size_t j = 0; j < rates_.size(); ++j)
-          if (rates_[j] > usual) // and a sample before and after
+          if (rates_[j] > usual) // includes a sample before and after
             list.push_back({dt * (static_cast<double>(j) - 1.), dt * (static_cast<double>(j) + 2.), rates_[j]});
         return list;
       }
 
-      /// Do differences along the body fall like those of a function with many derivatives, between the breaks?
+      /// True if differences along the body fall like those of a function with many derivatives, between the breaks.
       bool
       is_smooth() const
       {
@@ -207,7 +207,7 @@ namespace crawler
       double along   = 0.; ///< |m_s| between the breaks
 
     private:
-      /// The largest sixth difference of neighbours that are @p apart near samples from each other.
+      /// Largest sixth difference of neighbours that are @p apart near samples from each other.
       double
       sixth_difference(const std::vector<double> &m, const std::size_t apart) const
       {
@@ -273,10 +273,10 @@ namespace crawler
             rates[j - 1] =
               largest_size(m_.size(), [&](const std::size_t i) { return m_[i] - before[i]; }) * n_times / T_;
         }
-        rates_.swap(rates); // finer than those before
+        rates_.swap(rates); // finer than the previous ones
       }
 
-      /// Is the active stress nearly 0 for more than a tenth of the time?
+      /// True if the active stress is nearly 0 for more than a tenth of the time.
       bool
       is_often_quiet() const
       {
@@ -301,8 +301,7 @@ namespace crawler
       double fine_difference_ = 0., coarse_difference_ = 0.;
     };
 
-    /// Limits of the steps such that no step is longer than the time in which m can change by the largest |m|: where it
-    /// is fast, and elsewhere.
+    /// Limits of steps to the time in which m can change by the largest |m|: where it is fast, and elsewhere.
     std::vector<StepLimit>
     step_limits(const std::vector<FastChange> &changes,
                 const double largest,
@@ -316,10 +315,10 @@ namespace crawler
       if (largest == 0.)
         return {};
       const double longest = usual > 0. ? largest / usual : unlimited;
-      // Where changes begin and end; the fastest of those that go on is what counts. The step before one ends so many
-      // steps earlier that it does not see how the change begins: all runs would have the same error there.
+      // Starts and ends of changes; the fastest of those in progress counts. The step before one ends `lead` steps
+      // earlier so that it does not see how the change begins: all runs would have the same error there.
       constexpr double lead = 8.;
-      std::map<double, std::vector<std::pair<double, bool>>> edges; // time -> rates, and whether they begin
+      std::map<double, std::vector<std::pair<double, bool>>> edges; // time -> rates, and flags of those that begin
       for (const FastChange &change : changes)
         if (change.rate > usual && change.from < period && change.to > 0.)
         {
@@ -327,7 +326,7 @@ namespace crawler
           edges[std::min(change.to, period)].emplace_back(change.rate, false);
         }
       std::vector<StepLimit> limits = {{0., longest}};
-      double opened = longest; // what the last one began with: many similar ones in a row may be far apart
+      double opened = longest; // initial value of the last limit: many similar ones in a row may be far apart
       std::multiset<double> rates;
       for (const auto &[time, list] : edges)
       {
@@ -370,7 +369,7 @@ namespace crawler
       double at_start, later;
     };
 
-    /// The largest sudden changes of m at the ends and of its jumps at the breaks in space. At the start m meets a body
+    /// Largest sudden changes of m at the ends and of its jumps at the breaks in space. At the start m meets a body
     /// whose initial stretch w balances -k (w - 1).
     SuddenChange
     largest_sudden_change(const Scene &scene, const std::vector<double> &in_space)
@@ -419,7 +418,7 @@ namespace crawler
 
   namespace
   {
-    /// Whose fast changes were looked for when it was found.
+    /// True if the fast changes of the stress were searched when its repetition was found.
     bool
     is_known_by_repetition(const ActiveStress &stress)
     {
@@ -432,10 +431,10 @@ namespace crawler
   stress_scales(const Scene &scene)
   {
     constexpr unsigned int most_looks = 64;
-    constexpr double jump_part        = 0.05; // smaller jumps, relative to the largest |m|, are not looked for
+    constexpr double jump_part        = 0.05; // smaller jumps, relative to the largest |m|, are not searched
     const ActiveStress &stress        = *scene.active_stress;
     const double L = scene.body.length, T = scene.end_time;
-    // One period shows all.
+    // Single period, which shows everything.
     const double P                     = std::min(stress.period().value_or(T), T);
     const std::vector<double> in_space = breaks_in_space(stress, L), in_time = TimeSegments(stress, T).breaks();
     std::vector<double> in_period;
@@ -484,7 +483,7 @@ namespace crawler
   {
     const ActiveStress &stress = *scene.active_stress;
     const double L = scene.body.length, T = scene.end_time, P = std::min(stress.period().value_or(T), T);
-    if (!stress.bounds({0., L, 0., P})) // what it cannot tell is sampled, if there are events
+    if (!stress.bounds({0., L, 0., P})) // stresses without bounds are sampled, if there are events
     {
       std::vector<StepLimit> limits = known;
       if (limits.size() > 1)

@@ -21,7 +21,7 @@ namespace crawler
   {
     using namespace accuracy_rule;
     if (result.time.status != Status::finished || !result.error || !std::isfinite(result.error->total) ||
-        result.cycles || scene.ground.direction.is_uneven() || // kinks that move have no higher orders
+        result.cycles || scene.ground.direction.is_uneven() || // moving kinks have no higher orders
         !RecordedRun::is_possible(scene, parameters.time, choice.numerics) ||
         static_cast<double>(result.time.steps) * result.most_cells > sweep::most_work)
       return;
@@ -35,7 +35,7 @@ namespace crawler
       const double value = run.displacement + swept->time + swept->space;
       const double bound = std::max(swept->bound_of_corrected(), finer_run::round_off * scene.body.length);
       const double found = std::abs(result.displacement - value);
-      if (bound < found) // else it may be the sweep's own error
+      if (bound < found) // otherwise it may be the sweep's own error
         error.total = std::max(error.total, found);
       if (bound < error.total)
         result.corrected = {value, bound};
@@ -46,7 +46,7 @@ namespace crawler
         error.time  = error.total - error.space;
       }
     }
-    catch (const std::runtime_error &) // the answer and its bound are there
+    catch (const std::runtime_error &) // the answer and its bound stay
     {
     }
     if (!(error.total <= choice.wanted_error) && std::isfinite(choice.wanted_error))

@@ -13,8 +13,8 @@ namespace crawler
   {
     using namespace accuracy_rule::sweep;
 
-    /// The functions L_{q+1}, L_{q+2} at points x of [0,1]: integrals of Legendre polynomials, which vanish at both
-    /// ends, with int L_j' L_l' dx = delta_jl over a cell of size 1; and their derivatives there. [point][function]
+    /// Functions L_{q+1}, L_{q+2} at points x of [0,1]: integrals of Legendre polynomials, which vanish at both ends,
+    /// with int L_j' L_l' dx = delta_jl over a cell of size 1; and their derivatives there. [point][function]
     struct Bubbles
     {
       static constexpr unsigned int n = 2;
@@ -32,7 +32,7 @@ namespace crawler
       }
     };
 
-    /// The bubbles of all cells, @p c [cell][function], at the points of the cells.
+    /// Adds the bubbles of all cells, @p c [cell][function], at the points of the cells.
     void
     add_bubbles(const Bubbles &bubbles,
                 const CellPoints &cells,
@@ -135,7 +135,7 @@ namespace crawler
         look_at_bubbles(step, mu.data(), n, of_cells);
       }
 
-      /// The states of all stages with what the bubbles @p c [stage][cell][function] add.
+      /// States of all stages with the contribution of the bubbles @p c [stage][cell][function].
       std::vector<StateAtPoints>
       with_bubbles(const std::vector<double> &c, const double h) const
       {
@@ -155,7 +155,7 @@ namespace crawler
         return states;
       }
 
-      /// One round more for the bubbles of a stage: c_j <- c_j - F(U + e; L_j)/k.
+      /// Improves the bubbles of a stage by one round: c_j <- c_j - F(U + e; L_j)/k.
       void
       improve(double *c) const
       {
@@ -176,7 +176,7 @@ namespace crawler
         }
       }
 
-      /// @p mu: [stages][n]; @p without: what the run itself has in each cell.
+      /// @p mu: [stages][n]; @p without: the run's own part in each cell.
       void
       look_at_bubbles(const std::size_t step, const double *mu, const std::size_t n, const std::vector<double> &without)
       {
@@ -193,7 +193,7 @@ namespace crawler
               return;
             }
             fine_forces_.evaluate(times_[i], steps_.time(step), states[i]);
-            if (round + 1 >= rounds) // of the last two
+            if (round + 1 >= rounds) // the last two rounds
             {
               fine_.evaluate(mu + i * n, mu_at, mu_s);
               for (std::size_t p = 0; p < fine_.size(); ++p)
@@ -216,7 +216,7 @@ namespace crawler
       LaneAdjoint adjoint_;
       const LaneSetup &setup_;
       const RadauTableau &tableau_;
-      const LaneRecord steps_; ///< with the states at the stages of more
+      const LaneRecord steps_; ///< steps with the states at the stages of the method with more of them
       BackwardStages stages_;
       const CellPoints cells_, fine_;
       const Bubbles bubbles_;
@@ -224,8 +224,8 @@ namespace crawler
       ForcesAtPoints forces_, fine_forces_;
       const std::size_t n_bubbles_;
       StateAtPoints at_;
-      std::vector<StateAtPoints> fine_at_; ///< of the stages, without bubbles
-      std::vector<double> times_;          ///< of the stages
+      std::vector<StateAtPoints> fine_at_; ///< points of the stages, without bubbles
+      std::vector<double> times_;          ///< times of the stages
       SweptErrors result_{};
       double before_last_ = 0.; ///< error in space with one round less, in natural units
       bool lost_          = false;

@@ -102,7 +102,7 @@ namespace crawler
     return sum;
   }
 
-  /// N at a time of a piece, or as near to it as the piece comes.
+  /// Goes to N at a time of a piece, or to the nearest time that the piece has.
   void
   ForcesAtPoints::go_to(const std::size_t piece, const double t)
   {

@@ -16,7 +16,7 @@ namespace crawler
 {
   namespace
   {
-    /// f' of fourth order from f at the places of a variation, less f itself.
+    /// Derivative f' of fourth order from f at the places of a variation, without f itself.
     double
     derivative_of(const std::array<double, 4> &f, const Variation &variation)
     {
@@ -25,10 +25,10 @@ namespace crawler
              (12. * variation.step);
     }
 
-    /// Of changes of a quantity that is 0, in natural units.
+    /// Round-off of changes of a quantity that is 0, in natural units.
     constexpr double round_off = 1e-15;
 
-    /// Do both sides have other derivatives, by more than @p rough over the step?
+    /// True if both sides have derivatives that differ by more than @p rough over the step.
     bool
     has_kink(const std::array<double, 4> &f, const Variation &variation, const double rough)
     {
@@ -39,14 +39,14 @@ namespace crawler
       return std::abs(left - right) > same * (std::abs(left) + std::abs(right)) + rough;
     }
 
-    /// A number that varies: the forces in the four scenes, and what they change.
+    /// Direction of variation of one number: the forces in the four scenes, and their changes.
     struct Direction
     {
-      /// Of a quantity, in natural units.
+      /// Change of a quantity, in natural units.
       struct Change
       {
         std::array<double, 4> sums = {};
-        double at_breaks           = 0.; ///< by jumps at start and end, or that come together where that is not known
+        double at_breaks           = 0.; ///< change by jumps at start and end, or that come together; infinity: unknown
       };
       std::array<std::unique_ptr<ForcesOfScene>, 4> forces;
       std::array<double, 4> strides = {}; ///< the last ones, if they are known
@@ -54,30 +54,30 @@ namespace crawler
       std::vector<Change> changes; ///< [slot of an Adjoint]
     };
 
-    /// Where a stretch is in the run: w = 1 + sum slopes[j] u[first + j], where u is on the polynomial of a step
+    /// Place of a stretch in the run: w = 1 + sum slopes[j] u[first + j], where u is on the polynomial of a step
     /// through its start and its stages.
     struct StretchInRun
     {
       StretchPlace place;
       std::size_t step;
-      std::vector<double> weights; ///< of the stages; the start has the rest
+      std::vector<double> weights; ///< weights of the stages; the start has the rest
       std::size_t cell           = 0;
       std::vector<double> slopes = {};
       double strain              = 0.;
     };
 
-    /// What is asked for: its adjoint in all steps, and its value.
+    /// Adjoint of a requested quantity in all steps, and its value.
     struct Adjoint
     {
-      std::size_t slot;                      ///< of all_quantities, and behind them the stretches
-      Quantity quantity;                     ///< if it is none of these the displacement
-      StretchInRun *stretch;                 ///< if it is one
+      std::size_t slot;                      ///< index in all_quantities, followed by the stretches
+      Quantity quantity;                     ///< the displacement if it is none of these
+      StretchInRun *stretch;                 ///< null unless a stretch is requested
       std::vector<double> mu;                ///< [step][stage][unknown]
       std::vector<std::vector<double>> zeta; ///< [step], mostly empty
-      double value = 0.;                     ///< in natural units
+      double value = 0.;                     ///< value in natural units
     };
 
-    /// The last stride, in units of the duration, if the active stress says how long it is.
+    /// Last stride, in units of the duration, if the active stress declares its length.
     std::optional<double>
     last_stride_of(const Scene &scene)
     {
@@ -85,7 +85,7 @@ namespace crawler
       return stride && *stride <= 1. + 1e-9 ? stride : std::nullopt;
     }
 
-    /// A backward sweep for each quantity, and one that puts together what they give.
+    /// Sweeps: a backward one for each quantity, and one that assembles their results.
     class Sweep
     {
     public:
@@ -146,7 +146,7 @@ namespace crawler
         std::ranges::reverse(local_.stress);
       }
 
-      /// What there is of the quantities.
+      /// Derivatives of the quantities, as far as they are known.
       Derivatives
       derivatives(const std::size_t number, const Variation &variation) const
       {
@@ -163,7 +163,7 @@ namespace crawler
             for (std::size_t k = 0; k < 4; ++k)
               all[k] = own * change.sums[k] + adjoint.value * (units[k] - own);
             const double value = derivative_of(all, variation);
-            // The positive part of a work has small kinks everywhere, from point to point.
+            // Positive work has small kinks everywhere, from point to point.
             const double rough =
               own * std::max((quantity == Quantity::positive_work ? 1e-5 : 1e-7) * std::abs(adjoint.value), round_off);
             if (own * change.at_breaks <= nothing * std::abs(variation.step * value) &&
@@ -188,7 +188,7 @@ namespace crawler
         return result;
       }
 
-      /// Of the stretches.
+      /// Derivatives of the stretches.
       std::vector<std::optional<double>>
       of_stretches(const std::size_t number, const Variation &variation) const
       {
@@ -224,8 +224,8 @@ namespace crawler
         return stretch;
       }
 
-      /// The stretch as a sum over nodes, with the displacements @p u at its time. At an end of a cell that side
-      /// counts whose stretch is nearer to what is known.
+      /// Expresses the stretch as a sum over nodes, with the displacements @p u at its time. At an end of a cell the
+      /// side counts whose stretch is nearer to the known value.
       void
       look_up(StretchInRun &stretch, const std::vector<double> &u) const
       {
@@ -254,7 +254,7 @@ namespace crawler
         }
       }
 
-      /// What a stretch has of the step where it is, and of the start of this, which is the end of the one before.
+      /// Adds the dependence of a stretch on the step where it is, and on the start of this, the end of the one before.
       void
       add_stretch(const Adjoint &adjoint, const std::size_t step, BackwardStages &stages, const LaneSources &sources)
       {
@@ -278,7 +278,7 @@ namespace crawler
         for (unsigned int i = 0; i < tableau_.n; ++i)
           for (std::size_t j = 0; j < stretch.slopes.size(); ++j)
             sources.by_u[i * n + stretch.cell * setup_.degree + j] += stretch.weights[i] * stretch.slopes[j];
-        // Parts of a body that is longer there are strained less.
+        // Strains of the parts of a body that is longer there are smaller.
         for (Direction &direction : directions_)
           for (std::size_t k = 0; k < 4; ++k)
             direction.changes[adjoint.slot].sums[k] +=
@@ -305,7 +305,7 @@ namespace crawler
           adjoint.value = run_.displacement / run_.units.length;
         const std::size_t n = gradient.size(), n_mu = tableau_.n * n;
         adjoint.mu.resize(run_.steps.n_steps() * n_mu);
-        const LaneRecord steps = // nothing behind a stretch has an effect on it
+        const LaneRecord steps = // steps after a stretch have no effect on it
           adjoint.stretch != nullptr ? run_.steps.first_steps(adjoint.stretch->step + 1) : run_.steps;
         BackwardStages stages(steps, tableau_);
         std::vector<ForcesAtPoints::Slopes> slopes;
@@ -356,7 +356,7 @@ namespace crawler
         return direction.changes[static_cast<std::size_t>(quantity)];
       }
 
-      /// The mean displacement of a body that is longer in some places, @p factor times.
+      /// Adds the mean displacement of a body that is longer in some places, @p factor times.
       void
       add_lengths(const Quantity quantity, const double factor)
       {
@@ -375,7 +375,7 @@ namespace crawler
           add_lengths(quantity, 1.);
       }
 
-      /// The last stride starts at the end of this step; in other scenes at another time.
+      /// Accounts for the last stride, which starts at the end of this step; in other scenes at another time.
       void
       look_at_start_of_stride()
       {
@@ -389,7 +389,7 @@ namespace crawler
               velocity * (1. - direction.strides[k] - direction.forces[k]->inside.own_time(1. - *stride_));
       }
 
-      /// The last stride of the run and of the scenes that differ; none unless a step ends where it starts.
+      /// Finds the last stride of the run and of the scenes that differ; none unless a step ends where it starts.
       void
       find_stride(const std::span<const Variation> variations)
       {
@@ -455,7 +455,7 @@ namespace crawler
         }
       }
 
-      /// What the forces change, by mu; the differences, since the sums nearly cancel.
+      /// Adds the changes of the forces, weighted by mu; as differences, since the sums nearly cancel.
       void
       add_forces(const ForcesAtPoints &forces, double &sum) const
       {
@@ -464,7 +464,7 @@ namespace crawler
                                      (forces.friction(p) - own_.inside.friction(p)) * mu_[p]);
       }
 
-      /// @p weight of the stage.
+      /// @p weight is that of the stage.
       void
       add_local(const double time, const double weight)
       {
@@ -496,7 +496,7 @@ namespace crawler
           size += cells_.weight(p) * std::abs(impulse[p]);
         }
         change.sums[k] += sum;
-        // Where friction is not linear in the velocity an impulse is more than its size; and works grow in it.
+        // Impulses have effects beyond their size where friction is not linear in the velocity; and works grow in them.
         if (is_work(adjoint.quantity) && size > 0.)
           change.at_breaks = std::numeric_limits<double>::infinity();
         else if (is_edge || (setup_.laws & LaneLaws::nonlinear_in_velocity) != 0)
@@ -515,7 +515,7 @@ namespace crawler
       std::vector<StretchInRun> stretches_;
       std::vector<Adjoint> adjoints_;
       bool keeps_stress_ = true;
-      std::optional<double> stride_;  ///< of the run, if it is known
+      std::optional<double> stride_;  ///< stride of the run, if it is known
       std::size_t before_stride_ = 0; ///< the step that ends where the last stride starts
       StateAtPoints at_, at_ends_;
       std::vector<double> mu_, mu_s_, zeta_, zeta_s_; ///< adjoint at the points, and its derivatives by s

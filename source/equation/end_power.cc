@@ -36,7 +36,7 @@ namespace crawler
     {
       sampler_->sample(t, y, v);
       const auto &own = sampler_->force().m;
-      if (!own.empty()) // the left one is used by the first rank only, the right one by the last
+      if (!own.empty()) // the first rank uses the left one only, the last rank the right one
         m = {{own.front(), own.back()}};
     }
     const Discretization &d = assembler_.discretization();

@@ -10,7 +10,7 @@ namespace crawler
   namespace
   {
     constexpr unsigned int most_points = 6;
-    /// A point is not used for steps that are longer than the step before it by more than this factor.
+    /// Growth of a step over the one before beyond which earlier points are not used.
     constexpr double largest_growth = 25.;
   } // namespace
 

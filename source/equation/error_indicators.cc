@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// The part of PositionForm that says how well the mesh resolves a state (doc/numerics.md, "Error indicator" and
+// Part of PositionForm that measures how well the mesh resolves a state (doc/numerics.md, "Error indicator" and
 // "Accuracy").
 #include <crawler/equation/position_form.h>
 
@@ -12,7 +12,7 @@ namespace crawler
 {
   namespace
   {
-    /// Errors of a stretch are relative to it, but not to less than this: what is emptied sticks and pushes no more.
+    /// Floor of the stretch for relative errors: an emptied region sticks and pushes no more.
     constexpr double smallest_scale = 0.05;
 
   } // namespace
@@ -23,7 +23,7 @@ namespace crawler
     const auto local    = discretization_.to_local<double>(displacement(y), u_local_);
     const auto &element = discretization_.element();
     double sums[2]      = {0., 0.};
-    // The stretch is a polynomial of degree q - 1 in a cell.
+    // Stretches are polynomials of degree q - 1 in a cell.
     std::vector<double> highest_mode;
     for (unsigned int p = 0; p < element.n; ++p)
       highest_mode.push_back((2. * element.degree - 1.) * element.weights[p] *
@@ -60,7 +60,7 @@ namespace crawler
     kernels_.forces(in, force_.data(), friction_.data());
     const std::vector<double> &weights = element.weights;
 
-    // N* at the left end of the own cells.
+    // Force N* at the left end of the own cells.
     double own = 0., balance = 0.;
     for (unsigned int c = 0; c < n_cells; ++c)
       for (unsigned int i = 0; i < n; ++i)
@@ -87,7 +87,7 @@ namespace crawler
         const double k = in.laws != nullptr ? in.laws->k[c * n + p] : in.k;
         const double d = (N - force_[c * n + p]) / k;
         const double w = std::max(1. + e, smallest_scale);
-        // An error of the stretch changes the friction by w g'/g times as much.
+        // Relative errors of the friction are w g'/g times those of the stretch.
         double g = 0., w_dg = 0.;
         scene_.friction->values_and_log_derivatives({&w, 1}, {&g, 1}, {&w_dg, 1});
         const double relative = d / w * std::max(1., std::abs(w_dg / g));

@@ -16,7 +16,7 @@ namespace crawler
       return places;
     }
 
-    /// The integral from 0 to x of the Legendre polynomial P_k(2 x - 1).
+    /// Integral from 0 to x of the Legendre polynomial P_k(2 x - 1).
     double
     integrated_legendre(const unsigned int k, const double x)
     {
@@ -24,7 +24,7 @@ namespace crawler
       return k == 0 ? x : (std::legendre(k + 1, z) - std::legendre(k - 1, z)) / (2. * (2. * k + 1.));
     }
 
-    /// y = matrix x, both of one cell.
+    /// Product y = matrix x, both of one cell.
     void
     apply(const std::vector<double> &matrix,
           const double *x,
@@ -41,7 +41,7 @@ namespace crawler
       }
     }
 
-    /// int u ds over the whole mesh.
+    /// Integral of u over the whole mesh.
     double
     integral(const std::vector<double> &u, const std::vector<Cell> &cells, const ReferenceElement &element)
     {
@@ -119,7 +119,7 @@ namespace crawler
     for (double &value : u)
       value += missing;
 
-    // This rank's part.
+    // Part of this rank.
     const Discretization &d = to.discretization();
     std::vector<double> result;
     result.reserve(to.n_owned());

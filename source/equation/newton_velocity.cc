@@ -10,9 +10,9 @@ namespace crawler
   namespace
   {
     constexpr unsigned int most_corrections = 50, most_halvings = 20;
-    /// A correction below this part of the velocity is the last one; more does not change anything.
+    /// Correction, as a part of the velocity, below which it is the last one: more change nothing.
     constexpr double small = 1e-10;
-    /// Corrections that stay below this, or below tiny in natural units, are round-off.
+    /// Corrections below this part, or below tiny in natural units, are round-off.
     constexpr double acceptable = 1e-7, tiny = 1e-13;
 
     double
@@ -53,11 +53,11 @@ namespace crawler
         if (!residual(trial, F))
           return false;
         new_norm = largest(F, discretization);
-        if (new_norm < norm || i == 0) // the first one solves what is linear
+        if (new_norm < norm || i == 0) // the first one solves the linear case
           break;
       }
       const double size = largest(v, discretization);
-      if (!(new_norm < norm) && i > 0) // round-off, or no way down
+      if (!(new_norm < norm) && i > 0) // round-off, or no descent
         return correction <= std::max(acceptable * size, tiny);
       std::copy(trial.begin(), trial.end(), v.begin());
       norm = new_norm;

@@ -10,7 +10,7 @@ namespace crawler
 {
   namespace
   {
-    /// The entry of the rank with the smallest key, on all ranks.
+    /// Entry of the rank with the smallest key, on all ranks.
     StretchAt
     reduce_minimum(const StretchAt own, const double sign, const Discretization &discretization)
     {
@@ -27,7 +27,7 @@ namespace crawler
       return best;
     }
 
-    /// Where the stretch is looked at in a cell: its ends and the quadrature points, from left to right.
+    /// Places in a cell where the stretch is sampled: its ends and the quadrature points, from left to right.
     std::vector<double>
     sampled_places(const ReferenceElement &element)
     {
@@ -37,7 +37,7 @@ namespace crawler
       return places;
     }
 
-    /// The sampler at these places, made once for each degree.
+    /// Sampler at these places, made once for each degree.
     const StretchSampler &
     stretch_sampler(const ReferenceElement &element)
     {
@@ -139,7 +139,7 @@ namespace crawler
           largest = {w, c, i};
       }
 
-    // Inside a cell the parabola through the neighbours comes closer to the extreme than the sample.
+    // Parabola through the neighbours: inside a cell it comes closer to the extreme than the sample.
     const auto sharpened = [&](const Found &found) {
       double x = place(found.i), w = found.w;
       if (discretization_.n_local_cells() == 0)
@@ -171,7 +171,7 @@ namespace crawler
     const auto &initial = scene_.profiles.initial_stretch;
     if (!initial)
       return;
-    // u is the integral of w - 1, from node to node by a Gauss formula, minus its mean.
+    // Displacement u: the integral of w - 1, from node to node by a Gauss formula, minus its mean.
     const auto &element     = discretization_.element();
     const auto &formula     = reference_element(ReferenceElement::highest_degree);
     const unsigned int n    = element.n;

@@ -17,7 +17,7 @@ namespace crawler
   {
     /// Steep friction on a soft body makes fronts that the mean of two cells does not follow.
     constexpr double steep_exponent = -4., soft = 1e-3;
-    /// Where the stretch is less than this its extremes are those of the cells; parabolas there lead nowhere.
+    /// Stretch below which extremes are those of the cells: parabolas are useless there.
     constexpr double nearly_empty = 0.1;
 
     std::vector<double>
@@ -145,7 +145,7 @@ namespace crawler
       const auto to     = [&](const std::size_t other) { return (w[other] - w[j]) / (0.5 * (h[j] + h[other])); };
       const double left = j > 0 ? -to(j - 1) : to(j + 1), right = j + 1 < n ? to(j + 1) : left;
       slopes[j] = left * right > 0. ? std::copysign(std::min(std::abs(left), std::abs(right)), left) * h[j] : 0.;
-      if (j == 0 || j + 1 == n) // not below 0 at the end of the body
+      if (j == 0 || j + 1 == n) // keeps it above 0 at the end of the body
         slopes[j] = std::clamp(slopes[j], -2. * w[j], 2. * w[j]);
     }
     return slopes;
@@ -194,7 +194,7 @@ namespace crawler
       if (w[j] > w[most])
         most = j;
     }
-    // Beside jumps straight lines and parabolas may lead far below what the cells have, even below 0.
+    // Straight lines and parabolas beside jumps may fall far below the values of the cells, even below 0.
     const auto is_credible = [](const double value, const double of_cell) {
       return of_cell > nearly_empty && value > 0.5 * of_cell;
     };
@@ -327,7 +327,7 @@ namespace crawler
       sum.positive_power += h[j] * std::max(power, 0.);
       sum.absolute_power += h[j] * std::abs(power);
     }
-    // Friction is what balances the forces in the body.
+    // Friction balances the forces in the body.
     for (std::size_t i = 0; i <= w.size(); ++i)
     {
       const double f = (i < w.size() ? force.N[i] : 0.) - (i > 0 ? force.N[i - 1] : 0.);
@@ -349,7 +349,7 @@ namespace crawler
     std::pair<double, double> places{discretization_.length(), 0.};
     for (std::size_t j = 0; j < w.size(); ++j)
     {
-      // w^(1+a) goes linearly to 0.
+      // Power w^(1+a) goes linearly to 0.
       const double rate = power_ * (v[j + 1] - v[j]) / h[j];
       if (w[j] <= 0. || (rate < 0. && w[j] <= -rate * reach))
       {

@@ -13,7 +13,7 @@
 
 namespace crawler
 {
-  // source/lanes/lanes.cc, compiled for each.
+  // Namespaces of source/lanes/lanes.cc, which is compiled for each.
 #ifdef __x86_64__
   namespace avx512
   {
@@ -37,7 +37,7 @@ namespace crawler
       bool usable;
     };
 
-    /// The best one first.
+    /// Engines compiled, the best one first.
     std::span<const Compiled>
     compiled()
     {
@@ -54,7 +54,7 @@ namespace crawler
       return list;
     }
 
-    /// The best one, or the one that is forced.
+    /// Engine for the lanes: the best one, or the one that is forced.
     const Compiled &
     chosen()
     {

@@ -45,20 +45,20 @@ namespace crawler
     job_ = {.k         = scene_.body.elastic_modulus,
             .a         = scene_.body.friction_exponent(),
             .tolerance = course_.tolerance,
-            // On a stiff body an error of the stretch is one of the forces, k times as large.
+            // Errors of the stretch are, on a stiff body, k times as large in the forces.
             .newton_factor = setup_.is_stretch ? std::min(1., 10. / scene_.body.elastic_modulus) : 1.,
             .initial_step  = course_.initial_step,
             .limits        = course_.limits.data(),
             .n_limits      = static_cast<unsigned int>(course_.limits.size()),
-            .most_steps    = std::numeric_limits<unsigned int>::max(), // whoever asks for the next one decides
-            // Cells may be empty where friction then holds them.
+            .most_steps    = std::numeric_limits<unsigned int>::max(), // the caller of the next step decides
+            // Empty cells are admitted where friction then holds them.
             .least_stretch  = setup_.is_stretch && scene_.friction_exponent() < 0. ? -HUGE_VAL : 0.,
             .is_last_resort = setup_.is_stretch,
             .start_time     = course_.start,
             .start          = y_.data(),
             .output_times   = course_.ends.data(),
             .n_output_times = static_cast<unsigned int>(course_.ends.size()),
-            .restarts       = nullptr, // a course for each piece
+            .restarts       = nullptr, // each piece has a course of its own
             .progress       = goes_on_ ? &progress_ : nullptr,
             .old_z          = goes_on_ ? old_z_.data() : nullptr};
     if (laws_)
@@ -128,7 +128,7 @@ namespace crawler
     StretchLaws &laws   = *self.cell_laws_;
     const std::size_t n = self.tables_.points.size();
     const long bad      = laws.evaluate(t, {w, n}, {rate, n}, m);
-    // A power law fails only where the stretch is lost.
+    // Power laws fail only where the stretch is lost.
     if (bad >= 0 && w[bad] > 0. && !self.scene_.has_power_law())
       self.bad_friction_ = {w[bad], laws.friction[static_cast<std::size_t>(bad)]};
     const bool may_be_empty        = self.scene_.friction_exponent() < 0.;

@@ -74,7 +74,7 @@ namespace crawler
     const int s                        = static_cast<int>(setup.n_stages);
     double weights[radau::most_stages] = {};
     radau::collocation_weights(s, setup.c, 1. - (step.time - time) / step.size, weights);
-    weights[s - 1] -= 1.; // y is that of the end
+    weights[s - 1] -= 1.; // weights are for the state relative to y at the end
     const std::size_t n = y.size();
     for (std::size_t d = 0; d < n; ++d)
     {

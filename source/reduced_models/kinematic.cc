@@ -23,7 +23,7 @@ namespace crawler
       return points;
     }
 
-    /// What the quadrature with some numbers of panels gives.
+    /// Result of the quadrature with some numbers of panels.
     struct Sums
     {
       double displacement = 0., largest_friction = 0., largest_net_friction = 0.;
@@ -52,8 +52,8 @@ namespace crawler
       energies.add_works(works);
     }
 
-    /// The strain at some points of the box, as far as it has no bounds of its own, or an enclosure is too wide to say
-    /// anything.
+    /// Bounds of the strain from some points of the box, where it has no bounds of its own or an enclosure is too wide
+    /// to be of use.
     FieldBounds
     bounds_of(const StrainHistory &strain, const SpaceTimeBox &box)
     {
@@ -78,9 +78,8 @@ namespace crawler
       return largest;
     }
 
-    /// Where panels in time begin and end such that the strain changes by at most some times its size in each (two
-    /// waves of a sine), so that their points see all that it does, however short it is. Nothing if there are more than
-    /// @p most.
+    /// Ends of panels in time such that the strain changes by at most a few times its size in each (two waves of a
+    /// sine), so that their points resolve it, however short its events are. Nothing if there are more than @p most.
     std::optional<std::vector<double>>
     time_panels(const StrainHistory &strain, std::vector<double> breaks, const std::size_t most)
     {
@@ -112,7 +111,7 @@ namespace crawler
       return ends;
     }
 
-    /// Is one of them much shorter than another? A change by so few points in an event may be small by chance.
+    /// True if one panel is much shorter than another. The change at the few points in an event may be small by chance.
     bool
     has_events(const std::vector<double> &ends)
     {
@@ -135,8 +134,8 @@ namespace crawler
       return finer;
     }
 
-    /// Adds the time integrals from @p start to @p end, one panel of Gauss points, each of which @p see sees; returns
-    /// the change of the displacement.
+    /// Adds the time integrals from @p start to @p end, one panel of Gauss points, each of which is passed to @p see;
+    /// returns the change of the displacement.
     double
     add_panel(KinematicBody &body, const double start, const double end, EnergyBalance &energies, const auto &see)
     {
@@ -153,7 +152,7 @@ namespace crawler
       return displacement;
     }
 
-    /// @p ends: of the panels in time.
+    /// @p ends are those of the panels in time.
     Sums
     integrate(const Scene &scene,
               const StrainHistory &strain,
@@ -234,7 +233,7 @@ namespace crawler
                             integrals_.sums);
     }
     integrals_.sums.velocity = motion_.velocity; // without the round-off of the sum
-    // m = -k e at the ends, where no force acts.
+    // Force m = -k e at the ends, where none acts.
     integrals_.end_power = -(k[n + 1] * e_[n + 1] * (end_B_t + motion_.drift) - k[n] * e_[n] * motion_.drift);
     return integrals_;
   }
@@ -308,7 +307,7 @@ namespace crawler
       result.time_error    = sees_all ? std::abs(in_time.displacement - coarse.displacement) : HUGE_VAL;
       const double allowed = share * std::max(tolerance * std::abs(in_time.displacement), floor);
       result.time_error    = std::max(result.time_error, part * allowed);
-      // At a = 0 nothing moves: what the works need decides there, and otherwise hardly ever.
+      // At a = 0 the displacement is 0: the works decide there, and otherwise hardly ever.
       const auto settled = [&](const Sums &finer) {
         const double works = share * std::max(tolerance, floor) * coarse.energies.exchanged_work;
         return std::abs(finer.displacement - coarse.displacement) <= allowed &&
@@ -329,7 +328,7 @@ namespace crawler
       ends                  = halved(ends);
       if (!inverts)
         both = integrate(scene, strain, 2 * n_space, ends, keep_going);
-      // The extremes are looked for where the finest quadrature has seen them.
+      // Extremes are searched where the finest quadrature has seen them.
       const unsigned int n_s = std::clamp(8 * n_space, 33u, 257u),
                          n_t = static_cast<unsigned int>(std::clamp<std::size_t>(8 * n_time, 33, 2049));
       result.extremes        = find_extremes(strain, 1., 1., n_s, n_t);

@@ -13,14 +13,14 @@ namespace crawler
     constexpr double pi = std::numbers::pi;
 
     constexpr unsigned int n_corrections = 3;
-    /// For all corrections that are left out: this times the change of the displacement by the last one.
+    /// Factor on the change of the displacement by the last correction, for all omitted corrections.
     constexpr double safety = 3.;
-    /// For the grid: this part of the error.
+    /// Share of the error for the grid.
     constexpr double grid_share = 0.3;
-    /// If the last change is more than this part of the largest one the corrections are not trusted.
+    /// Ratio of the last change to the largest one beyond which the corrections are not trusted.
     constexpr double slowest_decay = 0.7;
 
-    /// An approximate motion on a grid: n_s points in the middle of equal parts of the body, n_t equal steps.
+    /// Approximate motion on a grid: n_s points in the middle of equal parts of the body, n_t equal steps.
     struct Motion
     {
       std::size_t n_s = 0, n_t = 0;
@@ -40,7 +40,8 @@ namespace crawler
       }
     };
 
-    /// f = m_s + k e_s is the velocity of leading order c sum a sin q(s+ct) + b cos q(s+ct), and B_t is f(s) - f(0).
+    /// Motion with f = m_s + k e_s = c sum a sin q(s+ct) + b cos q(s+ct), the leading-order velocity; B_t = f(s) -
+    /// f(0).
     Motion
     motion_of(const NaturalWave &wave, const std::size_t n_s, const std::size_t n_t)
     {
@@ -72,7 +73,7 @@ namespace crawler
       return motion;
     }
 
-    /// For e = -m/k, f = 0.
+    /// Motion for e = -m/k, f = 0.
     Motion
     motion_of(const StrainHistory &strain, const std::size_t n_s, const std::size_t n_t)
     {
@@ -95,7 +96,7 @@ namespace crawler
       return motion;
     }
 
-    /// Solves u_t = k u_ss - r in modes cos(j pi s), j = 1 ... n_modes.
+    /// Solver for u_t = k u_ss - r in modes cos(j pi s), j = 1 ... n_modes.
     class Correction
     {
     public:
@@ -118,7 +119,7 @@ namespace crawler
           }
       }
 
-      /// The displacement with the present correction, or not a number if a stretch is not positive; keeps the
+      /// Computes the displacement with the present correction, or NaN if a stretch is not positive; keeps the
       /// residual.
       double
       displacement()
@@ -178,7 +179,7 @@ namespace crawler
         return sum;
       }
 
-      /// A new correction, from the residual of the last one.
+      /// Computes a new correction, from the residual of the last one.
       void
       correct()
       {
@@ -186,7 +187,7 @@ namespace crawler
         for (std::size_t j = 0; j < n_modes_; ++j)
         {
           const double q = static_cast<double>(j + 1) * pi, z = stiffness_ * q * q * dt, decay = std::exp(-z);
-          // The integral over a step of exp(-z (1-x)) times 1-x and x.
+          // Integrals over a step of exp(-z (1-x)) times 1-x and x.
           const double both   = z < 1e-3 ? 1. - z / 2. + z * z / 6. : -std::expm1(-z) / z;
           const double at_end = z < 1e-3 ? 0.5 - z / 6. + z * z / 24. : (1. - both) / z, at_start = both - at_end;
           for (std::size_t n = 0; n < motion_.n_t; ++n)
@@ -208,7 +209,7 @@ namespace crawler
       bool is_corrected_ = false;
     };
 
-    /// The displacement to second order in the strain, -a int <(e - <e>)(B_t - <B_t>)> dt, on the same grid.
+    /// Displacement to second order in the strain, -a int <(e - <e>)(B_t - <B_t>)> dt, on the same grid.
     double
     second_order_displacement(const Motion &motion, const double a)
     {
@@ -262,7 +263,7 @@ namespace crawler
   {
     constexpr double per_wave = 24., most_steps = 20000., most_points = 256.;
     const double strides = std::max(1., std::abs(wave.speed));
-    // Layers at the ends are as thick as the elastic force reaches within a stride.
+    // Layers at the ends are as thick as the reach of the elastic force within a stride.
     const double layer = std::sqrt(scene.body.elastic_modulus / strides);
     const double n_s   = std::min(most_points, std::max(per_wave * wave.n_waves(), 2. / layer));
     const double n_t   = per_wave * wave.n_waves() * std::ceil(strides);

@@ -47,7 +47,7 @@ namespace crawler
       energies.elastic_energy += wave_.stiffness * power(h) * half * half;
     }
     energies.stress_work    = energies.dissipation + energies.elastic_energy;
-    energies.exchanged_work = energies.stress_work; // the least that it can be
+    energies.exchanged_work = energies.stress_work; // lower bound
     return energies;
   }
 

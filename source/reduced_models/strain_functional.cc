@@ -6,7 +6,7 @@
 
 namespace crawler
 {
-  /// At one time; lists over the points of the quadrature.
+  /// State at one time; lists over the points of the quadrature.
   struct StrainFunctional::State
   {
     explicit State(const std::size_t n)
@@ -112,7 +112,7 @@ namespace crawler
       const double *const e = &samples.strain[first], *const e_t = &samples.rate[first];
       double *const by_e = &result.strain[first], *const by_rate = &result.rate[first];
       const double weight = time_weights_[time];
-      if (number == stress_work && weight == 0.) // its energies at start and end
+      if (number == stress_work && weight == 0.) // energies at start and end
         for (std::size_t i = 0; i < n_; ++i)
           by_e[i] = (time + 1 == times_.size() ? 1. : -1.) * k[i] * w[i] * e[i];
       if (weight == 0.)
@@ -139,7 +139,7 @@ namespace crawler
         }
       else
       {
-        std::vector<double> &by_m = state.by_rate, &by_force = state.by_B; // of g v
+        std::vector<double> &by_m = state.by_rate, &by_force = state.by_B; // derivatives by m and g v
         for (std::size_t i = 0; i < n_; ++i)
           by_m[i] = -state.m[i] * e_t[i] > 0. ? -weight * w[i] * e_t[i] : 0.;
         space_.running_integral_transposed(by_m, by_force);

@@ -47,7 +47,7 @@ namespace crawler
 
   namespace
   {
-    /// Hands the runs of one method out to the lanes and makes results of what they give.
+    /// Hands the runs of one method out to the lanes and makes results of their data.
     class Batch
     {
     public:
@@ -72,7 +72,7 @@ namespace crawler
       {
       }
 
-      /// Returns false if it was interrupted.
+      /// Computes the runs; returns false if interrupted.
       bool
       compute(const LaneEngine &engine)
       {
@@ -90,21 +90,21 @@ namespace crawler
       {
         std::size_t run         = 0;
         bool given_up           = false;
-        double stretch_at_start = 1.;         ///< of the ends
+        double stretch_at_start = 1.;         ///< smallest stretch of the ends
         std::pair<double, double> end_moduli; ///< in natural units
         bool has_known_ends = true;           ///< see Assembler
         Units units;
         TimeSegments segments;
-        std::optional<Scene> scene; ///< in natural units, if it is general
+        std::optional<Scene> scene; ///< general scene, in natural units
         std::optional<HostLaws> laws;
-        std::unique_ptr<FeedbackAtPoints> end_feedback; ///< at the ends of the body, if there is one
+        std::unique_ptr<FeedbackAtPoints> end_feedback; ///< feedback at the ends of the body, if there is one
         std::vector<double> output_times;               ///< ends of the segments, and those that the record needs
-        std::vector<unsigned char> restarts;            ///< which of them are where a new segment starts
+        std::vector<unsigned char> restarts;            ///< flags of those at which a new segment starts
         std::vector<StepLimit> limits;
         std::optional<Recorder> recorder;
-        std::unique_ptr<ActiveStressAtPoints> stress; ///< at the quadrature points and the ends of the body
+        std::unique_ptr<ActiveStressAtPoints> stress; ///< stress at the quadrature points and the ends of the body
         std::optional<StressWatch> watch;
-        std::vector<double> breaks; ///< in space, in lengths of the body
+        std::vector<double> breaks; ///< breaks in space, in lengths of the body
         std::vector<double> m;
         std::vector<std::array<double, 2>> end_stress; ///< m at the ends, in the stages of the step that is tried
         std::size_t n_stress_calls = 0;
@@ -188,7 +188,7 @@ namespace crawler
         return self(context).lanes_[l].laws->evaluate(points);
       }
 
-      /// The run starts from rest.
+      /// Starts the record of a run from rest.
       void
       start_record(Lane &lane, const Scene &scene, const double tolerance) const
       {
@@ -215,7 +215,7 @@ namespace crawler
         lane.recorder->see_step(0., false, 1., 1., [](double) { return Recorder::BodySample{rest, 0.}; });
       }
 
-      /// The engine asks for m at the start of a run or segment, and then in all stages of each step that it tries.
+      /// Supplies m, asked for at the start of a run or segment, and then in all stages of each step that is tried.
       static void
       stress(void *context, const unsigned int l, const double t, double *m)
       {
@@ -235,15 +235,15 @@ namespace crawler
         ++lane.n_stress_calls;
       }
 
-      /// The smaller of the stretches that the end conditions prescribe, 1 - m/k.
+      /// Smaller of the stretches that the end conditions prescribe, 1 - m/k.
       static double
       end_stretch(const Lane &lane, const std::array<double, 2> &m)
       {
         return 1. - std::max(m[0] / lane.end_moduli.first, m[1] / lane.end_moduli.second);
       }
 
-      /// Does an end invert (Simulation::end_inverts)? A coarse mesh may not have followed it. The ends are looked at
-      /// in the stages and between them, by the watch.
+      /// True if an end inverts (Simulation::end_inverts): a coarse mesh may not have followed it. The ends are
+      /// examined in the stages and between them, by the watch.
       static bool
       end_inverts(const Lane &lane)
       {
@@ -266,12 +266,12 @@ namespace crawler
         Lane &lane   = batch.lanes_[l];
         if (!batch.interrupted_ && batch.keep_going_ && !batch.keep_going_())
           batch.interrupted_ = true;
-        // The engine calls a run finished that is stopped in its last step.
+        // A run that is stopped in its last step is finished to the engine.
         lane.given_up = batch.interrupted_ || !batch.look_at_step(lane, step);
         return !lane.given_up && !lane.recorder->cycles_repeat();
       }
 
-      /// False if the run is for a Simulation.
+      /// Examines a step; returns false if the run is for a Simulation.
       bool
       look_at_step(Lane &lane, const LaneStep &step)
       {
@@ -320,7 +320,7 @@ namespace crawler
         for (double &work : works)
           work *= step.size * tableau_.b[i];
         lane.recorder->result.energy_balance->add_works(works);
-        const bool is_end = i + 1 == tableau_.n; // where the velocity balances all forces
+        const bool is_end = i + 1 == tableau_.n; // the velocity balances all forces there
         lane.recorder->see_friction(stage.abs_friction, is_end ? std::abs(stage.net_friction) : 0.);
       }
 

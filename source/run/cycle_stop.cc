@@ -15,7 +15,7 @@ namespace crawler
     using namespace accuracy_rule::cycles;
     using accuracy_rule::displacement_floor;
 
-    /// Up to the end of the run, in units of its duration.
+    /// Number of whole cycles up to the end of the run, in units of its duration.
     double
     whole_cycles(const CycleWish &wish)
     {
@@ -128,9 +128,9 @@ namespace crawler
     stretches_.emplace_back(stretch.begin(), stretch.end());
   }
 
-  /// The largest ratio of a change in the last cycle to the one a cycle before, at all phases where both are known.
-  /// Where the changes have gone down to the errors of the time integration, their ratio is that of errors; these do
-  /// not add up, which 1/2 stands for.
+  /// Largest ratio of a change in the last cycle to the one a cycle before, at all phases where both are known. Where
+  /// the changes have decayed to the errors of the time integration, their ratio is that of errors; these do not
+  /// accumulate, so the ratio counts as at most 1/2.
   double
   CycleStop::decay_of_changes() const
   {
@@ -157,7 +157,7 @@ namespace crawler
     return change > 0. ? std::sqrt(change / strain) : 0.;
   }
 
-  /// At the end of the second and each later cycle; the formulas are those of doc/numerics.md, "Cycle stop".
+  /// Decides at the end of the second and each later cycle; the formulas are those of doc/numerics.md, "Cycle stop".
   void
   CycleStop::judge(const double decay)
   {

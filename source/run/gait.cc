@@ -11,16 +11,16 @@ namespace crawler
 {
   namespace
   {
-    /// A displacement that is smaller than this is none.
+    /// Displacements below this count as zero.
     constexpr double nothing = 1e-12;
     /// Samples of a run whose period is not known, and those of them that are searched for one.
     constexpr unsigned int n_unknown = 1024, n_searched = n_unknown / 2;
-    /// The stretch repeats if the mean square of its change is below this part of the largest such.
+    /// Mean square of the change of the stretch, relative to the largest such, below which it repeats.
     constexpr double repeats = 1e-3;
-    /// Samples are close enough if it changes by less than this part of that from one to the next.
+    /// Change of the stretch between successive samples, relative to the largest, below which they are close enough.
     constexpr double smooth = 0.05;
-    /// Steps follow what happens, some in each period: with more of them from one sample to the next, in the mean, what
-    /// samples show may be a slow alias of it.
+    /// Steps from one sample to the next, on average, beyond which the samples may show a slow alias: steps follow the
+    /// motion, some in each period.
     constexpr unsigned int most_steps_of_sample = 3;
 
     double
@@ -175,7 +175,7 @@ namespace crawler
     smallest_ = largest_ = {};
   }
 
-  /// The steps tell what the samples may have missed.
+  /// Finds the wave; the steps tell what the samples may have missed.
   std::optional<StretchWave>
   GaitMeter::wave(const std::vector<std::vector<double>> &stretch, const double period) const
   {
@@ -212,7 +212,7 @@ namespace crawler
     return gait;
   }
 
-  /// In steps of the samples: the first shift at which the stretch repeats better than at its neighbours.
+  /// Period in steps of the samples: the first shift at which the stretch repeats better than at its neighbours.
   std::optional<double>
   GaitMeter::find_period() const
   {
@@ -230,7 +230,7 @@ namespace crawler
     const double largest = *std::max_element(change.begin(), change.end());
     if (!(largest > square(1e-6)))
       return std::nullopt;
-    // Between samples that are too far apart anything could happen.
+    // Samples too far apart do not show what happens between them.
     if (change[1] > smooth * largest)
       return std::nullopt;
     for (std::size_t j = 2; j + 1 < change.size(); ++j)

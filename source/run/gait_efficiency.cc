@@ -21,7 +21,7 @@ namespace crawler
 
   namespace
   {
-    /// A displacement over the largest one with this energy in this time.
+    /// Ratio of a displacement to the largest one with this energy in this time.
     std::optional<double>
     part_of_bound(const Scene &scene,
                   const SimulationResult &result,

@@ -9,9 +9,9 @@ namespace crawler
 {
   namespace
   {
-    /// A record that is beaten by less than this part of a strain may be beaten after sharpening.
+    /// Margin, as a part of the strain, within which a record may be beaten after sharpening.
     constexpr double sharpening = 0.05;
-    /// One that is beaten by less than this part may be beaten between times, and its jump counts.
+    /// Margin within which a record may be beaten between times, and its jump counts.
     constexpr double near = 0.2;
   } // namespace
 
@@ -65,7 +65,7 @@ namespace crawler
                         const std::vector<double> &breaks) const
   {
     const unsigned int last = tables_.setup.n_samples - 1;
-    const auto jump         = [&](const unsigned int right) { // at its left end
+    const auto jump         = [&](const unsigned int right) { // jump at its left end
       const double s = tables_.place_of_sample(right * tables_.setup.n_samples);
       if (std::ranges::any_of(breaks, [s](const double b) { return std::abs(b - s) < least_space_between_breaks; }))
         return 0.;

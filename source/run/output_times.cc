@@ -12,7 +12,7 @@ namespace crawler
   {
     if (is_dense)
       return;
-    // Those of snapshots are kept to the last bit.
+    // Times of snapshots are kept to the last bit.
     std::vector<double> ends;
     for (std::size_t i = 0; i < pictures_.all().size(); ++i)
       if (pictures_.all()[i].kinds.is_snapshot)

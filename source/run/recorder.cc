@@ -13,9 +13,9 @@ namespace crawler
 {
   namespace
   {
-    /// Times that differ by less are one, in units of the duration.
+    /// Difference, in units of the duration, below which two times are the same.
     constexpr double same_time = 1e-12;
-    /// Extremes that are beaten by less than this part may be beaten between times.
+    /// Margin within which extremes may be beaten between times.
     constexpr double near = 0.2;
   } // namespace
 
@@ -61,8 +61,8 @@ namespace crawler
                     cycle_stop_ ? cycle_stop_->next_time() : HUGE_VAL);
   }
 
-  /// At an end of the body the stretch is known: beyond it, as it were, are the cells of the body mirrored, whose error
-  /// is the opposite.
+  /// Compares with the end of the body, where the stretch is known: beyond it one may think the cells of the body
+  /// mirrored, with the opposite error.
   void
   Recorder::compare_with_end(Extreme &now, const ExtremeHistory &history)
   {
@@ -147,7 +147,7 @@ namespace crawler
     return cycle_stop_ && see_cycles(time, is_step_end, sample);
   }
 
-  /// Looks at the phases of a cycle that a step has passed. The ends of cycles are ends of steps.
+  /// Observes the phases of a cycle that a step has passed. The ends of cycles are ends of steps.
   bool
   Recorder::see_cycles(const double time, const bool is_step_end, const Sampler &sample)
   {

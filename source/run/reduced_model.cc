@@ -24,7 +24,7 @@ namespace crawler
       return {1. + e.strain, e.s, e.t};
     }
 
-    /// Of quadrature alone: the motion of the kinematic level is one that a body can have. That of a series is not.
+    /// Sets the error, by quadrature alone, for the kinematic level; the motion of a series is not one of a body.
     void
     set_error_of_efficiency(const std::string &key, const std::optional<double> &efficiency, SimulationResult &result)
     {
@@ -86,7 +86,7 @@ namespace crawler
     result.net_friction   = motion.net_friction;
   }
 
-  /// Is the error as small as was asked for?
+  /// Fails the result unless its error is as small as requested.
   void
   ReducedModel::judge(SimulationResult &result, const double accuracy) const
   {
@@ -209,7 +209,7 @@ namespace crawler
       ends.push_back(static_cast<double>(i) / GaitMeter::n_pieces);
     replay(meter.times(), ends, [&](const double t, const State &state) {
       meter.see(state.fields.displacement, state.displacement);
-      meter.see_extremes(result.min_stretch.value, result.max_stretch.value); // of the whole motion
+      meter.see_extremes(result.min_stretch.value, result.max_stretch.value); // extremes of the whole motion
       meter.see_extremes(1. + state.smallest.strain, 1. + state.largest.strain);
       meter.see_step(t, state.displacement, &state.energies);
       return true;

@@ -10,7 +10,7 @@ namespace crawler
   {
     using Json = nlohmann::ordered_json;
 
-    /// The place of a key with dots for nesting.
+    /// Place in the JSON of a key with dots for nesting.
     Json &
     place_of(const std::string &key, Json &json)
     {
@@ -45,7 +45,7 @@ namespace crawler
     Json json;
     for (const ResultEntry &entry : result_table())
       place_of(entry.key, json) = as_json(entry.value_in(result));
-    // Parts that a run does not have.
+    // Parts missing from the run.
     if (!result.cycles)
       json["cycles"] = nullptr;
     if (!result.inversion)

@@ -46,7 +46,7 @@ namespace crawler
       return entry;
     }
 
-    /// Values of parts of a result that may not be there: an expression of the part, and nothing without it.
+    /// Values of optional parts of a result: an expression of the part, and nothing without it.
 #define CRAWLER_PART(member, expression)           \
   [](const Result &r) -> ResultValue {             \
     if (!r.member)                                 \

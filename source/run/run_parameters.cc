@@ -16,7 +16,7 @@ namespace crawler
 {
   namespace
   {
-    /// Squares of entries in natural units must not leave the range of doubles.
+    /// Requires numbers whose squares in natural units stay in the range of doubles.
     void
     require_computable(const std::optional<double> &value, const double unit, const char *name, const char *unit_name)
     {
@@ -31,7 +31,7 @@ namespace crawler
                          std::string("Time/") + name);
     }
 
-    /// The stretch form has meshes and integrators of its own.
+    /// Requires settings of the stretch form, which has meshes and integrators of its own.
     void
     require_stretch_form(const RunParameters &p, const Scene &scene)
     {
@@ -65,7 +65,7 @@ namespace crawler
                          "Discretization/Formulation");
     }
 
-    /// What only plain scenes have.
+    /// Requires settings that fit a general scene.
     void
     require_general(const RunParameters &p, const Scene &scene)
     {
@@ -126,7 +126,7 @@ namespace crawler
                       term,
                       n + 1));
     }
-    // With none, the names of the first are known all the same where the file has a slip in them.
+    // Names of the first term are known even if there is none, in case the file has a slip in them.
     active_stress.sum.terms.assign(names.empty() ? 0 : std::max<std::size_t>(n, 1), {});
     for (TermParameters &parameters : active_stress.sum.terms)
       parameters.stress.generator = "expression";
@@ -169,11 +169,11 @@ namespace crawler
                        "of snapshots, or automatic or off here",
                        "Time/Cycle stop");
     Scene scene{body, nullptr, nullptr, time.end_time};
-    natural_units(scene); // first, since nothing else is prepared for numbers that it refuses
+    natural_units(scene); // first, since nothing else is prepared for numbers that it rejects
     scene.profiles = read_profiles(body, time.end_time);
     scene.ground   = create_ground(ground, body, time.end_time);
     scene.friction = create_friction_law(ground, body, time.end_time);
-    if (ground.friction_law != "power") // the power law that touches it where the stretch is 1
+    if (ground.friction_law != "power") // the power law tangent to it at stretch 1
       scene.body.anchoring_exponent = 1. - scene.friction->exponent(1.);
     scene.active_stress = create_active_stress(active_stress, scene);
     require_computable_stress(scene);

@@ -32,7 +32,7 @@ namespace crawler
 
   namespace
   {
-    /// |W - Q - (elastic energy) ...| is made by the errors of all energies; any one of them may have all of it.
+    /// Covers the energy residual |W - Q - (elastic energy) ...|: any one of the energies may account for all of it.
     void
     cover_residual(SimulationResult &result)
     {
@@ -45,7 +45,7 @@ namespace crawler
         }
     }
 
-    /// No gait is better than the bound, but by the error of its efficiency and what the energy balance lacks.
+    /// Complaint about a gait better than the bound by more than the error of its efficiency and the energy residual.
     std::string
     complaint_about_efficiency(const SimulationResult &result)
     {
@@ -79,7 +79,7 @@ namespace crawler
 
   namespace
   {
-    /// Is the displacement of the stretch form confirmed by other meshes? Where friction is steep its works need far
+    /// True if other meshes confirm the displacement of the stretch form. Where friction is steep its works need far
     /// shorter steps.
     bool
     stands_without_works(const SimulationResult &result)
@@ -87,7 +87,7 @@ namespace crawler
       return result.formulation == Formulation::stretch && result.error && std::isfinite(result.error->total);
     }
 
-    /// Energies, costs and efficiencies become unknown.
+    /// Makes energies, costs and efficiencies unknown.
     void
     forget_works(SimulationResult &result)
     {
@@ -109,7 +109,7 @@ namespace crawler
   void
   check_identities(SimulationResult &result, const RunParameters &parameters)
   {
-    // The series has no balance to check.
+    // Series have no balance to check.
     if (result.time.status != Status::finished || !result.energy_balance || result.model == Model::perturbation)
       return;
     // Works may be less accurate than the displacement: a sudden start of a stiff body makes layers that take work, but

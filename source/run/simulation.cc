@@ -63,7 +63,7 @@ namespace crawler
 
   Simulation::~Simulation() = default;
 
-  /// The mesh of the start.
+  /// Builds the mesh of the start.
   void
   Simulation::build_first()
   {
@@ -73,7 +73,7 @@ namespace crawler
     mesh_.is_first = true;
   }
 
-  /// The equation on a mesh.
+  /// Builds the equation on a mesh.
   void
   Simulation::build(std::unique_ptr<Discretization> discretization)
   {
@@ -123,9 +123,9 @@ namespace crawler
     run_.reset();
     if (!mesh_.is_first)
       build_first();
-    mesh_.assembler->forget_stresses(); // of the last segment
+    mesh_.assembler->forget_stresses(); // those of the last segment
     past_.history.clear();
-    // To look for a period costs a thousand looks at the state.
+    // Searches for a period need a thousand samples of the state.
     constexpr std::size_t most_unknowns = 10000;
     const bool is_watched               = time_.step_control == StepControl::adaptive;
     Recorder recorder(
@@ -167,7 +167,7 @@ namespace crawler
     return answer;
   }
 
-  /// What the end of the integration means, and the result in the user's units.
+  /// Interprets the end of the integration, and makes the result in the user's units.
   SimulationResult
   Simulation::finish()
   {
@@ -187,7 +187,7 @@ namespace crawler
                     result.largest_indicator * units_.length,
                     numerics_.mesh.tolerance * units_.length)};
     if (run_->diagnosis && run_->diagnosis->reason == "nonfinite")
-      stress_failed(); // knows better why
+      stress_failed(); // its diagnosis is more precise
     if (run_->diagnosis)
     {
       result.time.status  = run_->diagnosis->status;
@@ -198,7 +198,7 @@ namespace crawler
     }
     else if (!run_->options.energy_balance && run_->observers.empty())
       result.displacement = mesh_.assembler->integrals(run_->accepted.time, y_, v_).displacement;
-    // Where the lanes have looked, steps have not asked for it.
+    // Steps in which the lanes have evaluated the integrals did not set the displacement.
     if (integrators_.lanes && run_->options.energy_balance && run_->observers.empty() && run_->accepted.is_there)
       result.displacement = mesh_.assembler->integrals(run_->accepted.time, run_->accepted.y, v_).displacement;
     const double before = now();
@@ -217,7 +217,7 @@ namespace crawler
     return run_->recorder.finish();
   }
 
-  /// From the first state to the end, with changes of mesh on the way.
+  /// Integrates from the first state to the end, with changes of mesh on the way.
   TimeOutcome
   Simulation::integrate()
   {
@@ -240,7 +240,7 @@ namespace crawler
     }
   }
 
-  /// To the end, or to where something has to be changed.
+  /// Integrates to the end, or to where something has to be changed.
   Simulation::Ending
   Simulation::integrate_part()
   {
@@ -283,7 +283,7 @@ namespace crawler
     return ending;
   }
 
-  /// A step of the present part, which is @p step of the whole run, or the start of both.
+  /// Examines a step of the present part, which is @p step of the whole run, or the start of both.
   Simulation::Ending
   Simulation::look_at(const Step &part, const Step &step)
   {
@@ -313,7 +313,7 @@ namespace crawler
     return step;
   }
 
-  /// How the present part has ended, with the counts of all.
+  /// Outcome of the present part, with the counts of all.
   TimeOutcome
   Simulation::outcome_of_parts() const
   {
@@ -327,7 +327,7 @@ namespace crawler
     return outcome;
   }
 
-  /// Do the cycles repeat, or are there too many steps?
+  /// Ends the part if cycles repeat or if there are too many steps.
   Simulation::Ending
   Simulation::ending_after(const Step &step, const std::span<const double> y)
   {
@@ -352,7 +352,7 @@ namespace crawler
     return Ending::lost;
   }
 
-  /// A part of the run has ended. Is there another one?
+  /// Decides whether another part follows one that has ended.
   bool
   Simulation::goes_on_after(const Ending ending, TimeOutcome &outcome)
   {
@@ -373,7 +373,7 @@ namespace crawler
       }
     }
     const bool wants_change = ending == Ending::mesh || ending == Ending::retry || ending == Ending::jump;
-    // The step to the end is done again like any other if its state was thrown away.
+    // Steps to the end are repeated like any other if their state was discarded.
     if (!wants_change || run_->accepted.time >= 1.)
       return false;
     count_part(outcome);
@@ -390,8 +390,8 @@ namespace crawler
     return true;
   }
 
-  /// In a catch block: the end of a run that has thrown. What it has computed so far stays. Where ranks share the cells
-  /// one may have failed alone, and the others wait for it; only a stress that is not finite is found by all together.
+  /// Outcome, in a catch block, of a run that has thrown. Its results so far stay. Where ranks share the cells one may
+  /// have failed alone, and the others wait for it; only a stress that is not finite is found by all together.
   TimeOutcome
   Simulation::failure_while_integrating()
   {
@@ -409,8 +409,7 @@ namespace crawler
     return outcome;
   }
 
-  /// The active stress has jumped, so velocities and all derivatives jump: from the last accepted state starts a run of
-  /// its own.
+  /// Starts anew from the last accepted state: the active stress has jumped, and so have velocities and derivatives.
   void
   Simulation::begin_segment()
   {
@@ -436,7 +435,7 @@ namespace crawler
   Simulation::count_part(const TimeOutcome &outcome)
   {
     run_->before = outcome;
-    // A state that was not accepted is done again, and its step does not count.
+    // States that were not accepted are repeated, and their step does not count.
     if (outcome.time > run_->accepted.time)
     {
       run_->before.steps -= std::min(run_->before.steps, 1u);

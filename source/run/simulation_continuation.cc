@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// The part of Simulation that writes its state between two steps, and goes on from one.
+// Part of Simulation that writes its state between two steps, and continues from one.
 #include <crawler/base/archive.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
@@ -10,7 +10,7 @@
 
 namespace crawler
 {
-  /// All that decides on the run. What is the same in all runs of an answer is not looked at.
+  /// Inputs that decide on the run; those common to all runs of an answer are omitted.
   std::string
   Simulation::identity(const Options &options, const bool has_pictures) const
   {
@@ -22,7 +22,7 @@ namespace crawler
     unsigned int n_ranks       = size_of(communicator_);
     double duration            = units_.time;
     std::optional<double> wish = options.cycles ? std::optional(options.cycles->accuracy) : std::nullopt;
-    // One by one, since bytes between the members of a struct may differ.
+    // Members one by one, since bytes between the members of a struct may differ.
     archive(numerics.degree, numerics.n_cells, numerics.tolerance, numerics.initial_step, numerics.step_limits);
     archive(numerics.least_event, numerics.formulation, numerics.integrator, numerics.layer);
     archive(numerics.mesh.tolerance, numerics.mesh.smallest_cell, numerics.mesh.most_cells, numerics.grading.levels);
@@ -32,7 +32,7 @@ namespace crawler
     return archive.bytes();
   }
 
-  /// The state of this rank.
+  /// State of this rank.
   void
   Simulation::exchange(Archive &archive)
   {
@@ -59,7 +59,7 @@ namespace crawler
       observer->exchange(archive);
   }
 
-  /// Cells are divided until they are those of then.
+  /// Divides cells until they are those of the saved mesh.
   void
   Simulation::exchange_mesh(Archive &archive)
   {
@@ -74,7 +74,7 @@ namespace crawler
     for (bool is_changed = true; is_changed;)
     {
       const std::vector<Cell> &cells = (next ? *next : *mesh_.discretization).cells();
-      if (cells.size() > wanted.size()) // a damaged state: levels without end
+      if (cells.size() > wanted.size()) // a damaged state, with endless levels
         break;
       changes.assign(cells.size(), CellChange::keep);
       is_changed = false;
@@ -98,7 +98,7 @@ namespace crawler
       build(std::move(next));
   }
 
-  /// The states of all ranks that share the cells, on the first of them.
+  /// States of all ranks that share the cells, on the first of them.
   std::string
   Simulation::together(const Archive &own) const
   {
@@ -117,7 +117,7 @@ namespace crawler
     return states[rank_of(communicator_)];
   }
 
-  /// Goes on from the state that the journal has, if there is one.
+  /// Continues from the state that the journal has, if there is one.
   void
   Simulation::take_up()
   {
@@ -127,7 +127,7 @@ namespace crawler
     exchange(archive);
   }
 
-  /// Gives the journal the state, if it is time for one or if the run @p stops.
+  /// Gives the journal the state, if one is due or if the run @p stops.
   void
   Simulation::keep_state(const bool stops, const Step &step)
   {

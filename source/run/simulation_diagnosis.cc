@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// The part of Simulation that gives a lost stretch and a failed time step their names (doc/numerics.md, "Failures and
-// inversions").
+// Part of Simulation that names a lost stretch or a failed time step (doc/numerics.md, "Failures and inversions").
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/run/simulation.h>
@@ -16,18 +15,19 @@ namespace crawler
 {
   namespace
   {
-    /// In the position form a stretch below this is lost: nothing that is computed from it has a digit left.
+    /// Stretch of the position form below which it is lost: numbers computed from it have no correct digit.
     constexpr double lost_in_position = 1e-12;
-    /// An end that inverts within this part of the duration after the inside was lost is the cause.
+    /// Time, as a part of the duration, within which an end that inverts after the inside was lost is the cause.
     constexpr double end_reach = 1e-6;
-    /// The same if the stretch was lost at the very end: the body's own is 1 - m/k there, and nothing else.
+    /// Counterpart for a stretch lost at the very end, where the body's own is exactly 1 - m/k.
     constexpr double end_reach_at_end = 1e-3;
-    /// If states are refused, a stretch that is gone within this part of the duration at its present rate is lost.
+    /// Time, as a part of the duration, within which a stretch must vanish at its present rate to be lost, if states
+    /// are refused.
     constexpr double nearly_lost = 1e-4;
 
     /**
-     * In the stretch form cells may be empty if they then stick, a <= -1. For -1 < a < 0 w^(1+a) goes linearly to 0
-     * near an inversion, so this is where 1e-6 of it is left.
+     * Floor of the stretch form: cells may be empty if they then stick, a <= -1. For -1 < a < 0 w^(1+a) goes linearly
+     * to 0 near an inversion, and the floor is where 1e-6 of it is left.
      */
     double
     lost_in_stretch_form(const double a)
@@ -35,7 +35,7 @@ namespace crawler
       return a <= -1. ? -HUGE_VAL : a < 0. ? std::exp(std::clamp(-14. / (1. + a), -690., std::log(1e-3))) : 1e-9;
     }
 
-    /// The time in [from, to] where @p function, positive at @p from and not at @p to, becomes 0.
+    /// Root in [from, to] of @p function, which is positive at @p from and not at @p to.
     template <typename Function>
     double
     first_zero(const Function &function, const double from, const double to)
@@ -50,14 +50,14 @@ namespace crawler
     }
   } // namespace
 
-  /// A stretch at or below this is lost.
+  /// Stretch at or below which it is lost.
   double
   Simulation::lost_stretch() const
   {
     return mesh_.position != nullptr ? lost_in_position : lost_in_stretch_form(scene_.friction_exponent());
   }
 
-  /// Has the stretch that the end conditions prescribe, 1 - m/k, become 0 since @p from? Then the diagnosis says so.
+  /// True if the stretch 1 - m/k of the end conditions has become 0 since @p from; sets the diagnosis then.
   bool
   Simulation::end_inverts(const double from, const double to)
   {
@@ -99,7 +99,7 @@ namespace crawler
                                    reason)};
   }
 
-  /// The stretch was lost inside within the step: finds where and when on the integrator's dense output.
+  /// Finds place and time, on the integrator's dense output, of the loss of a stretch inside within the step.
   void
   Simulation::locate_inversion(const Step &step)
   {
@@ -115,7 +115,7 @@ namespace crawler
     if (step.size > 0.)
       t = first_zero(above, step.time - step.size, step.time);
     if (step.size > 0.)
-      above(t); // the smallest stretch of that time
+      above(t); // finds the smallest stretch of that time
     const bool at_end  = smallest.s == 0. || smallest.s == 1.;
     const double reach = at_end ? end_reach_at_end : end_reach;
     if (at_end && !mesh_.assembler->has_known_ends())
@@ -125,7 +125,7 @@ namespace crawler
       inverted_inside(run_->stretch.min.value, smallest.s, t);
       if (result().inversion && mesh_.stretch != nullptr)
       {
-        // There disturbances travel without bound, so all of these places are lost at once.
+        // Disturbances travel at unbounded speed there, so all these places are lost at once.
         constexpr double at_once = 1e-6;
         integrators_.present->interpolate(t, y);
         const auto [first, last] = mesh_.stretch->lost_places(t, y, at_once);
@@ -134,12 +134,12 @@ namespace crawler
     }
   }
 
-  /// Has the active stress failed since the run began, on any rank (collective)? Then the diagnosis says how.
+  /// True if the active stress has failed since the run began, on any rank (collective); sets the diagnosis then.
   bool
   Simulation::stress_failed()
   {
     const StressFailures *failures = scene_.active_stress->failures();
-    if (failures == nullptr) // the same on all ranks
+    if (failures == nullptr) // null on all ranks
       return false;
     const int rank = static_cast<int>(rank_of(communicator_)), n_ranks = static_cast<int>(size_of(communicator_));
     int first = failures->count > run_->n_failures ? rank : n_ranks;
@@ -157,7 +157,7 @@ namespace crawler
     return true;
   }
 
-  /// Was a law not positive on one of the ranks? Then all say so.
+  /// True on all ranks if a law was not positive on one of them.
   bool
   Simulation::law_failed()
   {
@@ -181,7 +181,7 @@ namespace crawler
     return true;
   }
 
-  /// What a failure of the time stepper means.
+  /// Explains a failure of the time stepper.
   void
   Simulation::explain_failure()
   {
@@ -191,18 +191,18 @@ namespace crawler
     const double t       = run_->accepted.time;
     if (outcome.domain_error && law_failed())
       return;
-    // Very small steps may be the end of the model.
+    // Tiny steps may mark the end of the model.
     const double reach = std::max(end_reach, 2. * outcome.step_size);
     if (outcome.reason != "petsc_error")
     {
       if (end_inverts(t, std::min(t + reach, 1.)))
         return;
-      // How long is left at the present rate?
+      // Time left at the present rate.
       const StretchAt smallest = mesh_.assembler->stretch_range(run_->accepted.y).min;
       const Extreme before     = run_->recorder.smallest_before_last();
       const double rate        = t > before.t ? (before.value - smallest.value) / (t - before.t) : 0.;
       const double left        = rate > 0. ? std::max(smallest.value, 0.) / rate : 1.;
-      // For a >= 0 the stretch reaches 0 at a bounded rate, so one that is not near 0 was not lost by the body.
+      // Stretch reaches 0 at a bounded rate for a >= 0, so one that is not near 0 was not lost by the body.
       const bool near = left < (outcome.domain_error ? nearly_lost : end_reach);
       if (near || (outcome.domain_error && scene_.friction_exponent() < 0.))
       {
@@ -215,9 +215,9 @@ namespace crawler
   }
 
   /**
-   * For a <= -1 the stretch inside stays positive as long as the ends do (doc/theory.md, "When a body can invert"), so
-   * a loss of stretch there is an error of the mesh and is called that. For -1 < a < 0 bodies do invert, but the
-   * position form loses the stretch too early, or without need.
+   * Names a loss of stretch inside. For a <= -1 it stays positive as long as the ends do (doc/theory.md, "When a body
+   * can invert"), so the loss is called an error of the mesh. For -1 < a < 0 bodies do invert, but the position form
+   * loses the stretch too early, or without need.
    */
   void
   Simulation::inverted_inside(const double value, const double s, const double t)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// The part of Simulation that takes what the fused engine itself has seen in the stages of a step, instead of looking
-// at all of them once more.
+// Part of Simulation that takes the numbers that the fused engine computed in the stages of a step, instead of
+// evaluating all of them again.
 #include <crawler/run/lane_extremes.h>
 #include <crawler/run/simulation.h>
 
@@ -10,7 +10,7 @@
 
 namespace crawler
 {
-  /// May it? Not where round-off of the state counts, in very stiff or small cells.
+  /// True if they may be taken: not where round-off of the state counts, in very stiff or small cells.
   bool
   Simulation::may_take_looks_of_lanes() const
   {
@@ -19,7 +19,7 @@ namespace crawler
            run_->options.resolution != ResolutionWish::all;
   }
 
-  /// Of this step, where no stretch is nearly lost?
+  /// True if those of this step, where no stretch is nearly lost, may be taken.
   bool
   Simulation::takes_looks_of_lanes(const Step &step) const
   {
@@ -31,7 +31,7 @@ namespace crawler
            std::ranges::all_of(stages, [](const LaneStage &stage) { return stage.min_stretch > small_stretch; });
   }
 
-  /// At the end of the step, among the samples.
+  /// Extreme stretches at the end of the step, among the samples.
   StretchRange
   Simulation::stretch_of_lanes() const
   {
@@ -41,7 +41,7 @@ namespace crawler
             {end.max_stretch, lanes.tables().place_of_sample(end.max_sample)}};
   }
 
-  /// Of stage @p i of an accepted step. Where others look, too, they have seen its end.
+  /// Observes the stretch of stage @p i of an accepted step; with observers its end has that of run_->stretch.
   void
   Simulation::see_stretch_of_lanes(const unsigned int i)
   {
@@ -59,7 +59,7 @@ namespace crawler
     run_->recorder.see_stretch(smallest, largest);
   }
 
-  /// Stretch and rates of stage @p i of an accepted step.
+  /// Takes stretch and rates of stage @p i of an accepted step.
   void
   Simulation::take_stage_of_lanes(const Step &step, const unsigned int i)
   {
@@ -77,7 +77,7 @@ namespace crawler
       place, {{stage.stress_power, stage.dissipation, stage.positive_power, stage.absolute_power, end_power}});
   }
 
-  /// Stretch and works of an accepted step, if nobody wants to see more of its end.
+  /// Takes stretch and works of an accepted step, if no observer needs more of its end.
   void
   Simulation::take_looks_of_lanes(const Step &step)
   {

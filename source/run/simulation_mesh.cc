@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// The part of Simulation that changes the mesh on the way (doc/numerics.md, "Adaptive meshes").
+// Part of Simulation that changes the mesh on the way (doc/numerics.md, "Adaptive meshes").
 #include <crawler/equation/mesh_transfer.h>
 #include <crawler/run/simulation.h>
 
@@ -12,11 +12,11 @@ namespace crawler
 {
   namespace
   {
-    /// The step after a change of mesh that settle() makes is this times the root of the tolerance.
+    /// Step of settle() after a change of mesh, over the root of the tolerance.
     constexpr double settling_factor = 0.01;
   } // namespace
 
-  /// Changes the mesh, of the position form, and carries the last accepted state over.
+  /// Changes the mesh, of the position form, and transfers the last accepted state.
   void
   Simulation::change()
   {
@@ -43,10 +43,10 @@ namespace crawler
   }
 
   /**
-   * A state that was carried to another mesh is out of balance by the error of the mesh. Where friction is small it
-   * returns to balance at once, at the rate k/(gamma w^a h^2), and a time stepper that watched this would need steps as
-   * short. A backward Euler step is stable for any rate; this one is so short that its own error, size^2 u''/2, is a
-   * small part of the tolerance. If it cannot be made the state is left as it is.
+   * Settles a state that was transferred to another mesh and is out of balance by the error of the mesh. Where friction
+   * is small it returns to balance at once, at the rate k/(gamma w^a h^2), and a time stepper that followed this would
+   * need steps as short. A backward Euler step is stable for any rate; this one is so short that its own error, size^2
+   * u''/2, is a small part of the tolerance. If it cannot be made the state is left as it is.
    */
   void
   Simulation::settle()
@@ -54,7 +54,7 @@ namespace crawler
     constexpr unsigned int most_corrections = 10;
     const double size                       = settling_factor * std::sqrt(std::min(numerics_.tolerance, 1e-8));
     const double t                          = run_->accepted.time + size;
-    // This step is not shown, so it must not pass a time at which a state is wanted.
+    // Settling steps are not shown, so they must not pass a time at which a state is wanted.
     if (t > std::min({run_->output_times.next(), segments_.end(), run_->recorder.next_sample()}) - size)
       return;
     std::vector<double> y = y_, rate(y.size(), 0.), F(y.size()), change(y.size());
@@ -82,7 +82,7 @@ namespace crawler
     }
   }
 
-  /// Is the sum of the error indicators admissible, or may no cell be divided?
+  /// True if the sum of the error indicators is admissible, or no cell may be divided.
   bool
   Simulation::mesh_is_good(const Step &step, const std::span<const double> y)
   {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// The part of Simulation that shows its states to the observers: the ends of steps, and pictures at the times that were
-// asked for, which the integrator's dense output knows as well (doc/numerics.md, "Pictures").
+// Part of Simulation that shows its states to the observers: the ends of steps, and pictures at the requested times,
+// from the integrator's dense output (doc/numerics.md, "Pictures").
 #include <crawler/base/clock.h>
 #include <crawler/run/simulation.h>
 
 
 namespace crawler
 {
-  /// An accepted step: examined, and shown to the observers if its state may be used.
+  /// Examines an accepted step, and shows it to the observers if its state may be used.
   Simulation::Ending
   Simulation::see(const Step &step, const std::span<const double> y)
   {
@@ -24,7 +24,7 @@ namespace crawler
     return ending;
   }
 
-  /// The end of a step, or the initial state, with v_ and what run_ has of it.
+  /// Shows the end of a step, or the initial state, with v_ and the data in run_.
   void
   Simulation::show_step(const Step &step, const std::span<const double> y)
   {
@@ -42,8 +42,8 @@ namespace crawler
       run_->output_times.pass();
   }
 
-  /// The pictures within the step that has just been made, before the time @p until. Returns false if one of these
-  /// states has no velocity.
+  /// Shows the pictures within the step that has just been made, before the time @p until. Returns false if one of
+  /// these states has no velocity.
   bool
   Simulation::show_pictures_within(const Step &step, const double until)
   {
@@ -81,13 +81,13 @@ namespace crawler
     return true;
   }
 
-  /// The step has lost the body's stretch, but the dense output that told when knows what was before, too. The works
+  /// Shows the pictures before the step lost the body's stretch, from the dense output that found the time. The works
   /// until then follow from some times, since the stages may be later.
   void
   Simulation::show_pictures_before_inversion(const Step &step)
   {
     const Diagnosis inverted = *run_->diagnosis;
-    // What an end prescribes may be known to come a little later than the step ends.
+    // Inversions by an end condition may be known to come a little after the end of the step.
     const double start = step.time - step.size, end = std::min(result().inversion->t, step.time);
     if (run_->options.energy_balance)
     {
@@ -109,7 +109,7 @@ namespace crawler
     run_->diagnosis = inverted;
   }
 
-  /// The active stress has just jumped: the row of the kymograph at this time, once more, since a jump is not a ramp.
+  /// Shows the row of the kymograph at a jump of the active stress once more, since a jump is not a ramp.
   void
   Simulation::show_row_after_jump()
   {
@@ -139,7 +139,7 @@ namespace crawler
     if (run_->observers.empty())
       return;
     Step physical = shown.step;
-    // Pictures are shown as they were asked for, exactly.
+    // Pictures are shown at exactly the requested times.
     physical.time = shown.picture != nullptr ? shown.picture->value : shown.step.time * units_.time;
     physical.size *= units_.time;
     const double energy = units_.energy(), power = units_.power();

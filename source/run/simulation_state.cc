@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// The part of Simulation that looks at accepted states: may they be used, and what do they give (doc/numerics.md,
-// "Energy balance and self-checks")?
+// Part of Simulation that examines accepted states, decides whether they may be used, and integrates over them
+// (doc/numerics.md, "Energy balance and self-checks").
 #include <crawler/run/simulation.h>
 
 #include <fmt/format.h>
@@ -14,16 +14,16 @@ namespace crawler
 {
   namespace
   {
-    /// So many steps in succession smaller than this part of the duration are a failure.
+    /// Number of successive steps smaller than tiny_step, as a part of the duration, that are a failure.
     constexpr double tiny_step             = 1e-9;
     constexpr unsigned int most_tiny_steps = 2000;
-    /// So many of them at a stretch below this mean that it is lost: what is left of it is the error of Newton's
-    /// method.
+    /// Number of them at a stretch below nearly_zero that means that it is lost: the rest of it is the error of
+    /// Newton's method.
     constexpr unsigned int most_steps_at_zero = 20;
     constexpr double nearly_zero              = 1e-6;
   } // namespace
 
-  /// Looks at a state that the time stepper has accepted; and says why the run ends if it must not be used.
+  /// Examines a state that the time stepper has accepted; returns why the run ends if it must not be used.
   Simulation::Ending
   Simulation::examine(const Step &step, const std::span<const double> y)
   {
@@ -42,12 +42,12 @@ namespace crawler
     }
     if (end_inverts(step.time - step.size, step.time))
       return Ending::lost;
-    // What the active stress did within the step its ends do not show: it is made again, by shorter ones.
+    // Events of the active stress within the step that its ends do not show: it is repeated with shorter steps.
     if (run_->limiter.passed_over_event(step.time - step.size, step.time))
       return Ending::retry;
     if (stretch.min.value <= lost_stretch())
     {
-      // A mesh that is too coarse can lose it, too, so that is mended first.
+      // Meshes that are too coarse can lose it, too, so the mesh is refined first.
       if (is_adaptive() && mesh_.velocity->compute(step.time, step.size, y, v_) && !mesh_is_good(step, y))
         return Ending::mesh;
       locate_inversion(step);
@@ -83,7 +83,7 @@ namespace crawler
     return Ending::none;
   }
 
-  /// The velocity of a state, or the diagnosis why there is none.
+  /// Finds the velocity of a state, or sets the diagnosis why there is none.
   bool
   Simulation::finds_velocity(const double t, const double size, const std::span<const double> y, std::vector<double> &v)
   {
@@ -124,7 +124,7 @@ namespace crawler
     result.strain        = largest.strain;
   }
 
-  /// Are there too many small steps? Then the diagnosis says so.
+  /// True if there are too many small steps; sets the diagnosis then.
   bool
   Simulation::leads_nowhere(const Step &step)
   {
@@ -162,8 +162,8 @@ namespace crawler
       {sums.stress_power, sums.dissipation, sums.positive_power, sums.absolute_power, (*mesh_.end_power)(t, y, v)}};
   }
 
-  /// The rates of a step at the stages of the integrator, which integrates by them itself. The states within the step
-  /// are looked at for extremes of the stretch, too. Returns false if one of them has no velocity.
+  /// Integrates the rates of a step at the stages of the integrator, which uses the same quadrature. The states within
+  /// the step are sampled for extremes of the stretch, too. Returns false if one of them has no velocity.
   bool
   Simulation::integrate_step(const Step &step, const Rates &at_end)
   {
@@ -197,13 +197,13 @@ namespace crawler
     return true;
   }
 
-  /// Where the feedback sees the past: the stretch within the step, from the integrator's dense output.
+  /// Keeps the stretch within the step for a feedback with delay, from the integrator's dense output.
   void
   Simulation::keep_history(const Step &step, const std::span<const double> y)
   {
     if (past_.delay == 0. || step.size == 0.)
       return;
-    // The step starts from the last accepted state, of which the integrator may know less than of what is inside.
+    // Start of the step from the last accepted state: the integrator may know it less well than the states inside.
     StretchHistory::Step record{run_->accepted.time, step.time, past_.cells, &mesh_.discretization->element(), {}};
     std::vector<double> inside(y.size());
     for (std::size_t i = 0; i < record.coefficients.size(); ++i)
@@ -226,7 +226,7 @@ namespace crawler
     run_->recorder.see_stretch({range.min.value, range.min.s, t}, {range.max.value, range.max.s, t});
   }
 
-  /// Displacement, and if wanted the energy balance, at an accepted state.
+  /// Computes the displacement, and on request the energy balance, at an accepted state.
   bool
   Simulation::compute_integrals(const Step &step, const std::span<const double> y)
   {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// Who integrates the equation of a simulation over time, how they are connected, and which of their steps are made
-// again.
+// Integrators of the equation of a simulation over time, how they are connected, and which of their steps are repeated.
 #include <crawler/base/communication.h>
 #include <crawler/run/batch.h>
 #include <crawler/run/simulation.h>
@@ -18,7 +17,7 @@ namespace crawler
     return size_of(communicator_) == 1 && lane_method(scene_, time_, numerics_);
   }
 
-  /// The fused engine where it fits and has not given up, else PETSc. What is not used is not built.
+  /// Chooses the fused engine where it fits and has not given up, else PETSc. The unused one is not built.
   void
   Simulation::choose_stepper()
   {
@@ -38,7 +37,7 @@ namespace crawler
     }
   }
 
-  /// PETSc takes the last accepted state, with a step that is as small as the first one, or as the engine wanted it.
+  /// Continues with PETSc from the last accepted state, with a step as small as the first one or the engine's.
   void
   Simulation::go_on_with_petsc(const TimeOutcome &outcome)
   {

@@ -8,12 +8,13 @@ namespace crawler
 {
   namespace
   {
-    /// Cells that come to rest faster than this, relative to the duration, turn round-off of the state into a velocity.
+    /// Relaxation time, relative to the duration, below which cells turn round-off of the state into a velocity.
     constexpr double fast_relaxation = 1e-9;
-    /// Of cells whose velocities the fused engine is not asked for.
+    /// Relaxation time of cells below which the velocities of the fused engine are not used.
     constexpr double fastest_relaxation = 1e-12;
 
-    /// Of the highest mode of the smallest cell; of an adaptive mesh the largest cell tells whether the body is stiff.
+    /// Relaxation time of the highest mode of the smallest cell; of an adaptive mesh the largest cell tells whether the
+    /// body is stiff.
     double
     relaxation_time(const Assembler &assembler, const bool is_adaptive)
     {
@@ -69,8 +70,8 @@ namespace crawler
     rates_.assign(rates_.size(), {});
   }
 
-  /// From the rate r, if that is kept: v is the solution of M v + f + h K (v - r) = 0, h the step. Friction balances
-  /// exactly, since K does not act on rigid motions, and where M vanishes v is r.
+  /// Computes v from the rate r, if that is kept: v is the solution of M v + f + h K (v - r) = 0, h the step. Friction
+  /// balances exactly, since K does not act on rigid motions, and where M vanishes v is r.
   bool
   StateVelocity::compute(const double t, const double size, const ConstVector y, const std::span<double> v)
   {
@@ -81,7 +82,7 @@ namespace crawler
       return assembler_.velocity(t, y, v);
     const bool is_plain = assembler_.scene().is_plain();
     std::vector<double> F(y.size()), correction(y.size());
-    // Without a velocity the Jacobian is M/h + K; but friction that is not linear in it has to be that of the rate.
+    // Jacobian M/h + K without a velocity; but friction that is not linear in it has to be that of the rate.
     const std::vector<double> at = is_plain ? std::vector<double>(y.size(), 0.) : known->y_dot;
     if (!position_->residual(t, y, known->y_dot, F) || !position_->setup_jacobian(t, y, at, 1. / size))
       return false;
@@ -92,8 +93,8 @@ namespace crawler
     return true;
   }
 
-  /// K does not act on rigid motions, so round-off of the solution, 1e-16 h K/M of it, can hide in one. The friction
-  /// that is left over says how large that is: at once if it is linear in the velocity, else by secants.
+  /// Removes the round-off of the solution, 1e-16 h K/M of it, that can hide in a rigid motion, on which K does not
+  /// act. The residual friction gives its size: at once if it is linear in the velocity, else by secants.
   void
   StateVelocity::remove_rigid_motion(const double t, const ConstVector y, const std::span<double> v)
   {
@@ -114,7 +115,7 @@ namespace crawler
       const double now = assembler_.integrals(t, y, v).net_friction;
       if (!(std::abs(now) < std::abs(friction)))
       {
-        for (double &value : v) // no better
+        for (double &value : v) // no improvement
           value += motion;
         return;
       }

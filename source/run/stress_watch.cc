@@ -27,7 +27,7 @@ namespace crawler
       stress_->values(from + x[i] * (to - from), inside_[i]);
     }
     stress_->values(to, end);
-    // The middle one from the polynomial through the others.
+    // Value in the middle from the polynomial through the others.
     const double y = x[1], a = x[0], b = x[2];
     const double of_start = (y - a) * (y - b) * (y - 1.) / (-a * b),
                  of_end   = y * (y - a) * (y - b) / ((1. - a) * (1. - b)),

@@ -11,15 +11,15 @@ namespace crawler
 {
   namespace
   {
-    /// A change of the strain that is smaller than this is none.
+    /// Changes of the strain below this count as zero.
     constexpr double nothing = 1e-12;
-    /// Of the mean square of e, at most this part may be in harmonics that are not looked at: a pulse that few samples
-    /// see has half of it there, a signal that is on for a tenth of the period a tenth.
+    /// Largest part of the mean square of e in unexamined harmonics: a pulse that few samples see has half of it there,
+    /// a signal that is on for a tenth of the period a tenth.
     constexpr double most_unresolved = 0.3;
-    /// Extremes of the stretch move by at most twice the largest |e|; by this many of it only if the samples, means
-    /// over pieces of the body at few times, have not seen what moved them.
+    /// Motion of the extremes of the stretch, over the largest |e|, beyond which the samples, means over pieces of the
+    /// body at few times, have not seen its cause: it is at most twice the largest |e| otherwise.
     constexpr double most_swing = 4.;
-    /// Of the table of each harmonic, and of the search for the number of waves on the body.
+    /// Resolution of the table of each harmonic, and of the search for the number of waves on the body.
     constexpr unsigned int steps_per_wave = 4, search_steps_per_wave = 16;
 
     constexpr unsigned int n_harmonics = 8;
@@ -29,10 +29,10 @@ namespace crawler
       Harmonics re{}, im{};
     };
 
-    /// So many pieces of the body are looked at side by side; their number is filled up with pieces that do not move.
+    /// Number of pieces of the body processed side by side; their total is filled up with pieces at rest.
     constexpr std::size_t together = 4;
 
-    /// The harmonics of all pieces.
+    /// Harmonics of all pieces.
     class Pieces
     {
     public:
@@ -43,7 +43,7 @@ namespace crawler
       {
       }
 
-      /// [filled] of harmonic @p h.
+      /// Real parts [filled] of harmonic @p h.
       double *
       re(const unsigned int h)
       {
@@ -77,7 +77,7 @@ namespace crawler
       return x * x;
     }
 
-    /// cos and sin of 2 pi i/n, i = 0 ... n - 1.
+    /// Table of cos and sin of 2 pi i/n, i = 0 ... n - 1.
     std::vector<std::array<double, 2>>
     circle(const std::size_t n)
     {
@@ -103,7 +103,7 @@ namespace crawler
       return sum;
     }
 
-    /// The number of waves by the mean phase of the fundamental from piece to piece.
+    /// Number of waves by the mean phase of the fundamental from piece to piece.
     double
     from_phases(const Pieces &E)
     {
@@ -117,13 +117,13 @@ namespace crawler
       return -std::atan2(im, re) / (2. * std::numbers::pi) * static_cast<double>(E.n);
     }
 
-    /// The number of waves of the largest S, to a sixteenth, among those that the pieces tell apart: each harmonic
-    /// gives |int E_n e^(iks) ds|^2 as a table over k.
+    /// Number of waves of the largest S, to a sixteenth, among those that the pieces distinguish: each harmonic gives
+    /// |int E_n e^(iks) ds|^2 as a table over k.
     double
     search(const Pieces &E)
     {
       const std::size_t half = E.n / 2, n_table = steps_per_wave * half + 1;
-      // The body is folded about its middle: cosines see what is even, sines what is odd, and both directions are one.
+      // Folding the body about its middle: cosines see the even part, sines the odd one; both directions are one.
       std::vector<Complex> even(half), odd(half);
       std::vector<double> cosines(half, 1.), sines(half, 0.);
       std::vector<std::array<double, 2>> step(half);
@@ -141,7 +141,7 @@ namespace crawler
           2. * std::numbers::pi / steps_per_wave * (static_cast<double>(i) + 0.5) / static_cast<double>(E.n);
         step[i] = {{std::cos(angle), std::sin(angle)}};
       }
-      std::vector<std::array<Harmonics, 2>> power(n_table); // of both directions
+      std::vector<std::array<Harmonics, 2>> power(n_table); // in both directions
       for (auto &here : power)
       {
         const Complex a = weighted_sum(even, cosines), b = weighted_sum(odd, sines);
@@ -178,7 +178,7 @@ namespace crawler
       return best;
     }
 
-    /// sum_n sum_i |E_n|^2
+    /// Power sum_n sum_i |E_n|^2
     double
     power(const Pieces &E)
     {
@@ -189,7 +189,7 @@ namespace crawler
       return sum;
     }
 
-    /// S as a function of the number of waves of the fundamental on the body, nu = q L/P.
+    /// Function S of the number of waves of the fundamental on the body, nu = q L/P.
     class Beam
     {
     public:
@@ -210,7 +210,7 @@ namespace crawler
       {
         double nu, S;
       };
-      /// The largest S near @p nu, its number of waves to round-off.
+      /// Largest S near @p nu, its number of waves to round-off.
       Peak
       best(double nu) const;
 
@@ -224,7 +224,7 @@ namespace crawler
     {
       const auto n_pieces    = static_cast<double>(E_.n);
       const double per_piece = 2. * std::numbers::pi * nu / n_pieces, middle = 0.5 * (n_pieces - 1.);
-      // e^(i w q s) at all pieces, s from the middle; and its powers.
+      // Factors e^(i w q s) at all pieces, s from the middle; and their powers.
       const std::size_t filled = E_.filled;
       std::vector<double> s(filled), re(filled), im(filled), turn_re(filled, 1.), turn_im(filled, 0.);
       const double step_re = std::cos(per_piece), step_im = std::sin(per_piece);
@@ -241,7 +241,7 @@ namespace crawler
       Value value;
       for (unsigned int n = 0; n < n_harmonics; ++n)
       {
-        // int E_n e^(i n w q s), with powers of s in pieces.
+        // Integrals of E_n e^(i n w q s), with powers of s in pieces.
         std::array<double, together> f_re{}, f_im{}, s_re{}, s_im{}, ss_re{}, ss_im{};
         const double *const E_re = E_.re(n), *const E_im = E_.im(n);
         for (std::size_t first = 0; first < filled; first += together)
@@ -309,7 +309,7 @@ namespace crawler
     const auto turns = circle(n_t);
     Pieces E(n_s);
     double largest = 0., squares = 0.;
-    // Half a period later odd harmonics have the other sign.
+    // Odd harmonics have the other sign half a period later.
     const std::size_t half = n_t / 2;
     std::vector<double> odd(n_s), even(n_s);
     for (std::size_t j = 0; j < half; ++j)
@@ -337,9 +337,9 @@ namespace crawler
     if (largest <= nothing || swing > most_swing * largest || squares - 2. * power(E) > most_unresolved * squares)
       return std::nullopt;
 
-    // Half as many pieces take half the time. What finds more than half of all e is the largest, since waves of other
-    // numbers are orthogonal: so near the phase from piece to piece, else among all. If pairs of pieces find nearly all
-    // they see as much as the whole.
+    // Pairs of pieces take half the time. A wave with more than half of all e is the largest, since waves of other
+    // numbers are orthogonal: so the search is near the phase from piece to piece, else among all. If pairs of pieces
+    // find nearly all they see as much as the whole.
     constexpr double half_of_all = 0.5, nearly_all = 0.9;
     Pieces pairs(n_s / 2);
     for (unsigned int n = 0; n < n_harmonics; ++n)

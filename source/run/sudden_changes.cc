@@ -9,12 +9,12 @@ namespace crawler
 {
   namespace
   {
-    /// Times and places so near to a break count as its sides, relative to duration and length.
+    /// Distance to a break, relative to duration and length, of times and places that count as its sides.
     constexpr double beside = 1e-9;
-    /// Smaller changes of the stretch are not sudden, and its overshoot is small.
+    /// Change of the stretch below which it is not sudden, and its overshoot is small.
     constexpr double sudden = 1e-5;
-    /// A cell shows a layer of thickness sqrt(4 D t) that is this part of it, and layers are thin for no longer than
-    /// this part of the duration.
+    /// Part of a cell that a layer of thickness sqrt(4 D t) must fill to show, and the part of the duration up to which
+    /// layers are thin at most.
     constexpr double seen = 1., longest = 1e-3;
   } // namespace
 
@@ -98,7 +98,7 @@ namespace crawler
     const bool is_left = s <= beside;
     if (!stress_ || (!is_left && s < 1. - beside))
       return std::nullopt;
-    const auto [left, right] = at(std::max(t - beside, 0.)).end_stretch; // before the stress jumps
+    const auto [left, right] = at(std::max(t - beside, 0.)).end_stretch; // before the jump of the stress
     return is_left ? left : right;
   }
 } // namespace crawler

@@ -5,22 +5,22 @@
 
 namespace crawler
 {
-  /// A run with its error, and how it was found.
+  /// Run with its error and the numerics that were used.
   struct Answer
   {
-    SimulationResult result; ///< with its error, if that was asked for and is known
-    NumericsChoice choice;   ///< what was used in the end
+    SimulationResult result; ///< result with its error, if that was requested and is known
+    NumericsChoice choice;   ///< numerics of the final run
     unsigned int refinements = 0;
-    double estimate_seconds  = 0.; ///< that the errors took
+    double estimate_seconds  = 0.; ///< time spent on the errors
   };
 
-  /// A body that several runs say has inverted at that time has not done so before the last state that is shown: what
-  /// the time is later for that adds to its error. The message says when and where.
+  /// Moves the time of an inversion on which several runs agree to the last state that is shown, before which it has
+  /// not happened; the delay is added to its error. The message says when and where.
   void
   end_before_inversion(SimulationResult &result);
 
   constexpr unsigned int most_refinements = 3;
 
-  /// The reason of a run whose displacement is known, but not as accurately as wanted.
+  /// Reason of a run whose displacement is known, but not as accurately as wanted.
   constexpr const char *accuracy_not_met = "accuracy_not_met";
 } // namespace crawler

@@ -10,17 +10,18 @@ namespace crawler
 {
   /**
    * Sets the errors of @p result, which a Simulation with @p choice gave and which finished (collective). A second,
-   * finer run tells that of the displacement (doc/numerics.md, "Error bounds"): with x the difference of both
+   * finer run gives that of the displacement (doc/numerics.md, "Error bounds"): with x the difference of both
    * displacements and w the error that the choice promises,
    *
-   *   total = 1.5 x + w/5   (w/2 on adaptive meshes, 0.15 w on graded ones), and at least 1e-15 L, the error of
-   * round-off. Without a promise a third run with more cells only tells the parts in space and time, and total is twice
-   * their sum.
+   *   total = 1.5 x + w/5   (w/2 on adaptive meshes, 0.15 w on graded ones),
    *
-   * It is split into space and time as the rule that chose the numerics expects it. Where the stretch collapses the
-   * choice has measured the error, and no second run is made. The error is unknown if the finer run did not finish or
-   * was stopped by @p keep_going. Other numbers have errors by number_errors(), with the same factors and Accuracy as
-   * what is promised, if there was a second run.
+   * and at least 1e-15 L, the error of round-off. Without a promise a third run with more cells only separates the
+   * parts in space and time, and total is twice their sum.
+   *
+   * The rule that chose the numerics predicts the split into space and time. Where the stretch collapses the choice has
+   * measured the error, and no second run is made. The error is unknown if the finer run did not finish or was stopped
+   * by @p keep_going. Other numbers have errors by number_errors(), with the same factors and Accuracy as the promised
+   * part, if there was a second run.
    */
   void
   estimate_errors(MPI_Comm communicator,
@@ -30,12 +31,11 @@ namespace crawler
                   SimulationResult &result,
                   const KeepGoing &keep_going = {});
 
-  /// The numerics of the next try where the error of @p choice is too large, with so many times the cells.
+  /// Numerics of the next try where the error of @p choice is too large, with @p cells times the cells.
   NumericsChoice
   refined(const NumericsChoice &choice, const Scene &scene, double cells);
 
-  /// The finer run that measures the errors of a run with @p choice: what it does with entries of section Time, its
-  /// numerics, and what it computes.
+  /// Entries of section Time for the finer run that measures the errors of a run; then its numerics and its options.
   TimeParameters
   time_of_finer_run(const TimeParameters &run);
   Numerics

@@ -7,13 +7,13 @@
 
 namespace crawler
 {
-  /// The level on which a scene is computed (doc/theory.md, "The model hierarchy"), and why.
+  /// Level on which a scene is computed (doc/theory.md, "The model hierarchy"), and why.
   struct ModelChoice
   {
     Model model;
     std::string explanation;
 
-    /// Perturbation and kinematic need neither mesh nor time stepper (run/reduced_model.h).
+    /// True unless the level is perturbation or kinematic, without mesh and time stepper (run/reduced_model.h).
     bool
     needs_mesh() const
     {
@@ -22,7 +22,7 @@ namespace crawler
   };
 
   /**
-   * The level that Model names; if it is auto the lowest one whose estimated error is at most Accuracy times the
+   * Level that Model names; if it is auto the lowest one whose estimated error is at most Accuracy times the
    * displacement, or 1e-12 of the length (perturbation, kinematic, nonlinear; linear if a = 0, where the displacement,
    * being 0, cannot tell the levels apart). Throws InputError if the scene does not fit the level that Model names.
    */

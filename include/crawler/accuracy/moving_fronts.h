@@ -7,13 +7,13 @@
 
 namespace crawler
 {
-  /// The answer of a scene that is like another one, to another accuracy.
+  /// Function that answers a scene similar to another one, to another accuracy.
   using AnswerOf = std::function<Answer(const RunParameters &, const Scene &)>;
 
   /**
-   * The answer where jumps of the active stress move along the body (NumericsChoice::has_fronts). No mesh follows them,
-   * and on any mesh the error falls like the size of a cell. But with fronts of the width d in place of the jumps the
-   * scene is smooth, and its displacement D(d) is a smooth function of d: so D is computed for d_k = d_0/2^k, by @p
+   * Answer where jumps of the active stress move along the body (NumericsChoice::has_fronts). No mesh follows them, and
+   * on any mesh the error falls like the size of a cell. But with fronts of the width d in place of the jumps the scene
+   * is smooth, and its displacement D(d) is a smooth function of d: so D is computed for d_k = d_0/2^k, by @p
    * answer_of, and extrapolated to 0 by the polynomial through the last of them (doc/numerics.md, "Jumps that move"),
    *
    *   D = sum_k c_k D(d_k),    c_k = prod_(j != k) d_j/(d_j - d_k).

@@ -13,50 +13,49 @@
 
 namespace crawler
 {
-  /// Settings, and in a sentence why.
+  /// Settings, and the reason for them in a sentence.
   struct NumericsChoice
   {
     Numerics numerics;
     std::string explanation;
-    /// The error of the displacement that Accuracy stands for [length]; not a number if the user chose the numerics.
+    /// Error of the displacement that Accuracy stands for [length]; not a number if the user chose the numerics.
     double promised_error = std::numeric_limits<double>::quiet_NaN();
     /// Accuracy times the size of the displacement [length]; not a number if the user chose the numerics.
     double wanted_error = std::numeric_limits<double>::quiet_NaN();
-    /// The part of the error that is of the mesh, as far as the rule can tell; not a number if it cannot [1].
+    /// Share of the mesh in the error, as far as the rule can tell; not a number if it cannot [1].
     double space_share = std::numeric_limits<double>::quiet_NaN();
-    /// The reported error is at least this: what the indicators cannot see [length].
+    /// Floor of the reported error, for the part that the indicators cannot see [length].
     double least_error = 0.;
-    /// The active stress is not smooth along the body: finer meshes have errors that are not much smaller.
+    /// True if the active stress is not smooth along the body: finer meshes have errors that are not much smaller
     bool is_rough = false;
-    /// Errors of a smooth active stress fall slowly with the cells, as pilots measured: fronts of friction.
+    /// True if errors of a smooth active stress fall slowly with the cells, as pilots measured: fronts of friction
     bool is_steep = false;
-    /// The user set cells or tolerances.
+    /// True if the user set cells or tolerances
     bool is_users = false;
-    /// Its promised error was measured with one mesh after the other: jumps of the active stress move.
+    /// True if the promised error was measured on successive meshes: jumps of the active stress move
     bool is_measured = false;
-    /// The stretch form: its runs on a family of meshes measure the error (mesh_family.h). They begin with `numerics`,
+    /// Stretch form: its runs on a family of meshes measure the error (mesh_family.h). They begin with `numerics`,
     /// whose time tolerance is meant for this strain [1].
     bool is_family = false;
     double strain  = 0.;
-    /// Jumps of the active stress move and become fronts (moving_fronts.h): a run alone has fronts so wide, relative to
-    /// the widest that fit; 0: the jumps themselves.
+    /// Fronts in place of moving jumps of the active stress (moving_fronts.h): a run alone has fronts of this width,
+    /// relative to the widest that fit; 0: the jumps themselves.
     bool has_fronts   = false;
     double front_part = 0.;
-    /// The size of the displacement, which is known after the run, counts as no less than this [length]; not a number
-    /// if the user chose the numerics.
+    /// Floor of the size of the displacement, known after the run [length]; NaN if the user chose the numerics.
     double least_size = std::numeric_limits<double>::quiet_NaN();
-    /// What helps if Accuracy is not met; empty if nothing special does.
+    /// Advice for an Accuracy that is not met; empty if there is none.
     std::string advice;
 
-    /// Is the answer made of several runs, of which none is the answer?
+    /// True if the answer is made of several runs, of which none is the answer.
     bool
     is_of_several_runs() const
     {
       return is_family || has_fronts;
     }
 
-    /// The run is there: what Accuracy stands for, if pilots, or the first strides of many, were far from its
-    /// displacement.
+    /// Sets the size from the run's displacement: corrects the meaning of Accuracy if pilots, or the first strides of
+    /// many, were far from it.
     void
     set_size(const double displacement, const double accuracy)
     {
@@ -71,12 +70,12 @@ namespace crawler
   };
 
   /**
-   * Turns Accuracy into degree, number of cells and time tolerance; entries that the user has set are taken as they are
+   * Turns Accuracy into degree, number of cells and time tolerance; entries that the user has set are respected
    * (collective). The rule, with its constants, is explained in doc/numerics.md ("Accuracy"): pilot runs on a coarse
    * mesh with a loose tolerance measure the size of the displacement and how fast the Legendre modes of the stretch
-   * decay; the mesh is refined until the predicted error of the displacement in space, and the tolerance chosen such
-   * that the one in time, are below Accuracy. Nothing is returned if @p keep_going, which is asked after every step of
-   * a pilot run, said no.
+   * decay; the mesh is refined until the predicted error of the displacement in space is below Accuracy, and the
+   * tolerance is chosen such that the error in time is. Nothing is returned if @p keep_going, which is asked after
+   * every step of a pilot run, returned false.
    */
   std::optional<NumericsChoice>
   choose_numerics(MPI_Comm communicator,
@@ -84,8 +83,8 @@ namespace crawler
                   const Scene &scene,
                   const KeepGoing &keep_going = {});
 
-  /// Pictures at times within steps are less accurate than the ends of the steps of radau 5 and 9. Makes the tolerance
-  /// so small that their displacement is as accurate as wanted, too, if it is not the user's.
+  /// Adjusts the tolerance for pictures: at times within steps they are less accurate than the ends of the steps of
+  /// radau 5 and 9. It becomes so small that their displacement is as accurate as wanted, too, unless the user set it.
   void
   prepare_for_pictures(NumericsChoice &choice, const RunParameters &parameters);
 } // namespace crawler

@@ -8,12 +8,12 @@
 namespace crawler
 {
   /**
-   * A family of meshes has its own way (mesh_family.h), with @p options; if it does not meet Accuracy the position form
-   * may. Only the last run is by @p simulate then, if that @p writes. Otherwise runs @p simulate with @p choice,
-   * estimates the error of the displacement if `Error estimate` is set, and as long as that is more than wanted, tries
-   * again with more cells and a smaller tolerance, at most most_refinements times (collective). What then has too large
-   * an error, or an unknown one, is named a failure, `accuracy_not_met`: with all results and the error that was
-   * reached. If the user chose the numerics, their error is reported and that is all.
+   * Runs until the promised error is met: repeats @p simulate with @p choice and estimates the error of the
+   * displacement if `Error estimate` is set, and as long as that is more than wanted, tries again with more cells and a
+   * smaller tolerance, at most most_refinements times (collective). A final error that is too large or unknown is a
+   * failure, `accuracy_not_met`: with all results and the error that was reached. If the user chose the numerics, their
+   * error is reported and that is all. A family of meshes has its own way (mesh_family.h), with @p options; if it does
+   * not meet Accuracy the position form may. Only the last run is by @p simulate then, if that @p writes.
    */
   Answer
   run_as_promised(MPI_Comm communicator,
@@ -25,7 +25,7 @@ namespace crawler
                   bool writes,
                   const KeepGoing &keep_going = {});
 
-  /// The same of one rank without files, with numerics chosen for it.
+  /// Answer on one rank without files, with numerics chosen for it.
   Answer
   answer_in_memory(const RunParameters &parameters,
                    const Scene &scene,

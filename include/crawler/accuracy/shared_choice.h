@@ -10,7 +10,7 @@
 
 namespace crawler
 {
-  /// A scene to compute, and how. Both are the caller's.
+  /// Scene to compute, and its parameters. Both are the caller's.
   struct SceneToCompute
   {
     const RunParameters *parameters;
@@ -21,21 +21,22 @@ namespace crawler
   struct SharedChoice
   {
     NumericsChoice choice;
-    double relative_tolerance; ///< of the time integration, relative to the size of the displacement
-    std::vector<double> sizes; ///< of the displacements of the examples [length]
+    double relative_tolerance; ///< tolerance of the time integration, relative to the size of the displacement
+    std::vector<double> sizes; ///< sizes of the displacements of the examples [length]
 
-    /// The numerics of a scene whose displacement is about of this @p size [length].
+    /// Numerics of a scene whose displacement is about of this @p size [length].
     NumericsChoice
     choice_for(const Scene &scene, double size) const;
   };
 
   /**
-   * Measures on @p examples what similar scenes need (doc/numerics.md, "Sweeps"). The rule of choose_numerics() gives a
-   * reference for them; then the number of cells, and the method and tolerance of the time integration, are made as
-   * cheap as they can be while the displacement of no example differs by more than a small part of Accuracy.
+   * Measures on @p examples the numerics that similar scenes need (doc/numerics.md, "Sweeps"). The rule of
+   * choose_numerics() gives a reference for them; then the number of cells, and the method and tolerance of the time
+   * integration, are made as cheap as possible while the displacement of no example differs by more than a small part
+   * of Accuracy.
    *
    * Nothing if the examples are of different kinds, do not fit the fused engine or have no bound that could be compared
-   * with what is wanted, or if @p keep_going says no.
+   * with the wanted error, or if @p keep_going returns false.
    */
   std::optional<SharedChoice>
   shared_choice(std::span<const SceneToCompute> examples, const std::function<bool()> &keep_going);

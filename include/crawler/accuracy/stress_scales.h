@@ -8,30 +8,30 @@
 
 namespace crawler
 {
-  /// What a look at the active stress alone tells: pilots cannot miss what this has seen.
+  /// Scales from an examination of the active stress alone: pilots cannot miss what it has seen.
   struct StressScales
   {
-    double displacement; ///< of the stiff body, or of the one that is held by friction [length]
+    double displacement; ///< displacement of the stiff body, or of the one that is held by friction [length]
     double length;       ///< largest |m| over largest |m_s| between the breaks [length]
-    /// No step is longer than the time in which m can change by the largest |m| between the breaks [time].
+    /// Limits of steps to the time in which m can change by the largest |m| between the breaks [time].
     std::vector<StepLimit> step_limits;
     double stress;  ///< largest |m| [force]
     bool sees_all;  ///< no event is too short to be seen: by ActiveStress::bounds(), or one stride shows all
     bool is_smooth; ///< m seems to have many derivatives along the body, between the breaks
-    /// The largest sudden change of what makes layers, relative to the largest |m|: of m at the ends of the body and of
-    /// its jumps in space, at the start and at the breaks in time [1].
+    /// Largest sudden change that makes layers, relative to the largest |m|: of m at the ends of the body and of its
+    /// jumps in space, at the start and at the breaks in time [1].
     double sudden;
-    double sudden_later;           ///< the same at the breaks in time alone [1]
+    double sudden_later;           ///< largest sudden change at the breaks in time alone [1]
     std::size_t in_space, in_time; ///< numbers of breaks
-    /// m jumps at places that are no breaks and not the same at all times: no cell can end there.
+    /// True if m jumps at places that are no breaks and change in time: no cell can end there.
     bool jumps_move;
   };
 
   StressScales
   stress_scales(const Scene &scene);
 
-  /// The limits of the steps for a scene like one that has the limits @p known and this largest |m| [force]; finding
-  /// them takes microseconds where the generator can tell.
+  /// Limits of the steps for a scene like one that has the limits @p known, with this largest |m| [force]; finding them
+  /// takes microseconds where the generator can tell.
   std::vector<StepLimit>
   similar_step_limits(const Scene &scene, const std::vector<StepLimit> &known, double largest);
 } // namespace crawler

@@ -9,9 +9,9 @@ namespace crawler
 {
   /**
    * Measures the error of a finished @p result, whose bound is known, once more by the adjoint (adjoint/error_sweep.h):
-   * its parts in space and time, which were what the rule of the numerics expects, and the corrected displacement with
-   * its bound. A bound below an error that the sweep tells becomes that. Nothing is done where there is no adjoint, and
-   * for runs of so many steps and cells that it would take long.
+   * its parts in space and time, which were those that the rule of the numerics expects, and the corrected displacement
+   * with its bound. A bound below the error found by the sweep is raised to it. Nothing is done where there is no
+   * adjoint, and for runs of so many steps and cells that it would take long.
    */
   void
   sweep_error(const RunParameters &parameters,

@@ -8,34 +8,34 @@
 
 namespace crawler
 {
-  /// Of a scene, in units of its length.
+  /// Breaks in space of a scene, in units of its length.
   std::vector<double>
   breaks_in_space_of(const Scene &scene);
 
-  /// In units of its duration.
+  /// Breaks in time of a scene, in units of its duration.
   std::vector<double>
   breaks_in_time_of(const Scene &scene);
 
   /**
-   * [0, 1] to [0, 1], linear between breaks and taking those of one scene to those of another, which are near them:
-   * where several come together in the one, to the mean of what they are in the other.
+   * Map from [0, 1] to [0, 1], linear between breaks, from the breaks of one scene to the nearby ones of another: where
+   * several come together in the one, to their mean in the other.
    */
   class BreakMap
   {
   public:
     BreakMap(const std::vector<double> &from, const std::vector<double> &to);
 
-    /// Has each break of the one some of the other near it, and the other no more but at the ends?
+    /// True if each break of the one scene has some of the other near it, and the other has no more except at the ends.
     bool
     is_good() const
     {
       return is_good_;
     }
-    /// Are they as many?
+    /// True if both have the same number of breaks.
     bool
     is_one_to_one() const;
 
-    /// The number of the piece in which @p x is; the left one at a break.
+    /// Number of the piece that contains @p x; the left one at a break.
     std::size_t
     piece(double x) const;
     double
@@ -53,8 +53,7 @@ namespace crawler
       return piece + 2 == from_.size();
     }
 
-    /// The breaks of the other scene near break @p number of the one, where 0 is the start, and what they are taken
-    /// for.
+    /// Breaks of the other scene near break @p number of the one, where 0 is the start.
     const std::vector<double> &
     bunch(const std::size_t number) const
     {
@@ -65,7 +64,7 @@ namespace crawler
     {
       return to_[number];
     }
-    /// The number of the piece of the other scene that this one becomes.
+    /// Number of the piece of the other scene that this one becomes.
     std::size_t
     image(std::size_t piece) const;
 

@@ -9,7 +9,7 @@
 
 namespace crawler
 {
-  /// A state at all points: displacement, velocity, strain, stretch and its rate.
+  /// State at all points: displacement, velocity, strain, stretch and its rate.
   struct StateAtPoints
   {
     std::vector<double> u, v, e, w, rate;
@@ -21,7 +21,7 @@ namespace crawler
   class CellPoints
   {
   public:
-    /// @p n_more: in each cell, than the degree + 1 of the run itself. @p setup must outlive it.
+    /// @p n_more points in each cell beyond the degree + 1 of the run itself. @p setup must outlive it.
     explicit CellPoints(const LaneSetup &setup, unsigned int n_more = 0);
 
     const std::vector<double> &
@@ -44,45 +44,45 @@ namespace crawler
     {
       return per_cell_;
     }
-    /// [per_cell()] in a cell of size 1.
+    /// Places [per_cell()] in a cell of size 1.
     const std::vector<double> &
     places() const
     {
       return places_;
     }
-    /// Of the quadrature.
+    /// Weight of the quadrature.
     double
     weight(std::size_t point) const;
 
-    /// A field, and its derivative by s, from its values at the nodes.
+    /// Evaluates a field, and its derivative by s, from its values at the nodes.
     void
     evaluate(const double *nodal, std::vector<double> &values, std::vector<double> &slopes) const;
-    /// Adds to what belongs to the nodes: for each node the sum of @p values times its shape function and of @p slopes
-    /// times the derivative of that.
+    /// Adds to the nodes: for each the sum of @p values times its shape function and of @p slopes times the derivative
+    /// of that.
     void
     add_to_nodes(const std::vector<double> &values, const std::vector<double> &slopes, double *nodal) const;
-    /// The state from displacement and velocity at the nodes.
+    /// Evaluates the state from displacement and velocity at the nodes.
     void
     evaluate(const std::vector<double> &u, const std::vector<double> &v, StateAtPoints &at) const;
 
   private:
     const LaneSetup &setup_;
     const std::size_t per_cell_;
-    std::vector<double> places_, weights_, values_, slopes_; ///< of a cell of size 1: [point], [point][node]
+    std::vector<double> places_, weights_, values_, slopes_; ///< tables of a cell of size 1: [point], [point][node]
     std::vector<double> points_;
   };
 
-  /// The states in the stages of a recorded run, step by step from the last one to the first.
+  /// States in the stages of a recorded run, step by step from the last one to the first.
   class BackwardStages
   {
   public:
     BackwardStages(const LaneRecord &steps, const RadauTableau &tableau);
 
-    /// To the step before the present one, which is the last one at first.
+    /// Goes to the step before the present one, which is the last one at first.
     void
     go_back(std::size_t step);
 
-    /// Of that step.
+    /// Goes to a stage of that step.
     void
     go_to_stage(unsigned int stage);
 
@@ -107,6 +107,6 @@ namespace crawler
     const RadauTableau &tableau_;
     std::size_t step_ = 0;
     double time_      = 1.;
-    std::vector<double> y_, u_, v_; ///< at the start of the step; in the stage
+    std::vector<double> y_, u_, v_; ///< state at the start of the step; in the stage
   };
 } // namespace crawler

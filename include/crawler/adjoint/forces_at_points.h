@@ -11,10 +11,10 @@
 namespace crawler
 {
   /**
-   * The force N in a body and the friction f at points, in natural units of the body. The state is that of another
-   * scene at the points; its breaks are taken to those of this one: with S and R the stretches of the body and of the
-   * time that this takes, w = 1 + e/S, v -> v/R, and a piece of the body is S times as long. What comes between jumps
-   * in time that come together in the other scene is in between().
+   * Force N in a body and friction f at points, in natural units of the body. The state is that of another scene at the
+   * points; its breaks are mapped to those of this one: with S and R the resulting stretches of the body and of time,
+   * w = 1 + e/S, v -> v/R, and a piece of the body is S times as long. The contribution between jumps in time that
+   * come together in the other scene is in between().
    */
   class ForcesAtPoints
   {
@@ -28,24 +28,24 @@ namespace crawler
       return units_;
     }
 
-    /// At the time @p t of a step that ends at @p end.
+    /// Evaluates at the time @p t of a step that ends at @p end.
     void
     evaluate(double t, double end, const StateAtPoints &at);
 
-    /// What a time of the other scene is for this one.
+    /// Maps a time of the other scene to this one.
     double
     own_time(const double t) const
     {
       return in_time_(in_time_.piece(t), t);
     }
 
-    /// Is the end of a step where several jumps come together, or where some come in or go out of the run? (@p start:
-    /// of the run.)
+    /// True if several jumps come together at the end of a step, or if some enter or leave the run there. (@p start: of
+    /// the run.)
     bool
     has_between(double time, bool start) const;
 
-    /// int N dt over the short times between them, less what evaluate() has instead, at all points; for the state that
-    /// was evaluated last.
+    /// Integral of N over the short times between them, less that of the forces of evaluate(), at all points; for the
+    /// state that was evaluated last.
     std::vector<double>
     between(double time, bool start);
 
@@ -54,7 +54,7 @@ namespace crawler
     {
       return body_->N[point];
     }
-    /// For each length of the other body.
+    /// Friction per length of the other body.
     double
     friction(const std::size_t point) const
     {
@@ -76,7 +76,7 @@ namespace crawler
     {
       double m_w, m_rate, f_u, f_w, f_v;
     };
-    /// At all points, for the state that was evaluated last. Of the scene itself only, not of others.
+    /// Slopes at all points, for the state that was evaluated last. Of the scene itself only, not of others.
     void
     slopes(std::vector<Slopes> &all);
 

@@ -8,15 +8,15 @@
 
 namespace crawler
 {
-  /// A run in the position form by the fused engine, with all its steps: what an adjoint goes through backwards.
+  /// Run in the position form by the fused engine, with all its steps: the object that an adjoint traverses backwards.
   struct RecordedRun
   {
-    /// Is there one for this scene and these settings? Not for the stretch form, an initial stretch, jumps that move,
-    /// feedback from elsewhere or to what jumps in time, and what the fused engine does not compute.
+    /// True if this scene and these settings admit one: not for the stretch form, an initial stretch, jumps that move,
+    /// feedback from elsewhere or to what jumps in time, and scenes that the fused engine does not compute.
     static bool
     is_possible(const Scene &scene, const TimeParameters &time, const Numerics &numerics);
 
-    /// Makes the run. Throws std::runtime_error if it does not finish. The scene must outlive it; only if it
+    /// Makes the run. Throws std::runtime_error if it does not finish. The scene must outlive it; requires
     /// is_possible().
     RecordedRun(const Scene &scene,
                 const TimeParameters &time,

@@ -9,7 +9,7 @@
 
 namespace crawler
 {
-  /// What a gradient may be of; the works over the whole run as in EnergyBalance, displacement and speed of the last
+  /// Quantity of a gradient; the works over the whole run as in EnergyBalance, displacement and speed of the last
   /// stride as in Gait.
   enum class Quantity
   {
@@ -36,30 +36,30 @@ namespace crawler
     return quantity >= Quantity::stress_work && quantity <= Quantity::paper_energy;
   }
 
-  /// The forces of a scene at points in the body and at its ends.
+  /// Forces of a scene at points in the body and at its ends.
   struct ForcesOfScene
   {
     ForcesOfScene(const Scene &physical, const Scene &other, const std::vector<double> &points);
 
-    /// @p u, v at the nodes give @p at_ends.
+    /// Evaluates at a state; @p u, v at the nodes give @p at_ends.
     void
     evaluate(double t, double end, const StateAtPoints &at, const StateAtPoints &at_ends);
 
     ForcesAtPoints inside, ends;
   };
 
-  /// The rates at which works grow, in natural units; the displacement is none. The state is that of another scene,
-  /// and so are lengths and times: a rate is for each time of that scene.
+  /// Rates at which works grow, in natural units; the displacement is none. The state is that of another scene, and so
+  /// are lengths and times: a rate is per unit of time of that scene.
   class WorkRates
   {
   public:
     explicit WorkRates(const CellPoints &points);
 
-    /// At a state that was evaluated.
+    /// Rate at a state that was evaluated.
     double
     rate(Quantity work, const ForcesOfScene &forces, const StateAtPoints &at, const StateAtPoints &at_ends) const;
 
-    /// @p weight times the derivatives of the rate by displacement and velocity at the nodes; of the scene itself.
+    /// Adds @p weight times the derivatives of the rate by displacement and velocity at the nodes; of the scene itself.
     void
     add_slopes(Quantity work,
                double weight,

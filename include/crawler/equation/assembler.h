@@ -15,21 +15,21 @@
 namespace crawler
 {
 
-  /// A stretch and where it was seen.
+  /// Stretch and its place.
   struct StretchAt
   {
     double value; ///< [1]
     double s;     ///< [length]
   };
 
-  /// The smallest and the largest stretch of a state: looked for at the quadrature points and the ends of all cells,
-  /// and sharpened by a parabola inside a cell.
+  /// Smallest and largest stretch of a state: searched at the quadrature points and the ends of all cells, and refined
+  /// by a parabola inside a cell.
   struct StretchRange
   {
     StretchAt min, max;
   };
 
-  /// In which unknowns the equation is solved.
+  /// Unknowns in which the equation is solved.
   enum class Formulation
   {
     position, ///< the displacement u = zeta - s
@@ -37,8 +37,8 @@ namespace crawler
   };
 
   /**
-   * The semi-discrete crawler in one of its formulations, as far as it looks at states: what the unknowns y of a rank
-   * mean. Vectors are the owned values of each rank; all functions are collective.
+   * Semi-discrete crawler in one of its formulations: the part that evaluates states, i.e. the meaning of the unknowns
+   * y of a rank. Vectors are the owned values of each rank; all functions are collective.
    */
   class Assembler
   {
@@ -55,35 +55,35 @@ namespace crawler
     virtual std::size_t
     n_unknowns() const = 0;
 
-    /// The active stress is another one from now on, at the same times, too.
+    /// Forgets kept values: the active stress is another one from now on, at the same times, too.
     virtual void
     forget_stresses()
     {
     }
 
-    /// v = u' at the nodes [length/time], from the balance of forces. Returns false if it cannot be computed.
+    /// Velocity v = u' at the nodes [length/time], from the balance of forces. Returns false if it cannot be computed.
     virtual bool
     velocity(double t, ConstVector y, Vector v) = 0;
 
-    /// The integrals over the whole body, the same on all ranks. @p v is the velocity at the nodes.
+    /// Integrals over the whole body, the same on all ranks. @p v is the velocity at the nodes.
     virtual CellIntegrals
     integrals(double t, ConstVector y, ConstVector v) = 0;
 
-    /// The displacements at the owned nodes. What is returned is good until the next call.
+    /// Displacements at the owned nodes; valid until the next call.
     virtual ConstVector
     displacement(ConstVector y) const = 0;
 
-    /// The stretches of the cells; empty in the position form, where they follow from the displacement. What is
-    /// returned is good until the next call.
+    /// Stretches of the cells, valid until the next call; empty in the position form, which computes
+    /// them from the displacement.
     virtual ConstVector
     stretch(ConstVector) const
     {
       return {};
     }
 
-    /// How the stretch may be drawn within the cells: its slopes there, times the size of the cell; and the friction at
-    /// the nodes [force/length], which balances the forces where cells are empty and their own laws have no value. Both
-    /// empty in the position form.
+    /// Slopes of the stretch within the cells, for drawing, times the cell size; and the friction at the nodes
+    /// [force/length], which balances the forces where cells are empty and their own laws have no value. Both are empty
+    /// in the position form.
     virtual std::vector<double>
     stretch_slopes(ConstVector) const
     {
@@ -95,21 +95,21 @@ namespace crawler
       return {};
     }
 
-    /// The extreme stretches of the whole body, the same on all ranks. A stretch that is not a number counts as the
+    /// Extreme stretches of the whole body, the same on all ranks. A stretch that is not a number counts as the
     /// smallest.
     virtual StretchRange
     stretch_range(ConstVector y) = 0;
 
-    /// The displacement at the ends of @p n_pieces equal pieces of the body, the same on all ranks [length].
+    /// Displacement at the ends of @p n_pieces equal pieces of the body, the same on all ranks [length].
     std::vector<double>
     displacement_at(unsigned int n_pieces, ConstVector y);
 
-    /// The square root of the mean of u^2 over the body, the same on all ranks [length].
+    /// Root mean square of u over the body, the same on all ranks [length].
     double
     root_mean_square(ConstVector y) const;
 
-    /// The stretches that the end conditions prescribe, 1 - m/k at s = 0 and s = L. A body with feedback makes its own:
-    /// then they are not known, and has_known_ends() is false.
+    /// Stretches that the end conditions prescribe, 1 - m/k at s = 0 and s = L. They are not known if feedback acts
+    /// there; has_known_ends() is then false.
     std::pair<double, double>
     end_stretches(double t);
     bool
@@ -118,15 +118,15 @@ namespace crawler
       return scene_.active_stress->feedback() == nullptr;
     }
 
-    /// The unknowns of the body at t = 0: with its initial stretch, its centre of mass where it is without.
+    /// Sets the unknowns of the body at t = 0: its initial stretch, with the centre of mass where it is without one.
     virtual void
     set_initial_state(Vector y) = 0;
 
-    /// The strain at the stretch points of this rank's cells [cell][q].
+    /// Strain at the stretch points of this rank's cells [cell][q].
     std::vector<double>
     stretch_coefficients(ConstVector y) const;
 
-    /// Where a feedback with delay finds the past; none: the body was at its initial stretch before. Must outlive this.
+    /// Sets the history for a feedback with delay; none: the body was at its initial stretch before. Must outlive this.
     void
     set_history(const StretchHistory *history)
     {
@@ -138,16 +138,16 @@ namespace crawler
       return history_;
     }
 
-    /// The first law that was not positive, of the last state that was refused because of one (on each rank its own).
-    /// @p units are those of the user.
+    /// First law that was not positive, of the last state that was refused for that reason (on each rank its own). @p
+    /// units are those of the user.
     std::optional<BadLaw>
     bad_law(const Units &units) const
     {
       return describe_bad_law_ ? std::optional(describe_bad_law_(units)) : std::nullopt;
     }
 
-    /// Looks whether the friction @p g at the stretches @p w is positive and finite; the number of the first point
-    /// where it is not, or -1. Then bad_law() tells.
+    /// Checks that the friction @p g at the stretches @p w is positive and finite; returns the number of the first
+    /// point where it is not, or -1. bad_law() then describes it.
     long
     look_at_friction(std::span<const double> w, std::span<const double> g);
 
@@ -165,7 +165,7 @@ namespace crawler
   protected:
     Assembler(const Scene &scene, const Discretization &discretization);
 
-    /// Adds up over all ranks.
+    /// Sums over all ranks.
     void
     sum_over_ranks(CellIntegrals &sum) const;
 

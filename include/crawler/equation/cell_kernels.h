@@ -10,21 +10,21 @@ namespace crawler
 {
   class FrictionLaw;
 
-  /// What the integrals over a run of cells need. Arrays over nodes are local ones (discretization.h).
+  /// Input of the integrals over a run of cells. Arrays over nodes are local ones (discretization.h).
   struct CellInput
   {
     unsigned int n_cells;
     const double *cell_size;
     const ReferenceElement *element;
     const FrictionLaw *friction;
-    double k;        ///< elastic modulus
-    const double *u; ///< displacement at the nodes
-    const double *v; ///< velocity at the nodes; may be null in residual(): then without friction
-    const double *m; ///< active stress at the quadrature points
-    const PointLaws<double> *laws = nullptr; ///< of a general scene, in place of k, m and friction
+    double k;                                ///< elastic modulus
+    const double *u;                         ///< displacement at the nodes
+    const double *v;                         ///< velocity at the nodes; may be null in residual(), for no friction
+    const double *m;                         ///< active stress at the quadrature points
+    const PointLaws<double> *laws = nullptr; ///< laws of a general scene, in place of k, m and friction
   };
 
-  /// Integrals over the body that the energy balance is made of; see theory.md section 1 for their relations.
+  /// Integrals over the body for the energy balance; see theory.md section 1 for their relations.
   struct CellIntegrals
   {
     double displacement   = 0.; ///< int u ds
@@ -39,7 +39,7 @@ namespace crawler
   };
 
   /**
-   * The loops over cells, compiled for each degree so that the compiler unrolls them. With phi_i the shape functions:
+   * Loops over cells, compiled for each degree so that the compiler unrolls them. With phi_i the shape functions:
    *
    *   residual   F_i = int f phi_i + int N phi_i,s (added to F); f = g(w) v, N = m + k (w - 1) of plain scenes
    *   blocks     by_state dF_i/du_j + by_velocity dF_i/dv_j, a dense block of each cell
@@ -57,7 +57,7 @@ namespace crawler
     void (*states)(const CellInput &, double *u, double *v, double *e, double *rate);
   };
 
-  /// The kernels for one degree, 1 to ReferenceElement::highest_degree.
+  /// Kernels for one degree, 1 to ReferenceElement::highest_degree.
   const CellKernels &
   cell_kernels(unsigned int degree);
 } // namespace crawler

@@ -6,17 +6,17 @@
 
 #include <cstddef>
 
-/// The laws that the loops of cell_loops.h are used with.
+/// Laws for the loops of cell_loops.h.
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  /// The laws of plain bodies and grounds: N = m + k e, f = g(w) v. @p friction(w, g) writes g at the points, and
-  /// (w, g, w_dg) its derivative by log w, too.
+  /// Laws of plain bodies and grounds: N = m + k e, f = g(w) v. @p friction(w, g) writes g at the points, (w, g, w_dg)
+  /// also its derivative by log w.
   template <int n, typename Number, typename Friction>
   struct PlainLaws
   {
     static constexpr bool has_one_modulus = true;
     Number k;
-    const Number *m; ///< at the points
+    const Number *m; ///< active stress at the points
     Friction friction;
 
     static constexpr bool
@@ -71,7 +71,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   {
     static constexpr bool has_one_modulus = false;
     const PointLaws<Number> &all;
-    std::size_t first; ///< point of the cell
+    std::size_t first; ///< first point of the cell
 
     bool
     has_place() const

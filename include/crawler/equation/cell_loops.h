@@ -5,8 +5,8 @@
 #include <crawler/equation/crawler_equation.h>
 
 /**
- * The integrals over one cell in the position form, for one body (Number is double) or for several side by side
- * (Number is a pack of them). Included by what compiles them; users want cell_kernels.h.
+ * Integrals over one cell in the position form, for one body (Number is double) or for several side by side (Number is
+ * a pack of them). Included by the files that compile them; users want cell_kernels.h.
  */
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
@@ -19,7 +19,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     const double *stiffness;   ///< [n nodes][n nodes]
   };
 
-  /// at_points = offset + factor * table nodal.
+  /// Interpolation to the points: at_points = offset + factor * table nodal.
   template <int n, typename Number, typename Factor>
   inline void
   evaluate(const double *table, const Number *nodal, const Factor &factor, const double offset, Number *at_points)
@@ -34,22 +34,22 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   }
 
   /**
-   * The equation in a cell: the loops below are all that the program has, for any number type and any laws. Laws tell,
+   * Equation in a cell: the loops below are the only ones in the program, for any number type and any laws. Laws give,
    * at the n points of a cell, for strains e, stretches w and velocities v and their gradients v_s:
    *
    *   forces(e, w, v, N, f)        force in the body N and, unless v is null, friction per reference length f
    *   derivatives(e, w, v, D)      derivatives of both: PointDerivatives; without by_state those by v and v_s only
    *   densities(e, w, v, v_s, at)  PointDensities
    *
-   * A new term of the equation is a line in each of these, and in nothing else.
+   * A new term of the equation is a line in each of these, and nowhere else.
    */
   template <int n, typename Number>
   struct PointDerivatives
   {
-    Number f_v[n], f_w[n]; ///< of the friction by velocity and stretch
-    Number N_w[n];         ///< of the force in the body by the stretch; not set if the laws have one modulus k
-    Number f_u[n];         ///< of the friction by the place; not set unless the laws have_place()
-    Number N_rate[n];      ///< of the force in the body by the rate of the stretch; not set unless they have_rate()
+    Number f_v[n], f_w[n]; ///< derivatives of the friction by velocity and stretch
+    Number N_w[n];         ///< derivative of the force in the body by the stretch; not set if laws have one k
+    Number f_u[n];         ///< derivative of the friction by the place; not set unless the laws have_place()
+    Number N_rate[n];      ///< derivative of the force in the body by the stretch rate; not set unless they have_rate()
   };
 
   template <typename Number>
@@ -64,7 +64,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   {
     Number e[n], w[n], v[n];
 
-    /// Without a velocity @p v at the nodes the body is at rest.
+    /// @p v at the nodes; null: the body is at rest.
     template <typename Size>
     [[gnu::always_inline]] StateAtPoints(const ElementTables &tables, const Size &h, const Number *u, const Number *v)
     {
@@ -79,7 +79,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
   };
 
-  /// Place, velocity, strain and rate of the stretch at the points of a cell.
+  /// Place, velocity, strain and stretch rate at the points of a cell.
   template <int n, typename Number>
   inline void
   cell_states(const ElementTables &tables,
@@ -125,7 +125,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           F[i] += force[p] * tables.derivatives[p * n + i];
   }
 
-  /// The force in the body @p N and, unless @p v is null, the friction @p f at the points of a cell; returns the state.
+  /// Force in the body @p N and, unless @p v is null, the friction @p f at the points of a cell; returns the state.
   template <int n, typename Number, typename Size, typename Laws>
   [[gnu::always_inline]] inline StateAtPoints<n, Number>
   cell_forces(const ElementTables &tables,
@@ -153,7 +153,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     return at;
   }
 
-  /// The derivatives at the points of a cell.
+  /// Derivatives at the points of a cell.
   template <int n, bool by_state, typename Number, typename Size, typename Laws>
   inline PointDerivatives<n, Number>
   cell_derivatives(const ElementTables &tables, const Size &h, const Laws &laws, const Number *u, const Number *v)
@@ -164,7 +164,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     return D;
   }
 
-  /// dF/du (@p K, unless not by_state) and dF/dv (@p M) of a cell, dense blocks.
+  /// Derivatives dF/du (@p K, unless not by_state) and dF/dv (@p M) of a cell, dense blocks.
   template <int n, bool by_state, typename Number, typename Size, typename Laws>
   inline void
   cell_blocks(const ElementTables &tables,
@@ -228,7 +228,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
   }
 
-  /// Adds what a point with the weight @p ds and the velocity @p v gives to @p sum, which has the members of
+  /// Adds the contribution of a point with the weight @p ds and the velocity @p v to @p sum, which has the members of
   /// CellIntegrals (cell_kernels.h).
   template <typename Number, typename Sums>
   inline void

@@ -4,7 +4,7 @@
 #include <crawler/base/instruction_set.h>
 
 /**
- * The equation of the limbless crawler at a material point (doc/theory.md, Eq. 1),
+ * Equation of the limbless crawler at a material point (doc/theory.md, Eq. 1),
  *
  *   g(w) zeta_t = d/ds ( m + k (w - 1) ),   w = zeta_s,   m + k (w - 1) = 0 at both ends,
  *
@@ -14,8 +14,8 @@
  */
 namespace crawler::equation::inline CRAWLER_INSTRUCTION_SET
 {
-  /// N, the force in the body [force]; it vanishes at the ends.
-  /// Takes the strain e = w - 1 = u_s itself: for small motions 1 + e has lost its digits.
+  /// Force N in the body [force]; it vanishes at the ends. Takes the strain e = w - 1 = u_s itself: for small
+  /// displacements 1 + e has lost its digits.
   template <typename Number>
   inline Number
   body_force(const Number e, const Number m, const Number k)
@@ -23,7 +23,7 @@ namespace crawler::equation::inline CRAWLER_INSTRUCTION_SET
     return m + k * e;
   }
 
-  /// The active stress m of a body whose force is known, @p N.
+  /// Active stress m of a body whose force @p N is known.
   template <typename Number>
   inline Number
   active_stress(const Number N, const Number e, const Number k)
@@ -47,7 +47,7 @@ namespace crawler::equation::inline CRAWLER_INSTRUCTION_SET
     return g * v;
   }
 
-  /// What the friction of a general scene has besides g(w): b(s) c(x) d(v) v [velocity], and its derivatives by the
+  /// Factors of the friction of a general scene besides g(w): b(s) c(x) d(v) v [velocity], and its derivatives by the
   /// velocity and by the place.
   template <typename Number>
   struct Sliding
@@ -55,8 +55,8 @@ namespace crawler::equation::inline CRAWLER_INSTRUCTION_SET
     Number force, by_v, by_u;
   };
 
-  /// @p b of the body; @p c of the ground and its slope @p c_x; @p d of the direction and the derivative @p dv_v of
-  /// d(v) v.
+  /// Computes it from @p b of the body, @p c of the ground and its slope @p c_x, @p d of the direction and the
+  /// derivative @p dv_v of d(v) v.
   template <typename Number>
   inline Sliding<Number>
   sliding(const Number b, const Number c, const Number c_x, const Number d, const Number dv_v, const Number v)

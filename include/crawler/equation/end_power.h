@@ -8,18 +8,17 @@
 
 namespace crawler
 {
-  /// The power that leaves through the ends in the paper's energy: [m v] from s = 0 to L (theory.md section 6).
+  /// Power that leaves through the ends in the paper's energy: [m v] from s = 0 to L (theory.md section 6).
   class EndPower
   {
   public:
     explicit EndPower(const Assembler &assembler);
 
-    /// @p v at the nodes, of the state @p y (collective).
+    /// Power for the velocity @p v at the nodes, of the state @p y (collective).
     double
     operator()(double t, std::span<const double> y, std::span<const double> v);
 
-    /// The same if what it depends on is known: stretch and its rate, which only a local feedback sees, and velocity at
-    /// s = 0 and L.
+    /// Power from known velocities at s = 0 and L, and the stretches and rates there, used by local feedback only.
     struct Ends
     {
       double t;
@@ -30,8 +29,8 @@ namespace crawler
 
   private:
     const Assembler &assembler_;
-    const std::unique_ptr<ActiveStressAtPoints> stress_; ///< of a body without feedback, at both ends
-    std::unique_ptr<GeneralSampler> sampler_;            ///< of the others
-    std::unique_ptr<FeedbackAtPoints> feedback_;         ///< the same, at both ends
+    const std::unique_ptr<ActiveStressAtPoints> stress_; ///< at both ends of a body without feedback
+    std::unique_ptr<GeneralSampler> sampler_;            ///< for bodies with feedback
+    std::unique_ptr<FeedbackAtPoints> feedback_;         ///< feedback at both ends
   };
 } // namespace crawler

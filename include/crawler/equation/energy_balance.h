@@ -10,11 +10,11 @@ namespace crawler
 {
   struct CellIntegrals;
 
-  /// Works are integrals over time of rates: of the active stress, of friction, of the positive and of the absolute
-  /// power of the active stress, and of what leaves through the ends (doc/theory.md section 6) [energy/time].
+  /// Rates whose integrals over time are works: of the active stress, of friction, of the positive and of the absolute
+  /// power of the active stress, and of the power that leaves through the ends (doc/theory.md section 6) [energy/time].
   using Rates = std::array<double, 5>;
 
-  /// The rates of a state with these integrals, where @p end_power leaves through the ends, [m v] from s = 0 to L.
+  /// Rates of a state with these integrals, where @p end_power leaves through the ends, [m v] from s = 0 to L.
   Rates
   rates_of(const CellIntegrals &sums, double end_power);
 
@@ -26,11 +26,11 @@ namespace crawler
     double positive_work  = 0.; ///< int int max(-m zeta_st, 0) ds dt, not a number if it is not known [energy]
     double exchanged_work = 0.; ///< int int |m zeta_st| ds dt [energy]
     double end_work       = 0.; ///< int [m v] from s = 0 to L dt [energy]
-    double elastic_energy = 0.; ///< of the present state [energy]
+    double elastic_energy = 0.; ///< elastic energy of the present state [energy]
     double transfer_loss  = 0.; ///< elastic energy lost by changes of the mesh [energy]
-    double initial_energy = 0.; ///< elastic energy at t = 0, of a body that does not start unstretched [energy]
+    double initial_energy = 0.; ///< elastic energy at t = 0, of a body that starts stretched [energy]
 
-    /// All of these, for what is done to each.
+    /// All energies, for operations on each.
     static constexpr std::array<double EnergyBalance::*, 7>
     energies()
     {
@@ -43,48 +43,49 @@ namespace crawler
                &EnergyBalance::transfer_loss}};
     }
 
-    /// Adds to the works what they grow by.
+    /// Adds increments to the works.
     void
     add_works(const Rates &increments);
 
-    /// All energies times @p unit.
+    /// Returns all energies times @p unit.
     EnergyBalance
     scaled(double unit) const;
 
-    /// @p own times these energies and @p part times the others.
+    /// Returns @p own times these energies plus @p part times the others.
     EnergyBalance
     combined(double own, const EnergyBalance &other, double part) const;
 
-    /// int int m_s zeta_t ds dt, the energy of the paper [energy].
+    /// Energy of the paper, int int m_s zeta_t ds dt [energy].
     double
     paper_energy() const
     {
       return stress_work + end_work;
     }
-    /// |W - Q - (elastic energy) + (initial energy) - (transfer loss)|/(exchanged work): 0 for the exact solution [1].
+    /// Energy residual |W - Q - (elastic energy) + (initial energy) - (transfer loss)|/(exchanged work): 0 for the
+    /// exact solution [1].
     double
     residual() const;
   };
 
   /**
    * Integrates rates over time as accurately as the time integrator: over each step the polynomial through some points.
-   * These are the stages of the step, if the method integrates by them; or else the last (up to six) accepted points,
+   * The points are the stages of the step, if the method integrates by them, else the last (up to six) accepted points,
    * i.e. the Adams-Moulton quadrature for variable steps, fewer where steps have just grown a lot.
    */
   class RateQuadrature
   {
   public:
-    /// Goes to the next point in time, with its rates.
+    /// Advances to the next point in time, with its rates.
     void
     advance(double time, const Rates &rates);
 
-    /// A step of this @p size [time]; its stages follow, each at its @p place in the step, in [0, 1].
+    /// Begins a step of this @p size [time]; its stages follow, each at its @p place in the step, in [0, 1].
     void
     begin_step(double size);
     void
     add_stage(double place, const Rates &rates);
 
-    /// The increments of the integrals from the start of the step to this @p place in it, 1 at its end.
+    /// Increments of the integrals from the start of the step to this @p place in it, 1 at its end.
     Rates
     until(double place) const;
 
@@ -97,11 +98,11 @@ namespace crawler
   private:
     struct Point
     {
-      double offset; ///< from the start of the step [time]: steps may be as short as round-off of the time
+      double offset; ///< time from the start of the step [time]: steps may be as short as round-off of the time
       Rates rates;
     };
     std::deque<Point> points_; ///< newest first
     double size_ = 0., latest_ = 0.;
-    std::size_t used_ = 0; ///< points of the polynomial
+    std::size_t used_ = 0; ///< number of points of the polynomial
   };
 } // namespace crawler

@@ -13,33 +13,33 @@
 #include <vector>
 
 /**
- * The equation of a general scene (doc/theory.md, "General bodies and grounds") at points that do not change:
+ * Equation of a general scene (doc/theory.md, "General bodies and grounds") at fixed points:
  *
  *   f = g(w) b(s) c(x) d(v) v,   x = s + u,   and   N = m(s, t, w, w_t, ...) + k(s) (w - 1).
  */
 namespace crawler
 {
-  /// What was not positive, where a law must be: for the user, with the entry that gives it.
+  /// Law that was not positive where it must be: for the user, with the entry that gives it.
   struct BadLaw
   {
     std::string message, entry;
   };
 
-  /// b(s) c(x) d(v) v at fixed points, and its derivatives.
+  /// Sliding b(s) c(x) d(v) v at fixed points, and its derivatives.
   class SlidingAtPoints
   {
   public:
     /// @p scene must outlive it.
     SlidingAtPoints(const Scene &scene, std::vector<double> points);
 
-    /// For displacements @p u and velocities @p v at the points. Returns the number of the first point where the
-    /// profile of the ground is not positive, or -1.
+    /// Evaluates for displacements @p u and velocities @p v at the points. Returns the number of the first point where
+    /// the profile of the ground is not positive, or -1.
     long
     evaluate(std::span<const double> u, std::span<const double> v);
 
     std::vector<double> force; ///< b c d v [velocity]; times g(w) it is the friction per reference length
-    std::vector<double> by_v;  ///< its derivative by v
-    std::vector<double> by_u;  ///< its derivative by u
+    std::vector<double> by_v;  ///< derivative by v
+    std::vector<double> by_u;  ///< derivative by u
 
     BadLaw
     describe(long point, const Units &units) const;
@@ -50,14 +50,14 @@ namespace crawler
     std::vector<double> b_, x_, c_, slope_;
   };
 
-  /// N at fixed points, its parts and its derivatives. What the feedback does not use has derivatives of size 0.
+  /// Force N at fixed points, its parts and its derivatives. Derivatives that the feedback does not use have size 0.
   class BodyForceAtPoints
   {
   public:
     BodyForceAtPoints(const Scene &scene, const std::vector<double> &points);
 
-    /// @p e is the strain; @p seen what the feedback sees (without effect if there is none); @p known_m is m where it
-    /// depends on time and place only and is known.
+    /// @p e is the strain; @p seen the stretches that the feedback sees (without effect if there is none); @p known_m
+    /// is m if it depends on time and place only and is known.
     void
     evaluate(double t, std::span<const double> e, const StretchSeen &seen, const double *known_m = nullptr);
 
@@ -73,17 +73,17 @@ namespace crawler
     std::unique_ptr<FeedbackAtPoints> feedback_;
   };
 
-  /// The stretch at another place or time, at fixed points of this rank (collective).
+  /// Stretch at another place or time, at fixed points of this rank (collective).
   class StretchElsewhere
   {
   public:
     StretchElsewhere(const Scene &scene, const Discretization &discretization, const std::vector<double> &points);
 
-    /// @p own: the coefficients of this rank's cells, as in StretchPlaces.
+    /// @p own are the coefficients of this rank's cells, as in StretchPlaces.
     void
     evaluate(double t, std::span<const double> own, const StretchHistory *history);
 
-    /// The change of the near stretch [points] with that of the coefficients.
+    /// Change of the near stretch [points] with that of the coefficients.
     void
     change_of_near(std::span<const double> own_change, std::span<double> change) const;
 
@@ -97,7 +97,7 @@ namespace crawler
     double delay_ = 0.;
     std::vector<double> at_start_; ///< w(s, 0)
     std::vector<double> coefficients_;
-    /// The points on the meshes of the history that were used last.
+    /// Points on the meshes of the history that were used last.
     std::vector<std::pair<std::shared_ptr<const std::vector<Cell>>, StretchPlaces>> places_;
   };
 } // namespace crawler

@@ -6,12 +6,12 @@
 namespace crawler
 {
   /**
-   * The position form of a general scene (doc/theory.md, "General bodies and grounds"): for every test function phi
+   * Position form of a general scene (doc/theory.md, "General bodies and grounds"): for every test function phi
    *
    *   int f(s, s + u, w, v) phi ds + int N phi_s ds = 0,   N = m(s, t, w, w_t, ...) + k(s) (w - 1).
    *
    * Laws and their derivatives are computed at all quadrature points first, and then integrated. A stretch at another
-   * place couples cells that are no neighbours: the products with the Jacobian have it, the elimination has not.
+   * place couples distant cells: the products with the Jacobian include this, the elimination does not.
    */
   class GeneralPositionForm : public PositionForm
   {
@@ -23,13 +23,13 @@ namespace crawler
     void
     jacobian_vmult(ConstVector x, Vector y) override;
     bool
-    solves_exactly() const override; ///< not what the stretch at another place adds
+    solves_exactly() const override; ///< false where the stretch at another place contributes
     void
     setup_stage(unsigned int stage, double t, ConstVector u, ConstVector v) override;
     void
     stage_vmult(unsigned int stage, ConstVector x, ConstVector x_dot, Vector result) override;
 
-    /// By Newton's method: the friction may depend on the velocity, and the active stress on its derivative.
+    /// Solved by Newton's method: the friction may depend on the velocity, and the active stress on its derivative.
     bool
     velocity(double t, ConstVector u, Vector v) override;
 
@@ -38,7 +38,7 @@ namespace crawler
     evaluate_laws(double t, ConstVector u, CellInput &in) override;
 
   private:
-    /// What the stretch at another place adds to a product with the Jacobian.
+    /// Contribution of the stretch at another place to a product with the Jacobian.
     struct Far
     {
       std::vector<double> by_near;
@@ -57,7 +57,7 @@ namespace crawler
     std::vector<Far> stage_far_;
   };
 
-  /// For a plain or a general scene.
+  /// Creates the form for a plain or a general scene.
   std::unique_ptr<PositionForm>
   create_position_form(const Scene &scene, const Discretization &discretization);
 } // namespace crawler

@@ -12,20 +12,20 @@ namespace crawler
     struct Place
     {
       unsigned int cell; ///< number among this rank's cells
-      double x;          ///< from 0 to 1 in the cell
+      double x;          ///< place in the cell, from 0 to 1
     };
 
     GeneralSampler(const Assembler &assembler, const std::vector<Place> &places);
-    /// The same places in all cells.
+    /// Samples at the same places in all cells.
     GeneralSampler(const Assembler &assembler, const std::vector<double> &places);
-    /// The left end of the first and the right end of the last of this rank's cells.
+    /// Samples at the left end of the first and the right end of the last of this rank's cells.
     static std::unique_ptr<GeneralSampler>
     at_ends(const Assembler &assembler);
 
     void
     sample(double t, std::span<const double> y, std::span<const double> v);
 
-    /// N, m and k of the latest sample.
+    /// Force N, m and k of the latest sample.
     const BodyForceAtPoints &
     force() const
     {

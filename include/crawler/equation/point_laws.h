@@ -3,9 +3,9 @@
 
 namespace crawler
 {
-  /// What general laws say at the points [cell][point] of a run of cells, for the state at hand; f is the friction per
-  /// reference length, N the force in the body. The first two, k and m are always there; without @p f_u friction does
-  /// not depend on the place, without @p N_rate the force does not depend on the rate of the stretch.
+  /// Values of general laws at the points [cell][point] of a run of cells, for the present state; f is the friction per
+  /// reference length, N the force in the body. The first two, k and m are always set; without @p f_u friction does not
+  /// depend on the place, without @p N_rate the force does not depend on the stretch rate.
   template <typename Number>
   struct PointLaws
   {

@@ -9,14 +9,14 @@
 
 namespace crawler
 {
-  /// How well the mesh resolves a stretch: squared norms over the whole body (see doc/numerics.md, "Accuracy").
+  /// Resolution of the stretch by the mesh: squared norms over the whole body (see doc/numerics.md, "Accuracy").
   struct Resolution
   {
     double highest_mode; ///< int of (highest Legendre mode of w in each cell, relative to the cell's smallest w)^2 ds
     double strain;       ///< int (w - 1)^2 ds
   };
 
-  /// The position form F(t, u, u') = M(u) u' + K u + m = 0 of a plain body (crawler_equation.h; doc/numerics.md, "The
+  /// Position form F(t, u, u') = M(u) u' + K u + m = 0 of a plain body (crawler_equation.h; doc/numerics.md, "The
   /// semi-discrete system"). The unknowns of a rank are the displacements of its nodes [length].
   class PositionForm : public Assembler, public ImplicitSystem
   {
@@ -47,14 +47,14 @@ namespace crawler
     void
     set_initial_state(Vector y) override;
 
-    /// Keeps the active stress of so many times, for methods that come back to the stages of a step (default: 1).
+    /// Keeps the active stress of @p n_times times, for methods that return to the stages of a step (default: 1).
     void
     keep_stresses(unsigned int n_times);
     void
     forget_stresses() override;
 
-    /// F(t, u, u'). Returns false (on all ranks) if the stretch is not positive at a quadrature point; bad_stretch()
-    /// then tells where.
+    /// Residual F(t, u, u'). Returns false (on all ranks) if the stretch is not positive at a quadrature point;
+    /// bad_stretch() then tells where.
     bool
     residual(double t, ConstVector u, ConstVector v, Vector F) override;
 
@@ -77,15 +77,15 @@ namespace crawler
     CellIntegrals
     integrals(double t, ConstVector u, ConstVector v) override;
 
-    /// A = dF/du + sigma dF/dv.
+    /// Jacobian A = dF/du + sigma dF/dv.
     void
     jacobian(double t, ConstVector u, ConstVector v, double sigma, BlockTridiagonalMatrix<double> &A);
 
-    /// M = dF/dv.
+    /// Mass matrix M = dF/dv.
     void
     mass(double t, ConstVector u, ConstVector v, BlockTridiagonalMatrix<double> &M);
 
-    /// The first stretch that was not positive, of the last residual() that returned false.
+    /// First stretch that was not positive, of the last residual() that returned false.
     const std::optional<StretchAt> &
     bad_stretch() const
     {
@@ -96,10 +96,10 @@ namespace crawler
     resolution(ConstVector y);
 
     /**
-     * The error indicator of each own cell: int_cell (max(1, |w g'/g|) d/(k max(w, floor)))^2 ds with d = N* - N, the
+     * Error indicator of each own cell: int_cell (max(1, |w g'/g|) d/(k max(w, floor)))^2 ds with d = N* - N, the
      * difference between the force in the body N = m + k (w - 1) and the one that balances the friction, N* = int_0^s g
-     * v ds. N* is zero at both ends, as the stress-free ends ask, and d is orthogonal to all that the mesh can
-     * represent (doc/numerics.md, "Error indicator"). @p v is the velocity of the state @p y.
+     * v ds. N* is zero at both ends, as the stress-free ends require, and d is orthogonal to all functions that the
+     * mesh can represent (doc/numerics.md, "Error indicator"). @p v is the velocity of the state @p y.
      */
     std::vector<double>
     error_indicators(double t, ConstVector y, ConstVector v);
@@ -109,13 +109,13 @@ namespace crawler
     CellInput
     input(double t, ConstVector u, ConstVector v);
 
-    /// What the laws of a general scene say there: sets the laws of @p in, whose arrays are local; the unknowns @p u
+    /// Evaluates the laws of a general scene there: sets the laws of @p in, whose arrays are local; the unknowns @p u
     /// are owned. Returns the number of the first quadrature point [cell][point] where they are not defined, or -1.
     virtual long
     evaluate_laws(double t, ConstVector u, CellInput &in);
 
     const CellKernels &kernels_;
-    std::unique_ptr<BlockTridiagonalMatrix<double>> mass_; ///< built when a velocity is first asked for
+    std::unique_ptr<BlockTridiagonalMatrix<double>> mass_; ///< mass matrix, built when a velocity is first needed
 
   private:
     StretchAt
@@ -125,18 +125,18 @@ namespace crawler
 
     BlockTridiagonalMatrix<double> jacobian_;
     const std::unique_ptr<ActiveStressAtPoints> stress_;
-    /// m at the stress points.
+    /// Active stress m at the stress points.
     struct StressAtTime
     {
       double time = std::numeric_limits<double>::quiet_NaN();
       std::vector<double> m;
     };
     const std::size_t n_stress_points_;
-    std::vector<StressAtTime> stresses_; ///< the latest
+    std::vector<StressAtTime> stresses_; ///< latest stresses
     std::size_t oldest_stress_ = 0;
     std::vector<double> u_local_, v_local_, F_local_;
-    const StretchSampler &sampler_;        ///< at the left end, the quadrature points and the right end
-    std::vector<double> force_, friction_; ///< at the quadrature points
+    const StretchSampler &sampler_;        ///< samples at the left end, the quadrature points and the right end
+    std::vector<double> force_, friction_; ///< values at the quadrature points
     std::optional<StretchAt> bad_stretch_;
     std::vector<BlockTridiagonalMatrix<Complex>> complex_jacobians_;
     struct Stage

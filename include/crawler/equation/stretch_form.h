@@ -5,36 +5,36 @@
 
 namespace crawler
 {
-  /// What the stretch form needs of a scene (equation/stretch_loops.h, lanes/lane_stretch.h).
+  /// Settings of the stretch form for a scene (equation/stretch_loops.h, lanes/lane_stretch.h).
   struct StretchMethod
   {
     unsigned char node_rule; ///< a NodeRule
-    /// Is the unknown of a cell w^(1+a)/(1+a), which passes 0 at a finite rate where a body inverts (-1 < a < 0)?
+    /// True if the unknown is w^(1+a)/(1+a), which passes 0 at a finite rate where a body inverts (-1 < a < 0).
     bool is_power;
   };
 
-  /// @p scene is in natural units. @p other: with another rule than the best one, as a check.
+  /// @p scene is in natural units. @p other selects a rule other than the best one, as a check.
   StretchMethod
   stretch_method(const Scene &scene, bool other = false);
 
-  /// Why the stretch form cannot compute a scene, in words; empty if it can.
+  /// Reason why the stretch form cannot compute a scene, in words; empty if it can.
   std::string
   reason_against_stretch_form(const Scene &scene);
 
-  /// The laws at the middles of the cells, which are all that the stretch form needs of a general scene.
+  /// Laws at the middles of the cells, which are all that the stretch form needs of a general scene.
   class StretchLaws
   {
   public:
     /// @p scene must outlive it.
     StretchLaws(const Scene &scene, const std::vector<double> &middles);
 
-    /// For the stretch @p w and its rate at each cell; @p known_m is m where it depends on time and place only and is
-    /// known. Returns the number of the first cell where the friction is not a positive number, or -1.
+    /// Evaluates for the stretch @p w and its rate at each cell; @p known_m is m if it depends on time and place only
+    /// and is known. Returns the number of the first cell where the friction is not a positive number, or -1.
     long
     evaluate(double t, std::span<const double> w, std::span<const double> rate, const double *known_m = nullptr);
 
     std::vector<double> friction;                ///< g(w), without the body's profile
-    std::vector<double> mobility, mobility_by_w; ///< 1/(g b); 0 where the cell is empty and sticks
+    std::vector<double> mobility, mobility_by_w; ///< mobility 1/(g b); 0 where the cell is empty and sticks
     const BodyForceAtPoints &
     force() const
     {
@@ -48,14 +48,14 @@ namespace crawler
   };
 
   /**
-   * The stretch form (doc/numerics.md, "Stretch form"): one stretch in each cell of a mesh of degree 1, on one rank.
-   * The unknowns y are those of the cells, w or q = w^(1+a)/(1+a) (StretchMethod), and last the displacement of the
-   * left end; the fused engine integrates them.
+   * Stretch form (doc/numerics.md, "Stretch form"): one stretch in each cell of a mesh of degree 1, on one rank. The
+   * unknowns y are those of the cells, w or q = w^(1+a)/(1+a) (StretchMethod), and last the displacement of the left
+   * end; the fused engine integrates them.
    */
   class StretchForm : public Assembler
   {
   public:
-    /// @p other: see stretch_method().
+    /// @p other as in stretch_method().
     StretchForm(const Scene &scene, const Discretization &discretization, bool other = false);
 
     std::size_t
@@ -70,10 +70,10 @@ namespace crawler
     }
     ConstVector
     displacement(ConstVector y) const override;
-    /// An empty cell has the stretch 0.
+    /// Stretches of the cells; that of an empty cell is 0.
     ConstVector
     stretch(ConstVector y) const override;
-    /// They do not make new extremes, and fronts stay sharp.
+    /// Slopes that make no new extremes and keep fronts sharp.
     std::vector<double>
     stretch_slopes(ConstVector y) const override;
     std::vector<double>
@@ -87,20 +87,20 @@ namespace crawler
     CellIntegrals
     integrals(double t, ConstVector y, ConstVector v) override;
 
-    /// From the middle of the first to that of the last cell whose stretch, at its present rate, is lost within @p
-    /// reach [time] after the time @p t.
+    /// Region from the middle of the first to that of the last cell whose stretch, at its present rate, is lost within
+    /// @p reach [time] after the time @p t.
     std::pair<double, double>
     lost_places(double t, ConstVector y, double reach);
 
   private:
-    /// The laws for the state @p y with the velocity @p v at the nodes.
+    /// Evaluates the laws for the state @p y with the velocity @p v at the nodes.
     void
     evaluate(double t, ConstVector y, ConstVector v) const;
 
     const StretchMethod method_;
     const double power_;      ///< 1 + a
     const bool may_be_empty_; ///< a < 0
-    // What was looked at last.
+    // State that was evaluated last.
     mutable StretchLaws laws_;
     mutable std::vector<double> w_, u_, rate_;
   };

@@ -13,13 +13,13 @@
 namespace crawler
 {
   /**
-   * Fixed places of the body on a mesh, where a field is looked at that has one coefficient at each stretch point of
+   * Fixed places of the body on a mesh, where a field is evaluated that has one coefficient at each stretch point of
    * each cell of the whole mesh [cell][q]: the strain.
    */
   class StretchPlaces
   {
   public:
-    /// @p points [length]; what is beyond the body stands for its end.
+    /// @p points [length] beyond the body stand for its end.
     StretchPlaces(const std::vector<Cell> &cells, const ReferenceElement &element, const std::vector<double> &points);
 
     void
@@ -31,12 +31,12 @@ namespace crawler
     std::vector<double> weights_; ///< [point][q]
   };
 
-  /// The stretch of the whole body in the past, as the dense output of the accepted steps gives it; the same on all
-  /// ranks. Meshes and formulations may change from step to step.
+  /// Past stretch of the whole body, from the dense output of the accepted steps; the same on all ranks. Meshes and
+  /// formulations may change from step to step.
   class StretchHistory
   {
   public:
-    /// Parts of a step, from 0 to 1, where its stretch is kept: polynomials in between are exact up to the degree 5.
+    /// Places in a step, from 0 to 1, where its stretch is kept: polynomials in between are exact up to degree 5.
     static const std::array<double, 6> &
     places();
 
@@ -45,7 +45,7 @@ namespace crawler
       double from = 0., to = 0.; ///< [time]
       std::shared_ptr<const std::vector<Cell>> cells;
       const ReferenceElement *element = nullptr;
-      std::array<std::vector<double>, 6> coefficients; ///< at the places(), for StretchPlaces
+      std::array<std::vector<double>, 6> coefficients; ///< coefficients at the places(), for StretchPlaces
     };
 
     void
@@ -54,15 +54,15 @@ namespace crawler
     void
     exchange(Archive &archive);
 
-    /// Adds a step that follows the last one; forgets those that end before @p forget.
+    /// Adds a step that follows the last one; drops those that end before @p forget.
     void
     add(Step step, double forget);
 
-    /// The step to which the time @p t belongs, or the nearest; null if there is none, or for times before the first.
+    /// Step to which the time @p t belongs, or the nearest; null if there is none, or for times before the first.
     const Step *
     find(double t) const;
 
-    /// The coefficients at the time @p t of a step.
+    /// Coefficients at the time @p t of a step.
     static void
     coefficients(const Step &step, double t, std::vector<double> &values);
 

@@ -6,31 +6,31 @@
 #include <cmath>
 
 /**
- * The stretch form (doc/numerics.md, "Stretch form") along the body: one stretch w_j in each cell of size h_j, the
+ * Stretch form (doc/numerics.md, "Stretch form") along the body: one stretch w_j in each cell of size h_j, the
  * velocities v_i at the nodes, for one body (Number is double) or for several side by side (Number is a pack of them):
  *
  *   v_i = M_i (N_i - N_{i-1})/H_i,    w_j' = (v_{j+1} - v_j)/h_j,    H_i = (h_{i-1} + h_i)/2, half a cell at the ends.
  *
- * M_i is the mobility of the node, made of those of the cells beside it, M = 1/(g b). Included by what compiles it.
+ * M_i is the mobility of the node, from those M = 1/(g b) of the adjacent cells. Included by the files that compile it.
  */
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  /// How the mobility of a node follows from those of the cells beside it.
+  /// Rule that gives the mobility of a node from those of the adjacent cells.
   enum class NodeRule : unsigned char
   {
-    friction, ///< the mean of their frictions
-    fronts,   ///< the same, but the mean of the mobilities where the emptier cell receives
-    upwind    ///< that of the cell that gives, with van Leer's correction
+    friction, ///< mean of their frictions
+    fronts,   ///< mean of their frictions, but of their mobilities where the emptier cell receives
+    upwind    ///< mobility of the cell that gives, with van Leer's correction
   };
 
-  /// The mobility of a node and its derivatives by those of the cells to the left and to the right.
+  /// Mobility of a node and its derivatives by those of the cells to the left and to the right.
   template <typename Number>
   struct NodeMobility
   {
     Number value, by_left, by_right;
   };
 
-  /// The mean of the frictions of two cells.
+  /// Mobility of a node by the mean of the frictions of two cells.
   template <typename Number>
   inline NodeMobility<Number>
   mobility_of_mean_friction(const double h_left, const double h_right, const Number &left, const Number &right)
@@ -41,7 +41,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     return {left * r, h_left * part * r * r, h_right * part * l * l};
   }
 
-  /// @p beyond: the cell behind the one that gives.
+  /// Mobility of a node by upwinding; @p beyond is the cell behind the one that gives.
   template <typename Number>
   inline NodeMobility<Number>
   upwind_mobility(const Number &receiver, const Number &giver, const Number &beyond)
@@ -54,8 +54,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     return {giver + x * B, x * x, 1. + y * y - x * x};
   }
 
-  /// The mobility of the node to the left of cell @p i, 0 < i < n; @p difference is N_i - N_{i-1}, whose sign the
-  /// velocity has. A positive velocity takes length from the right cell.
+  /// Mobility of the node to the left of cell @p i, 0 < i < n; @p difference is N_i - N_{i-1}, which has the sign of
+  /// the velocity. A positive velocity takes length from the right cell.
   template <typename Number>
   inline NodeMobility<Number>
   node_mobility(
@@ -82,7 +82,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     return result;
   }
 
-  /// M_i and (N_i - N_{i-1})/H_i of any node, 0 <= i <= n.
+  /// Mobility M_i and (N_i - N_{i-1})/H_i of any node, 0 <= i <= n.
   template <typename Number>
   struct NodeForce
   {
@@ -106,12 +106,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     return {node_mobility(rule, n, h, mobility, i, difference), difference / spacing, spacing};
   }
 
-  /// The ground's d(v), (scene/ground.h): the velocity v with d(v) v = q, and its derivative by q.
+  /// Ground's d(v) (scene/ground.h): the velocity v with d(v) v = q, and its derivative by q.
   struct NodeDirection
   {
     double ratio = 1., switching_velocity = 1.;
 
-    /// By Newton's method; d(v) v increases with v, and is between the smaller and the larger of v and ratio v.
+    /// Solved by Newton's method; d(v) v increases with v, and is between the smaller and the larger of v and ratio v.
     double
     velocity(const double q, double &slope) const
     {

@@ -10,23 +10,23 @@ namespace crawler
 {
   /**
    * Means over pieces of one length of the body of a field that has one value at each stretch point of each cell of the
-   * whole mesh [cell][q], a polynomial in each cell: of the strain, (u(right) - u(left))/length.
+   * whole mesh [cell][q], a polynomial in each cell: for the strain (u(right) - u(left))/length.
    */
   class StretchMeans
   {
   public:
-    /// @p middles [length]; pieces that reach beyond the body are moved inside. @p length is at most that of the body.
+    /// @p middles [length]; pieces that extend beyond the body are moved inside. @p length is at most that of the body.
     StretchMeans(const std::vector<Cell> &cells,
                  const ReferenceElement &element,
                  const std::vector<double> &middles,
                  double length);
 
-    /// Of @p field [cell][q]: @p means [middle].
+    /// Writes the @p means [middle] of @p field [cell][q].
     void
     mean(std::span<const double> field, std::span<double> means) const;
 
   private:
-    /// The integral from the left end of the body to fixed places: that of the cells before, and weights in the cell.
+    /// Integrals from the left end of the body to fixed places: sums over the cells before, and weights in the cell.
     struct Integrals
     {
       std::vector<std::size_t> cells;

@@ -7,7 +7,7 @@
 
 namespace crawler
 {
-  /// Evaluates the strain w - 1 of the position form at fixed places of a cell.
+  /// Strain w - 1 of the position form at fixed places of a cell.
   class StretchSampler
   {
   public:
@@ -26,7 +26,7 @@ namespace crawler
       return places_;
     }
 
-    /// The strain at place @p i of the local cell @p c of size @p h. @p u are the local displacements.
+    /// Strain at place @p i of the local cell @p c of size @p h. @p u are the local displacements.
     double
     strain(const std::span<const double> u, const unsigned int c, const double h, const unsigned int i) const
     {

@@ -10,18 +10,17 @@
 #include <cstddef>
 
 /**
- * The discrete adjoint of the Radau IIA methods on packs of bodies (doc/numerics.md, "Sensitivities"; Hairer,
- * Hochbruck, Iserles, Lubich, GNI, section VI.4 for the methods, the transposed simplified Newton iteration as in
- * radau_lanes.h). Included by lanes.cc alone, once for each instruction set; nothing here may come from the C++
- * library.
+ * Discrete adjoint of the Radau IIA methods on packs of bodies (doc/numerics.md, "Sensitivities"; Hairer, Hochbruck,
+ * Iserles, Lubich, GNI, section VI.4 for the methods, the transposed simplified Newton iteration as in radau_lanes.h).
+ * Included by lanes.cc alone, once for each instruction set; this file must not use the C++ library.
  *
  * For the stages u_i, v_i of a step with F_i = F(t_i, u_i, v_i), K_i = dF_i/du, M_i = dF_i/dv and W = A^-1:
  *
  *   K_i^T mu_i + (1/h) sum_j W_ji M_j mu_j = -delta_is lambda,     lambda <- lambda + sum_i K_i^T mu_i,
  *
- * from the last step to the first; then dJ/dp = sum over steps and stages of mu_i . dF_i/dp. Of a J that depends on the
- * stages themselves, a_j = dJ/du_j and c_j = dJ/dv_j, the right-hand side also has -a_j - (1/h) sum_i W_ij c_i, lambda
- * also + sum_i a_i, and there are the explicit parts of dJ/dp.
+ * from the last step to the first; then dJ/dp = sum over steps and stages of mu_i . dF_i/dp. If J depends on the stages
+ * themselves, a_j = dJ/du_j and c_j = dJ/dv_j, the right-hand side also has -a_j - (1/h) sum_i W_ij c_i, lambda also
+ * + sum_i a_i, and dJ/dp its explicit parts.
  */
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
@@ -83,12 +82,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
   private:
-    /// A body, and the step that is gone through.
+    /// Body and the step that is traversed.
     struct Lane
     {
       LanePast past;
       bool busy = false, iterating = false, failed = false, has_old = false, at_break = false;
-      unsigned int left = 0; ///< steps, this one too
+      unsigned int left = 0; ///< steps left, including this one
       double h = 1., old_h = 1., last_change = 0.;
     };
 
@@ -115,7 +114,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       memory_.piece(scratch_, (1 + 2 * s) * n);
     }
 
-    /// The next body for a lane, or one at rest that asks nothing.
+    /// Takes the next body for a lane, or one at rest that needs nothing.
     void
     take_next(const int l)
     {
@@ -139,7 +138,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         end(l);
     }
 
-    /// Where the step starts, and its stages.
+    /// Loads the start of the step and its stages.
     void
     load_step()
     {
@@ -162,7 +161,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
     }
 
-    /// What the quantity has of this step itself.
+    /// Adds the sources of this step itself.
     void
     ask_for_sources()
     {
@@ -190,8 +189,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
     }
 
-    /// Where a body starts anew after the step, and at the end of the run: zeta with M zeta = lambda. The systems of a
-    /// step that is so short are M.
+    /// Solves M zeta = lambda for zeta where a body starts anew after the step, and at the end of the run. For so short
+    /// a step the matrices of the systems are M.
     void
     look_at_break()
     {
@@ -225,7 +224,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       system_.template factorize<true>(times_[middle], states_.u, states_.v, nullptr, inverse_h_);
     }
 
-    /// The adjoint zeta = -mu_i/(h b_i) of the step that comes after this one, continued backwards.
+    /// Guesses the adjoint zeta = -mu_i/(h b_i) by continuing that of the step after this one backwards.
     void
     guess()
     {
@@ -253,7 +252,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
     }
 
-    /// K_i^T x_i and M_i x_i.
+    /// Multiplies K_i^T x_i and M_i x_i.
     void
     multiply(const Pack *x)
     {
@@ -261,7 +260,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         system_.transposed(slopes_[i], x + i * n_, K_mu_ + i * n_, M_mu_ + i * n_);
     }
 
-    /// The left-hand side of the equations for the stages.
+    /// Left-hand side of the equations for the stages.
     void
     apply(const Pack *x, Pack *result)
     {
@@ -276,7 +275,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         }
     }
 
-    /// What the equations for the stages lack.
+    /// Evaluates the residual of the equations for the stages.
     void
     look_at_residual()
     {
@@ -296,9 +295,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         }
     }
 
-    /// The stages of the adjoint, by generalized conjugate residuals (Eisenstat, Elman, Schultz, SIAM J. Numer. Anal.
-    /// 20 (1983) 345) with the transposed systems of simplified Newton; that iteration alone may not converge where the
-    /// steps are long.
+    /// Solves for the stages of the adjoint by generalized conjugate residuals (Eisenstat, Elman, Schultz, SIAM J.
+    /// Numer. Anal. 20 (1983) 345) with the transposed systems of simplified Newton; that iteration alone may not
+    /// converge where the steps are long.
     void
     solve()
     {
@@ -337,7 +336,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return sum;
     }
 
-    /// a += factor b
+    /// Adds a multiple, a += factor b.
     void
     add(const Pack &factor, const Pack *b, Pack *a) const
     {
@@ -345,12 +344,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         a[d] += factor * b[d];
     }
 
-    /// One correction; lanes that are done keep what they have. A lane is done if it would not change any more though
-    /// the residual is known anew. Returns whether that should be looked at.
+    /// Makes one correction; lanes that are done keep their values. A lane is done if it would not change any more
+    /// although the residual was computed anew. Returns true if the residual should be evaluated.
     bool
     correct()
     {
-      // On graded meshes round-off may be larger than what counts as settled.
+      // Round-off on graded meshes may be larger than `settled`.
       constexpr double settled = 1e-13, nearly_settled = 1e-8;
       const bool is_new   = n_directions_ == 0;
       const std::size_t n = std::size_t(s) * n_;
@@ -400,7 +399,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         if (!lane.iterating)
           continue;
         const double its_change = get_lane(change, l), its_size = get_lane(size, l);
-        const bool is_settled = its_change <= settled * its_size; // not if they are no numbers
+        const bool is_settled = its_change <= settled * its_size; // false for NaN
         if (is_new && (is_settled || (its_change <= nearly_settled * its_size && its_change >= 0.5 * lane.last_change)))
           lane.iterating = false;
         else if (is_settled)
@@ -466,18 +465,18 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     LaneStates<Pack, s> states_;
     Lane lanes_[lanes];
     Pack inverse_h_;
-    double times_[s][lanes]; ///< of the stages
+    double times_[s][lanes]; ///< times of the stages
     bool friction_changed_ = true;
-    double rows_[2 * (1 + pairs) * s], vectors_[2 * (1 + pairs) * s]; ///< of the transposed matrix A^-1
-    LaneSlopes<Pack> slopes_[s];                                      ///< at the stages
+    double rows_[2 * (1 + pairs) * s], vectors_[2 * (1 + pairs) * s]; ///< eigenvectors of the transposed A^-1
+    LaneSlopes<Pack> slopes_[s];                                      ///< slopes at the stages
 
     Pack *lambda_, *zeta_;                   ///< [unknown]
-    Pack *mu_, *old_mu_;                     ///< [stage][unknown] of this step, and of the one after it
+    Pack *mu_, *old_mu_;                     ///< [stage][unknown] of this step, and of the following one
     Pack *K_mu_, *M_mu_, *residual_, *real_; ///< products, and right-hand sides in both bases
-    Pack *directions_; ///< [direction][stage][unknown], then the same of what the equations make of them
+    Pack *directions_;                       ///< [direction][stage][unknown], then their images under the equations
     int n_directions_ = 0;
     Pack *by_u_, *by_velocity_; ///< [stage][unknown] sources
-    double *scratch_;           ///< of one lane
+    double *scratch_;           ///< scratch of one lane
     bool has_sources_ = false;
     Number *complex_;
   };

@@ -3,7 +3,7 @@
 
 namespace crawler
 {
-  /// The instruction set that the environment variable CRAWLER_INSTRUCTION_SET wants for all lanes ("baseline", "avx2",
+  /// Instruction set that the environment variable CRAWLER_INSTRUCTION_SET requests for all lanes ("baseline", "avx2",
   /// "avx512"), else null. Throws InputError if there is no such set, or if this processor does not have it.
   const char *
   forced_instruction_set();

@@ -9,25 +9,25 @@
 
 namespace crawler
 {
-  /// What the engine needs of a general scene in the position form, at fixed points.
+  /// Laws of a general scene in the position form that the host evaluates for the engine, at fixed points.
   class HostLaws
   {
   public:
     /// @p scene is in natural units and must outlive it.
     HostLaws(const Scene &scene, const std::vector<double> &points);
 
-    /// Sets what @p job has of the scene.
+    /// Sets the part of @p job that describes the scene.
     void
     set(LaneJob &job) const;
 
-    /// Writes what the engine asks for; false if a law is not a positive number there.
+    /// Writes the laws that the engine requests; false if one is not a positive number there.
     bool
     evaluate(const LanePoints &at);
 
   private:
     const Scene &scene_;
     const std::vector<double> points_;
-    std::vector<double> k_, b_; ///< k(s)/k and b(s)
+    std::vector<double> k_, b_; ///< profiles k(s)/k and b(s)
     std::vector<double> x_;
     std::unique_ptr<FeedbackAtPoints> feedback_;
   };

@@ -11,12 +11,12 @@
 
 namespace crawler
 {
-  /// The steps of a run by the fused engine, as its adjoint needs them. In natural units.
+  /// Record of the steps of a run by the fused engine, for its adjoint. In natural units.
   class LaneRecord
   {
   public:
-    /// The next accepted step, with a state of so many unknowns; it may take the place of steps that were accepted
-    /// before. @p starts: does the body start anew with it?
+    /// Adds the next accepted step, with a state of @p n_unknowns unknowns; it may replace steps that were accepted
+    /// before. @p starts: the body starts anew with it.
     void
     add(const LaneStep &step, unsigned int n_stages, std::size_t n_unknowns, bool starts);
 
@@ -35,27 +35,27 @@ namespace crawler
     {
       return sizes_[step];
     }
-    /// [stages][unknowns] displacements in the stages relative to the start of the step.
+    /// Displacements [stages][unknowns] in the stages relative to the start of the step.
     const double *
     z(const std::size_t step) const
     {
       return z_.data() + step * n_per_step_;
     }
-    /// The last state.
+    /// Last state.
     const std::vector<double> &
     end() const
     {
       return end_;
     }
 
-    /// The first @p n of the steps.
+    /// Returns the first @p n of the steps.
     LaneRecord
     first_steps(std::size_t n) const;
 
     LanePast
     past(const double *gradient, bool has_sources) const;
 
-    /// The same steps with the states of their polynomials at other places than the stages @p c; the last is 1.
+    /// Returns the steps with the states of their polynomials at other places than the stages @p c; the last is 1.
     LaneRecord
     at_places(const std::vector<double> &c, const std::vector<double> &places) const;
 
@@ -65,7 +65,7 @@ namespace crawler
     std::vector<unsigned char> starts_;
   };
 
-  /// The adjoint of one run in the position form.
+  /// Adjoint of one run in the position form.
   class LaneAdjoint
   {
   public:
@@ -78,19 +78,19 @@ namespace crawler
       return tables_;
     }
 
-    /// The gradient of the mean displacement by the last state, [unknowns].
+    /// Gradient [unknowns] of the mean displacement by the last state.
     std::vector<double>
     gradient_of_displacement() const;
 
-    /// Sees the adjoint mu, [stages][unknowns], of a step, from the last one to the first, and zeta, which is mostly
-    /// empty (LaneAdjointStep).
+    /// Observer of the adjoint mu, [stages][unknowns], of a step, from the last one to the first, and of zeta, which is
+    /// mostly empty (LaneAdjointStep).
     using Seer = std::function<void(std::size_t step, std::span<const double> mu, std::span<const double> zeta)>;
 
-    /// Tells what the quantity has of a step itself, before that is seen.
+    /// Source that gives the dependence of the quantity on a step itself, before the step is traversed.
     using Source = std::function<void(std::size_t step, const LaneSources &sources)>;
 
-    /// The adjoint of what has this @p gradient by the last state, and @p source, if there is one. Returns its
-    /// derivative by the first state; nothing if the iteration for the stages did not converge.
+    /// Computes the adjoint of a quantity that has this @p gradient by the last state, and a @p source if there is one.
+    /// Returns its derivative by the first state; nothing if the iteration for the stages did not converge.
     std::optional<std::vector<double>>
     solve(const LaneRecord &record, const std::vector<double> &gradient, const Seer &see, const Source &source = {});
 
@@ -111,7 +111,7 @@ namespace crawler
     const LaneTables &tables_;
     std::optional<HostLaws> laws_;
     LaneStorage memory_;
-    // Of the present solve.
+    // State of the present solve.
     LanePast past_;
     bool started_         = false;
     const Seer *see_      = nullptr;

@@ -7,33 +7,33 @@
 
 #include <cmath>
 
-/// What is decided for each body alone: convergence of Newton's method and sizes of steps (included by radau_lanes.h).
+/// Decisions for each body alone: convergence of Newton's method and step sizes (included by radau_lanes.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
   constexpr int most_newton = 14;
-  /// But the equations are solved at least as if the tolerance were this.
+  /// Tolerance up to which the equations are solved at least.
   constexpr double largest_tolerance = 1e-3;
-  /// Newton's method must converge faster than this per iteration, or the step is made shorter by failure_factor.
+  /// Convergence rate of Newton's method, per iteration, above which the step is shortened by failure_factor.
   constexpr double slowest_rate = 0.5, failure_factor = 0.25;
-  /// No step is so long that it is likely to converge more slowly than this.
+  /// Convergence rate that no step is likely to exceed.
   constexpr double wanted_rate         = 0.35;
   constexpr unsigned int most_failures = 12;
-  /// A body for which it has failed so often, and in so large a part of the steps, is left to who can do more.
+  /// Failures of Newton's method, in number and as a part of the steps, beyond which a body is left to another engine.
   constexpr unsigned int many_failures = 1000;
   constexpr double large_part          = 0.5;
-  /// A step after one that was rejected is so much shorter.
+  /// Factor on the step after a rejected one.
   constexpr double after_rejection = 0.5;
   constexpr double least_step      = 1e-18; // a sudden start needs short ones
 
-  /// A body and its step.
+  /// Body in a lane, and its step.
   struct Lane : LaneProgress
   {
     LaneJob job;
-    bool busy = false, is_idle = false; ///< has a body, or there is none left for it
+    bool busy = false, is_idle = false; ///< has a body; no body is left for it
     bool iterating = false, failed = false, accepted = false;
-    double error = 0.; ///< of the step, relative to the tolerance
+    double error = 0.; ///< error of the step, relative to the tolerance
 
-    /// The size wanted, but steps end at output times.
+    /// Chooses the size of the step: the wanted one, but steps end at output times.
     void
     choose_step()
     {
@@ -66,8 +66,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       iterating = false;
     }
 
-    /// Newton's method converges linearly; with the rate so far the error that remains is rate/(1-rate) corrections.
-    /// @p correction and what may be left of it, @p newton_fraction, are relative to the tolerance.
+    /// Checks the correction: Newton's method converges linearly; with the rate so far the remaining error is
+    /// rate/(1-rate) corrections. @p correction and its admissible remainder @p newton_fraction are relative to the
+    /// tolerance.
     void
     look_at_correction(const int it,
                        const double least_stretch_of_stages,
@@ -91,21 +92,21 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       const double excess = job.tolerance > largest_tolerance ? job.tolerance / largest_tolerance : 1.;
       const double likely = known_rate < 0.9 ? known_rate : 0.9;
       const double left   = likely / (1. - likely) * correction * excess;
-      const double floor  = 1e-15 / job.tolerance; // of displacements up to 1: they are sums of such numbers
+      const double floor  = 1e-15 / job.tolerance; // of displacements up to 1: they are sums of numbers of this size
       if (left <= newton_fraction || correction <= floor)
         iterating = false;
       else if (it >= 2 && rate > slowest_rate && correction > 10. * floor)
         fail();
     }
 
-    /// Must the error of the step be filtered once more?
+    /// True if the error of the step must be filtered once more.
     bool
     is_settling() const
     {
       return error >= 1. && steps - first_step < radau::settling_steps;
     }
 
-    /// An error that had to be filtered twice: the step must not grow.
+    /// Settles an error that had to be filtered twice: the step must not grow.
     void
     settle(const double filtered, const int n_stages)
     {
@@ -113,7 +114,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       error              = filtered < least ? least : filtered;
     }
 
-    /// Accepts or rejects the step, and finds the size of the next one. @p keeps_try: what Newton's method has found
+    /// Accepts or rejects the step, and finds the size of the next one. @p keeps_try: the result of Newton's method
     /// before it became too slow is the next guess, since it tells the direction of the friction.
     void
     control_step(const int n_stages, const bool keeps_try)
@@ -123,7 +124,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       if (failed)
       {
         next    = failure_factor * h;
-        has_old = is_retry = keeps_try && rate > 0. && rate < 1.; // what was there was no good guess
+        has_old = is_retry = keeps_try && rate > 0. && rate < 1.; // the earlier guess was not good
         if (is_retry)
           old_h = h;
         ++failures;
@@ -137,7 +138,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                : factor > radau::most_change ? radau::most_change
                                              : factor;
       // Newton's method converges the more slowly the longer the step is, about in proportion. A step that was rejected
-      // for its error is made shorter all the same.
+      // for its error is shortened all the same.
       if (accepted && rate > 0. && factor * rate > wanted_rate)
         factor = rate > wanted_rate ? 1. : wanted_rate / rate;
       next          = factor * h;
@@ -155,7 +156,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
              (!job.is_last_resort && all_failures > many_failures && all_failures > large_part * steps);
     }
 
-    /// From here on the past is no guide.
+    /// Starts anew: from here on the past is no guide.
     void
     start_anew()
     {
@@ -167,7 +168,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       first_step    = steps;
     }
 
-    /// Goes to the end of the step; is it an output time?
+    /// Advances to the end of the step; returns true if that is an output time.
     bool
     arrive()
     {

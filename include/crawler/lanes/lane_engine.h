@@ -8,60 +8,60 @@
 /**
  * Kernels and time integration of a form in one piece, for meshes that do not change: the position form with the
  * p-model of friction, and the stretch form. Radau IIA with the simplified Newton method, as in time/radau.h, without
- * an object of PETSc. Several bodies are computed side by side in the lanes of vector registers, each with its own
+ * PETSc objects. Several bodies are computed side by side in the lanes of vector registers, each with its own
  * parameters and its own steps; a lane that is done takes the next body. No operation mixes lanes, so an answer does
  * not depend on which bodies share a batch.
  *
- * Only plain data here: this header is included by code for instruction sets that the processor may not have.
- * Everything is in natural units (scene/scene.h).
+ * Plain data only: this header is included by code for instruction sets that the processor may not have. All numbers
+ * are in natural units (scene/scene.h).
  */
 namespace crawler
 {
-  /// What bodies and grounds have besides the numbers of a plain scene: bits.
+  /// Properties of bodies and grounds besides the numbers of a plain scene: bits.
   struct LaneLaws
   {
     enum Bits : unsigned int
     {
       plain                 = 0,
-      general               = 1,  ///< anything of what follows, k(s) or gamma(s)
+      general               = 1,  ///< any of the following, k(s) or gamma(s)
       direction             = 2,  ///< friction depends on the direction
       host_friction         = 4,  ///< another friction law than the power law: the host evaluates it
       host_ground           = 8,  ///< c(x): the host evaluates it
       feedback              = 16, ///< m depends on the stretch: the host evaluates it
-      rate                  = 32, ///< and on its rate
+      rate                  = 32, ///< m also depends on the stretch rate
       nonlinear_in_velocity = direction | rate
     };
   };
 
-  /// What all lanes share: the mesh, the element (mesh/reference_element.h) and the method
-  /// (time/radau_tableau.h). All arrays belong to the caller.
+  /// Setup shared by all lanes: the mesh, the element (mesh/reference_element.h) and the method (time/radau_tableau.h).
+  /// All arrays belong to the caller.
   struct LaneSetup
   {
     unsigned int degree, n_cells, n_stages;
-    const double *sizes;                                      ///< [n_cells] of the cells
-    const double *values, *derivatives, *weights, *stiffness; ///< of the element
-    unsigned int n_samples;                                   ///< per cell, where the stretch is looked at
+    const double *sizes;                                      ///< [n_cells] sizes of the cells
+    const double *values, *derivatives, *weights, *stiffness; ///< tables of the element
+    unsigned int n_samples;                                   ///< samples of the stretch per cell
     const double *sample_derivatives;                         ///< [n_samples][degree+1]
-    const double *c, *b, *inverse, *error_weights;            ///< of the method
-    double newton_fraction; ///< of the method: error of Newton's method that is left, relative to the tolerance
+    const double *c, *b, *inverse, *error_weights;            ///< coefficients of the method
+    double newton_fraction; ///< remaining error of Newton's method, relative to the tolerance
     double real_eigenvalue;
     const double *eigenvalues; ///< [pairs][real, imaginary]
     const double *vectors;     ///< [stages][1 + pairs][real, imaginary]
     const double *rows;        ///< [1 + pairs][stages][real, imaginary]
 
-    unsigned int laws = LaneLaws::plain; ///< what the bodies and grounds of a run have
+    unsigned int laws = LaneLaws::plain; ///< LaneLaws of the bodies and grounds of a run
 
     // The stretch form (lane_stretch.h), whose points are the middles of its cells.
     bool is_stretch = false, is_power = false;           ///< see StretchSystem
     unsigned char node_rule = 0;                         ///< NodeRule of equation/stretch_loops.h
-    double backward_ratio = 1., switching_velocity = 1.; ///< of the ground (scene/ground.h)
+    double backward_ratio = 1., switching_velocity = 1.; ///< numbers of the ground (scene/ground.h)
   };
 
-  /// What a body knows of its steps from one to the next, besides its state.
+  /// Progress of a body from step to step, besides its state.
   struct LaneProgress
   {
     bool has_old = false, just_rejected = false;
-    bool is_retry = false; ///< of a step whose failed try is the guess
+    bool is_retry = false; ///< the guess is a step's failed try
     double t = 0., h = 1., next = 1., old_h = 1.;
     double rate = 0., known_rate = 1., last_correction = 0.;
     unsigned int steps = 0, rejected = 0, failures = 0, all_failures = 0, output_time = 0, limit = 0;
@@ -76,37 +76,36 @@ namespace crawler
     }
   };
 
-  /// One body to compute.
+  /// Body to compute.
   struct LaneJob
   {
     double k, a;          ///< elastic modulus, friction exponent
-    double tolerance;     ///< root mean square of the error of a step; in the stretch form the largest one of a stretch
-    double newton_factor; ///< on LaneSetup::newton_fraction
+    double tolerance;     ///< root mean square error of a step; in the stretch form the largest error
+    double newton_factor; ///< factor on LaneSetup::newton_fraction
     double initial_step;
-    const StepLimit *limits; ///< of its steps
+    const StepLimit *limits; ///< limits of its steps
     unsigned int n_limits;
     unsigned int most_steps;
-    double least_stretch; ///< a state with a smaller one is given up; the full path must tell what it means
-    bool is_last_resort;  ///< is there no other engine to go on where Newton's method often fails?
+    double least_stretch; ///< smaller stretches are given up; the full path must tell what they mean
+    bool is_last_resort;  ///< no other engine can take over where Newton's method often fails
     double start_time;
     const double *start;        ///< [unknowns] displacement at start_time; null: rest
-    const double *output_times; ///< ascending times after start_time where steps must end; the run ends with the last
+    const double *output_times; ///< ascending times after start_time where steps must end; the run ends at the last
     unsigned int n_output_times;
-    /// [n_output_times] is the output time a time when the active stress jumps, so the body starts anew there? Null:
-    /// none is.
+    /// Flags [n_output_times] of times when the active stress jumps, so the body starts anew there; null: none are.
     const unsigned char *restarts;
 
-    // Of a body that goes on between two steps, where `start` is its state; null: it starts.
+    // State between two steps, for a body that continues from `start`; null: it starts.
     const LaneProgress *progress = nullptr;
     const double *old_z          = nullptr; ///< [stages][unknowns] of the step before, as in LaneStep
 
-    // Of a general body in the position form.
+    // Profiles and ground of a general body in the position form.
     const double *k_profile = nullptr, *friction_profile = nullptr; ///< [points] k(s)/k and b(s)
-    double backward_ratio = 1., switching_velocity = 1.;            ///< of the ground (scene/ground.h)
+    double backward_ratio = 1., switching_velocity = 1.;            ///< numbers of the ground (scene/ground.h)
   };
 
-  /// The state of a lane at all quadrature points, and where the host writes what the laws say there. What LaneLaws
-  /// does not ask for is null, and derivatives that are not wanted.
+  /// State of a lane at all quadrature points, and the arrays into which the host writes the values of the laws there.
+  /// Arrays that LaneLaws does not need are null, as are unwanted derivatives.
   struct LanePoints
   {
     double t;
@@ -116,19 +115,19 @@ namespace crawler
     double *m, *m_w, *m_rate;       ///< active stress with feedback, and its derivatives by the stretch and its rate
   };
 
-  /// Of a stage of an accepted step (the last one is its end).
+  /// Stage of an accepted step (the last one is its end).
   struct LaneStage
   {
-    double min_stretch, max_stretch;     ///< among the samples
+    double min_stretch, max_stretch;     ///< extremes among the samples
     unsigned int min_sample, max_sample; ///< cell*n_samples + sample
-    // If rates are asked for (CellIntegrals).
+    // Rates, if they are requested (CellIntegrals).
     double stress_power, positive_power, absolute_power, dissipation, net_friction, abs_friction;
-    double left_velocity, right_velocity; ///< of the ends of the body
-    // If the active stress depends on it, too: the stretch at both ends and its rate.
+    double left_velocity, right_velocity; ///< velocities of the ends of the body
+    // Stretch at both ends and its rate, if the active stress depends on them, too.
     double end_stretch[2], end_rate[2];
   };
 
-  /// An accepted step of a lane. The pointers are good until the next advance(); element i is at [i*stride].
+  /// Accepted step of a lane. The pointers are valid until the next advance(); element i is at [i*stride].
   struct LaneStep
   {
     double time, size;
@@ -140,8 +139,8 @@ namespace crawler
     const double *y;         ///< [unknowns] displacement
     const double *z;         ///< [stages][unknowns] displacements in the stages relative to the start of the step
     const LaneStage *stages; ///< [n_stages]; the last one alone is filled unless `look_inside` is set
-    double elastic_energy;   ///< at the end, if rates are asked for
-    bool is_settled;         ///< was the velocity at the end found? If rates are asked for
+    double elastic_energy;   ///< elastic energy at the end, if rates are requested
+    bool is_settled;         ///< the velocity at the end was found, if rates are requested
     const LaneProgress *progress;
   };
 
@@ -150,113 +149,112 @@ namespace crawler
     enum Status
     {
       finished,
-      stopped, ///< by the host, or at most_steps
-      gave_up  ///< something that only the full path can tell apart
+      stopped, ///< stopped by the host, or at most_steps
+      gave_up  ///< given up for a reason that only the full path can tell
     } status;
-    double time, step_size; ///< of the last accepted state; step that would come next
+    double time, step_size; ///< time of the last accepted state; step that would follow
     unsigned int steps, rejected;
     unsigned long newton_iterations;
     double displacement; ///< int u ds at that time
   };
 
-  /// The laws of a general body in the stretch form, at all cells: the mobility 1/(g b), the force N, and their
-  /// derivatives by w and w_t. The arrays belong to the host and are good until it is asked again.
+  /// Laws of a general body in the stretch form, at all cells: the mobility 1/(g b), the force N, and their derivatives
+  /// by w and w_t. The arrays belong to the host and are valid until its next call.
   struct LaneCellLaws
   {
     const double *mobility, *mobility_by_w, *force, *force_by_w, *force_by_rate;
     double least; ///< not positive if one of them has no meaning
   };
 
-  /// Who gives the bodies and takes the answers. Lanes are numbered 0 to lanes - 1.
+  /// Host that supplies the bodies and takes the answers. Lanes are numbered 0 to lanes - 1.
   struct LaneHost
   {
     void *context;
-    /// The next body for a lane; false if there is none.
+    /// Supplies the next body for a lane; false if there is none.
     bool (*next)(void *context, unsigned int lane, LaneJob &job);
-    /// m at all quadrature points [cell][point]. Asked for at the start, in all stages of each step that is tried, and
-    /// after a step to a time when it jumps there once more, for what comes then.
+    /// Writes m at all quadrature points [cell][point]. Called at the start, in all stages of each tried step, and once
+    /// more after a step to a time when m jumps, for its values from then on.
     void (*stress)(void *context, unsigned int lane, double t, double *m);
-    /// Sees each accepted step; false stops the lane. May be null.
+    /// Observes each accepted step; false stops the lane. May be null.
     bool (*accepted)(void *context, unsigned int lane, const LaneStep &step);
     void (*done)(void *context, unsigned int lane, const LaneOutcome &outcome);
     bool look_inside; ///< stretch and rates in all stages, of the position form
-    /// The laws that the engine leaves to the host; false if one of them has no meaning for this state.
+    /// Evaluates the laws that the engine leaves to the host; false if one of them has no meaning for this state.
     bool (*laws)(void *context, unsigned int lane, const LanePoints &points) = nullptr;
-    /// In the stretch form, for the stretch @p w and its rate at each cell, for an engine with one lane. Null: the laws
-    /// of a plain body.
+    /// Evaluates the laws in the stretch form, for the stretch @p w and its rate at each cell, for an engine with one
+    /// lane. Null: the laws of a plain body.
     LaneCellLaws (*cell_laws)(void *context, double t, const double *m, const double *w, const double *rate) = nullptr;
   };
 
-  /// A run to go through backwards. All arrays belong to the caller.
+  /// Run to traverse backwards. All arrays belong to the caller.
   struct LanePast
   {
     unsigned int n_steps = 0;
     const double *times = nullptr, *sizes = nullptr; ///< [n_steps] ends and lengths of the steps
     const double *z             = nullptr;           ///< [n_steps][stages][unknowns] as in LaneStep
-    const double *end           = nullptr;           ///< [unknowns] the last state
-    const unsigned char *starts = nullptr;           ///< [n_steps] does a body start anew with this step? Null: never
-    const double *gradient      = nullptr; ///< [unknowns] what one wants to know, differentiated by the last state
-    bool has_sources            = false;   ///< depends what one wants to know on the steps, too?
+    const double *end           = nullptr;           ///< [unknowns] last state
+    const unsigned char *starts = nullptr;           ///< [n_steps] true if a body starts anew; null: never
+    const double *gradient      = nullptr; ///< [unknowns] derivative of the quantity of interest by the last state
+    bool has_sources            = false;   ///< true if the quantity of interest depends on the steps, too
   };
 
-  /// What one wants to know, differentiated by the states of a step themselves. The arrays are 0 before.
+  /// Derivatives of the quantity of interest by the states of a step themselves. The arrays are 0 before.
   struct LaneSources
   {
     double *by_end;             ///< [unknowns] the state at the end of the step
     double *by_u, *by_velocity; ///< [stages][unknowns] displacements and velocities in the stages
   };
 
-  /// A step gone through backwards; element i is at [i*stride].
+  /// Step traversed backwards; element i is at [i*stride].
   struct LaneAdjointStep
   {
-    unsigned int number; ///< from 0
+    unsigned int number; ///< counted from 0
     std::size_t stride;
     const double
-      *mu; ///< [stages][unknowns] what one wants to know, differentiated by the residuals, with the sign of dF
-    /// [unknowns] M^-1 of what one wants to know, differentiated by the state at the end of the step: minus the effect
-    /// of an impulse there. Null unless the body starts anew with the next step, or there is none.
+      *mu; ///< [stages][unknowns] derivative of the quantity of interest by the residuals, with the sign of dF
+    /// [unknowns] M^-1 times the derivative of the quantity of interest by the state at the end of the step: minus the
+    /// effect of an impulse there. Null unless the body starts anew with the next step, or there is none.
     const double *zeta;
   };
 
-  /// Who gives the runs and takes their adjoints.
+  /// Host that supplies the runs and takes their adjoints.
   struct LaneAdjointHost
   {
     void *context;
-    /// The next run for a lane; of @p job the laws of the body alone count. False if there is none.
+    /// Supplies the next run for a lane; of @p job the laws of the body alone count. False if there is none.
     bool (*next)(void *context, unsigned int lane, LaneJob &job, LanePast &past);
     void (*step)(void *context, unsigned int lane, const LaneAdjointStep &step);
-    /// @p by_start: [unknowns] what one wants to know, differentiated by the first state; not good unless @p finished.
+    /// @p by_start: [unknowns] derivative of the quantity of interest by the first state; invalid unless @p finished.
     void (*done)(void *context, unsigned int lane, bool finished, std::size_t stride, const double *by_start);
     bool (*laws)(void *context, unsigned int lane, const LanePoints &points) = nullptr; ///< as in LaneHost
     /// Called before each step of a run that has sources.
     void (*sources)(void *context, unsigned int lane, unsigned int step, const LaneSources &sources) = nullptr;
   };
 
-  /// The engine as compiled for one instruction set and one number of lanes.
+  /// Engine compiled for one instruction set and one number of lanes.
   struct LaneEngine
   {
     const char *instruction_set;
     unsigned int lanes;
-    /// Doubles of memory that start() and advance() need, aligned to 64 bytes.
+    /// Number of doubles that start() and advance() need, aligned to 64 bytes.
     std::size_t (*memory)(const LaneSetup &setup);
-    /// Begins with the bodies of a host. All that is given must outlive the last advance().
+    /// Begins with the bodies of a host. All arguments must outlive the last advance().
     void (*start)(const LaneSetup &setup, const LaneHost &host, double *memory);
     /// Tries one step of all bodies in the lanes, after lanes without a body took the next one; false if there is none
-    /// left. What the host got to see of a step is good until then.
+    /// left. The data that the host sees of a step are valid until then.
     bool (*advance)(const LaneSetup &setup, double *memory);
-    /// The same for the adjoint of runs in the position form.
+    /// Memory and run of the adjoint of runs in the position form.
     std::size_t (*adjoint_memory)(const LaneSetup &setup);
     void (*adjoint)(const LaneSetup &setup, const LaneAdjointHost &host, double *memory);
   };
 
-  /// The best engine for this processor: for many bodies, or with one lane for one body.
+  /// Best engine for this processor: for many bodies, or with one lane for one body.
   const LaneEngine &
   batch_engine();
   const LaneEngine &
   single_engine();
 
-  /// The engines for an instruction set ("baseline", "avx2", "avx512") if the processor has it, else null: for
-  /// comparisons.
+  /// Engines for an instruction set ("baseline", "avx2", "avx512") if the processor has it, else null: for comparisons.
   const LaneEngine *
   batch_engine(const char *instruction_set);
 } // namespace crawler

@@ -5,8 +5,8 @@
 
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  /// The p-model of friction with gamma = 1, g = w^a: by products where a is a small whole number. Each lane is
-  /// computed the same way whatever the others are.
+  /// p-model of friction with gamma = 1, g = w^a: by products where a is a small integer. Each lane is computed in the
+  /// same way whatever the others are.
   template <typename Pack>
   struct LaneFriction
   {
@@ -14,11 +14,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 
     Pack a;
     static constexpr int most_bits = 4;
-    Mask whole, negative, bits[most_bits]; ///< is |a| a whole number, is a < 0; binary digits of |a|
+    Mask whole, negative, bits[most_bits]; ///< |a| is an integer, a < 0; binary digits of |a|
     bool any_whole, any_other;
     int n_bits;
 
-    /// To be called when an exponent has changed.
+    /// Sorts the exponents; to be called when one has changed.
     void
     sort()
     {

@@ -4,10 +4,10 @@
 #include <crawler/lanes/group_kernels.h>
 #include <crawler/lanes/lane_kernels.h>
 
-/// The loops over all cells for a degree that is chosen at run time (included by lane_systems.h).
+/// Loops over all cells for a degree that is chosen at run time (included by lane_systems.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  /// The kernels for one degree, as functions.
+  /// Kernels for one degree, as functions.
   template <typename Pack>
   struct LaneKernelTable
   {

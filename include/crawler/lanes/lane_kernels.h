@@ -5,7 +5,7 @@
 #include <crawler/lanes/lane_friction.h>
 #include <crawler/mesh/block_tridiagonal_loops.h>
 
-/// The loops over all cells, for a pack of bodies and one degree q (included by radau_lanes.h).
+/// Loops over all cells, for a pack of bodies and one degree q (included by radau_lanes.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
   template <typename Pack>
@@ -16,7 +16,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     ElementTables tables;
     Pack k;
     LaneFriction<Pack> friction;
-    const PointLaws<Pack> *laws = nullptr; ///< of general bodies, for the state at hand: in place of k and friction
+    const PointLaws<Pack> *laws = nullptr; ///< laws of general bodies for the present state, replacing k and friction
   };
 
   /// CellIntegrals of a pack of bodies.
@@ -27,17 +27,17 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       net_friction{}, abs_friction{}, velocity{};
   };
 
-  /// What is looked at in a state: the extreme stretches, the numbers of their samples, and the integrals.
+  /// Observation of a state: the extreme stretches, the numbers of their samples, and the integrals.
   template <typename Pack>
   struct LaneLook
   {
     Pack least = broadcast<Pack>(HUGE_VAL), most = broadcast<Pack>(-HUGE_VAL), least_at{}, most_at{};
     LaneIntegrals<Pack> sums;
-    Pack end_stretch[2] = {}, end_rate[2] = {}; ///< at both ends, and its rate
+    Pack end_stretch[2] = {}, end_rate[2] = {}; ///< stretch at both ends, and its rate
   };
 
-  /// The derivatives of friction f and force N at all points of a state: by velocity, stretch, place and the rate of
-  /// the stretch. Null: 0.
+  /// Derivatives of friction f and force N at all points of a state: by velocity, stretch, place and stretch rate.
+  /// Null: 0.
   template <typename Pack>
   struct LaneSlopes
   {
@@ -49,7 +49,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   {
     static constexpr int n = q + 1;
 
-    /// At the points of a cell.
+    /// Friction at the points of a cell.
     struct CellFriction
     {
       const LaneFriction<Pack> &law;
@@ -84,7 +84,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           use(Laws{mesh.k, m != nullptr ? m + c * n : nullptr, {mesh.friction}}, c);
     }
 
-    /// What the laws of general bodies are evaluated for, at all points.
+    /// States for the laws of general bodies, at all points.
     [[gnu::flatten]] static void
     states(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, Pack *u_at, Pack *v_at, Pack *e, Pack *rate)
     {
@@ -93,7 +93,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           mesh.tables, mesh.sizes[c], u + c * q, v + c * q, u_at + c * n, v_at + c * n, e + c * n, rate + c * n);
     }
 
-    /// Of the nodes of cell @p c those that no cell before it has.
+    /// Sets the nodes of cell @p c that no cell before it has to zero.
     static void
     set_to_zero(const int c, Pack *F)
     {
@@ -103,7 +103,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         F[c * q + i] = Pack{};
     }
 
-    /// Overwrites @p F; returns the smallest stretch at a quadrature point.
+    /// Computes the residual: overwrites @p F; returns the smallest stretch at a quadrature point.
     [[gnu::flatten]] static Pack
     residual(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const Pack *m, Pack *F)
     {
@@ -112,13 +112,13 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         set_to_zero(c, F);
         const auto at = cell_residual<n, Pack>(mesh.tables, mesh.sizes[c], laws, u + c * q, v + c * q, F + c * q);
         for (int p = 0; p < n; ++p)
-          least = smaller(at.w[p], least); // a stretch that is not a number makes F one, too
+          least = smaller(at.w[p], least); // a stretch that is not a number makes F the same
       });
       return least;
     }
 
-    /// The right-hand side of M x = F for the correction x of the velocity @p v to that in which all forces balance,
-    /// and the factors of M. Without @p v, of plain bodies, x is the velocity.
+    /// Right-hand side of M x = F for the correction x of the velocity @p v to that in which all forces balance, and
+    /// the factors of M. Without @p v, for plain bodies, x is the velocity.
     [[gnu::flatten]] static void
     balance(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const Pack *m, Pack *F, Pack *blocks, Pack *schur)
     {
@@ -163,7 +163,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       });
     }
 
-    /// The products of the transposed dF/du and of dF/dv, which is symmetric, with @p x.
+    /// Products of the transposed dF/du and of dF/dv, which is symmetric, with @p x.
     [[gnu::flatten]] static void
     transposed(const LaneMesh<Pack> &mesh, const LaneSlopes<Pack> &at, const Pack *x, Pack *K_x, Pack *M_x)
     {
@@ -217,7 +217,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
               Complex<Pack> *complex_blocks,
               Complex<Pack> *complex_schur)
     {
-      const auto any_pivot = [](const auto &) {}; // what is not finite is seen in the solution
+      const auto any_pivot = [](const auto &) {}; // non-finite factors show in the solution
       for_cells(mesh, nullptr, [&](const auto &laws, const int c) {
         Pack K[n * n], M[n * n];
         cell_blocks<n, true>(mesh.tables, mesh.sizes[c], laws, u + c * q, v + c * q, K, M);
@@ -267,7 +267,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       });
     }
 
-    /// int u ds.
+    /// Integral of u over the body.
     static Pack
     integral(const LaneMesh<Pack> &mesh, const Pack *u)
     {
@@ -282,7 +282,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return sum;
     }
 
-    /// The derivative by s at both ends, from a table of derivatives at @p n_samples places that begin and end there.
+    /// Derivatives by s at both ends, from a table of derivatives at @p n_samples places that begin and end there.
     static void
     end_derivatives(
       const LaneMesh<Pack> &mesh, const int n_samples, const double *sample_derivatives, const Pack *u, Pack *ends)

@@ -9,12 +9,12 @@
 
 #include <cstddef>
 
-/// The laws of general bodies and grounds in the position form (included by lane_systems.h).
+/// Laws of general bodies and grounds in the position form (included by lane_systems.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
   /**
-   * f = g(w) b(s) c(x) d(v) v and N = m(s, t, w, w_t) + k(s) (w - 1) at all quadrature points of a pack of bodies, and
-   * their derivatives. What the engine does not know the host is asked for, one lane after the other.
+   * Laws f = g(w) b(s) c(x) d(v) v and N = m(s, t, w, w_t) + k(s) (w - 1) at all quadrature points of a pack of bodies,
+   * and their derivatives. The host evaluates those that the engine does not know, one lane after the other.
    */
   template <typename Pack>
   class GeneralLaws
@@ -65,7 +65,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       {
         set_lane(k_[p], l, is_busy ? job.k * job.k_profile[p] : 1.);
         set_lane(b_[p], l, is_busy ? job.friction_profile[p] : 1.);
-        // The host does not write where a lane is at rest.
+        // Lanes at rest keep these values: the host does not write there.
         set_lane(g_[p], l, 1.);
         set_lane(w_dg_[p], l, 0.);
         if (has(LaneLaws::host_ground))
@@ -83,15 +83,15 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
     }
 
-    /// Is the friction linear in the velocity, and the force independent of it?
+    /// True if the friction is linear in the velocity, and the force independent of it.
     bool
     are_linear_in_velocity() const
     {
       return (bits_ & LaneLaws::nonlinear_in_velocity) == 0;
     }
 
-    /// For the states in u, v, e and rate at the times @p t, with the active stress @p m where that is known; the
-    /// derivatives if @p slopes are wanted. Returns a number that is not positive where they have no meaning.
+    /// Evaluates for the states in u, v, e and rate at the times @p t, with the active stress @p m where that is known;
+    /// with derivatives if @p slopes. Returns a number that is not positive where the laws have no meaning.
     Pack
     evaluate(const double *t, const LaneFriction<Pack> &friction, const Pack *m, const bool slopes)
     {
@@ -117,9 +117,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return least;
     }
 
-    PointLaws<Pack> laws{}; ///< what was evaluated
+    PointLaws<Pack> laws{}; ///< laws at the last evaluation
 
-    Pack *u, *v, *e, *rate; ///< [points] displacement, velocity, strain and its rate: to be written before
+    Pack *u, *v, *e, *rate; ///< [points] displacement, velocity, strain and its rate: to be written first
 
   private:
     bool
@@ -211,7 +211,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return good;
     }
 
-    static constexpr int n_read = 4, n_arrays = 11; ///< of LanePoints
+    static constexpr int n_read = 4, n_arrays = 11; ///< numbers of arrays of LanePoints
 
     const unsigned int bits_;
     const LaneHost &host_;
@@ -219,6 +219,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     bool is_busy_[lanes] = {};
     Pack ratio_, switching_velocity_;
     Pack *w_, *k_, *b_, *g_, *w_dg_, *N_, *f_, *f_v_, *w_f_w_, *tanh_, *c_, *c_x_, *f_u_, *m_, *N_w_, *N_rate_;
-    double *scratch_[n_arrays]; ///< of one lane
+    double *scratch_[n_arrays]; ///< scratch of one lane
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

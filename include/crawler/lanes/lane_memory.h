@@ -8,7 +8,7 @@
 /// Memory of the fused engine (included by radau_lanes.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  /// Has one of the lanes this flag?
+  /// True if one of the lanes has this flag.
   template <typename Lane, int n>
   inline bool
   any(const Lane (&lanes)[n], const bool Lane::*flag)
@@ -19,7 +19,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     return false;
   }
 
-  /// Pieces of a memory, one after the other; without memory only their sizes are added.
+  /// Pieces of a memory, one after the other; without memory only their sizes are summed.
   class LaneMemory
   {
   public:
@@ -28,7 +28,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
     }
 
-    /// Begins at a multiple of 64 bytes.
+    /// Places an array at a multiple of 64 bytes.
     template <typename Type>
     void
     piece(Type *&pointer, const std::size_t n)

@@ -8,10 +8,10 @@
 
 #include <cstddef>
 
-/// The states in one step of a pack of bodies (included by radau_lanes.h).
+/// States in one step of a pack of bodies (included by radau_lanes.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  /// A sum, or the larger one. What is not a number stays one.
+  /// Sum, or the larger of two numbers. NaN stays NaN.
   template <bool largest, typename Pack>
   inline Pack
   added(const Pack &a, const Pack &b)
@@ -46,9 +46,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static constexpr radau::Stages<s> stages{};
     const LaneSetup &setup;
     const int n;                         ///< unknowns
-    Pack *y = nullptr;                   ///< at the start of the step
+    Pack *y = nullptr;                   ///< state at the start of the step
     Pack *z = nullptr, *old_z = nullptr; ///< [stage][unknown] relative to the start, of this step and the last
-    Pack *u = nullptr, *v = nullptr;     ///< displacement and velocity where the equation is looked at
+    Pack *u = nullptr, *v = nullptr;     ///< displacement and velocity at which the equation is evaluated
 
     void
     lay_out(LaneMemory &memory)
@@ -60,7 +60,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       memory.piece(v, n);
     }
 
-    /// A body in lane @p l; null: at rest, and without a step before.
+    /// Starts a body in lane @p l; null: at rest, and without a step before.
     void
     start(const int l, const double *displacement, const double *stages_before)
     {
@@ -70,8 +70,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         set_lane(old_z[i], l, stages_before != nullptr ? stages_before[i] : 0.);
     }
 
-    /// The polynomial of the last step continued where @p use is 1, or rest where it is 0. @p start and @p ratio as in
-    /// radau::guess_weights.
+    /// Guesses by the polynomial of the last step continued where @p use is 1, by rest where it is 0. @p start and @p
+    /// ratio as in radau::guess_weights.
     void
     guess(const Pack &start, const Pack &ratio, const Pack &use)
     {
@@ -85,7 +85,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
     }
 
-    /// u and v of stage i.
+    /// Sets u and v to those of stage i.
     void
     go_to_stage(const int i, const Pack &inverse_h)
     {
@@ -100,7 +100,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       radau::stage_rate(stages, setup.inverse, i, inverse_h, z, n, v);
     }
 
-    /// Takes a correction in the basis of the eigenvectors of A^-1 from z where @p moves; returns the sum of its
+    /// Subtracts a correction in the basis of the eigenvectors of A^-1 from z where @p moves; returns the sum of its
     /// squares, or the largest of them. Overwrites u.
     template <bool largest>
     Pack
@@ -121,7 +121,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return square;
     }
 
-    /// u at the start of the step, and v of the embedded formula.
+    /// Sets u to the start of the step, and v to that of the embedded formula.
     void
     go_to_start(const Pack &inverse_h)
     {
@@ -130,7 +130,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         u[d] = y[d];
     }
 
-    /// The next guess of these bodies is the try that failed.
+    /// Keeps the failed try of these bodies as the next guess.
     void
     keep_try(const typename PackTraits<Pack>::Mask &failed)
     {

@@ -9,9 +9,9 @@
 namespace crawler
 {
   /**
-   * One body by the fused engine (lane_engine.h): the same method as the PETSc type "radau", without its objects. What
-   * it cannot solve it gives up, with the reason `gave_up` and the last accepted state: then the time stepper of PETSc
-   * goes on from there, or finds out what is wrong.
+   * One body by the fused engine (lane_engine.h): the method of the PETSc type "radau", without its objects. A problem
+   * that it cannot solve it gives up, with the reason `gave_up` and the last accepted state: then the time stepper of
+   * PETSc goes on from there, or finds out what is wrong.
    */
   class LaneStepper : public Stepper
   {
@@ -37,13 +37,13 @@ namespace crawler
     bool
     exchange(Archive &archive) override;
 
-    /// Is what the stages of the position form give wanted (LaneStage)? From the next begin() on.
+    /// Requests the data of the stages of the position form (LaneStage), from the next begin() on.
     void
     look_inside(const bool wanted)
     {
       looks_inside_ = wanted;
     }
-    /// The last step, until the next one.
+    /// Last step, until the next one.
     const LaneStep &
     lane_step() const
     {
@@ -55,7 +55,7 @@ namespace crawler
       return tables_;
     }
 
-    /// Stretch and friction where a friction law was not positive, since begin(), if one was not.
+    /// Stretch and friction where a friction law was not positive, since begin(); nothing if all were.
     const std::optional<std::pair<double, double>> &
     bad_friction() const
     {
@@ -82,23 +82,23 @@ namespace crawler
     const std::shared_ptr<const LaneTables> tables_owner_;
     const LaneTables &tables_;
     LaneSetup setup_;
-    std::optional<HostLaws> laws_;         ///< of a general body in the position form
-    std::optional<StretchLaws> cell_laws_; ///< and in the stretch form
+    std::optional<HostLaws> laws_;         ///< laws of a general body in the position form
+    std::optional<StretchLaws> cell_laws_; ///< laws in the stretch form
     const RadauTableau &tableau_;
     const std::unique_ptr<ActiveStressAtPoints> stress_;
     LaneStorage memory_;
 
-    // Since begin().
+    // State since begin().
     std::optional<std::pair<double, double>> bad_friction_;
     Course course_;
     LaneJob job_;
     LaneHost host_{};
     bool started_ = false, looks_inside_ = false, goes_on_ = false, has_step_ = false;
-    LaneProgress progress_; ///< if it goes on, and the last step's stages:
+    LaneProgress progress_; ///< progress of a run that continues; the last step's stages:
     std::vector<double> old_z_;
     std::vector<double> y_, rate_;
     LaneStep lane_step_;
     Step step_;
-    std::optional<TimeOutcome> end_; ///< if it has ended
+    std::optional<TimeOutcome> end_; ///< outcome, if the run has ended
   };
 } // namespace crawler

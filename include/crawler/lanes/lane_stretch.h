@@ -9,14 +9,14 @@
 
 #include <cstddef>
 
-/// The equations and linear systems of the stretch form for a pack of bodies (included by radau_lanes.h).
+/// Equations and linear systems of the stretch form for a pack of bodies (included by radau_lanes.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  /// The smallest w^(1+a) that is looked at, where that is what the unknown is made of.
+  /// Floor of w^(1+a) where the unknown is made of it.
   constexpr double least_power = 1e-8;
 
   /**
-   * The unknowns are those of the cells, and last the displacement of the left end, u_0' = v_0. That of a cell is its
+   * Unknowns are those of the cells, and last the displacement of the left end, u_0' = v_0. That of a cell is its
    * stretch w; or q = w^(1+a)/(1+a), -1 < a < 0, which passes 0 at a finite rate where a body inverts (LaneSetup).
    *
    *   F_j = q_j' - c_j (v_{j+1} - v_j)/h_j,   c = dq/dw,        F_n = u_0' - v_0
@@ -25,9 +25,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   class StretchSystem
   {
   public:
-    using Number                  = Complex<Pack>;
-    static constexpr int lanes    = PackTraits<Pack>::size;
-    static constexpr bool largest = true; ///< is the size of a vector that of its largest element, else the mean square
+    using Number                      = Complex<Pack>;
+    static constexpr int lanes        = PackTraits<Pack>::size;
+    static constexpr bool largest     = true;  ///< the size of a vector is its largest element, else the mean square
     static constexpr bool gives_rates = false; ///< for LaneHost::look_inside
     static constexpr bool keeps_tries = false;
 
@@ -45,7 +45,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       return n_ + 1;
     }
-    /// Of these the error is controlled.
+    /// Number of unknowns whose error is controlled.
     int
     n_controlled() const
     {
@@ -85,8 +85,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       friction_.sort();
     }
 
-    /// Of the state @p q with the rates @p q_dot and the active stress @p m, at a time for each lane. Returns a number
-    /// that is not positive where the equation has no meaning.
+    /// Residual of the state @p q with the rates @p q_dot and the active stress @p m, at a time for each lane. Returns
+    /// a number that is not positive where the equation has no meaning.
     Pack
     residual(const double *t, const Pack *q, const Pack *q_dot, const Pack *m, Pack *F)
     {
@@ -102,7 +102,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return least;
     }
 
-    /// For the state (@p q, @p q_dot): the matrices with the eigenvalues of the method.
+    /// Factorizes the matrices with the eigenvalues of the method for the state (@p q, @p q_dot).
     void
     factorize(const double *t, const Pack *q, const Pack *q_dot, const Pack *m, const Pack &inverse_h)
     {
@@ -144,7 +144,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         row.K[0]     = -c * left.by_left;
         row.K[1]     = c * (right.by_left - left.by_right);
         row.K[2]     = c * right.by_right;
-        if (setup_.is_power) // dc/dq = a/w
+        if (setup_.is_power) // derivative dc/dq = a/w
           row.K[1] += a_ * (right.v - left.v) * (-1. / h[j]) / w_[j];
         if (sees_rate)
         {
@@ -163,7 +163,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       solve_all(x, nullptr);
     }
 
-    /// The real system and those of all pairs, @p y [pair][unknown]; null: the real one alone.
+    /// Solves the real system and those of all pairs, @p y [pair][unknown]; null: the real one alone.
     void
     solve_all(Pack *x, Number *y) const
     {
@@ -178,7 +178,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
     }
 
-    /// The smallest and the largest stretch.
+    /// Finds the smallest and the largest stretch.
     void
     look(const double *, const Pack *q, const Pack *, const Pack *, const bool, LaneLook<Pack> &result)
     {
@@ -193,7 +193,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
     }
 
-    /// int u ds.
+    /// Integral of u over the body.
     Pack
     integral(const Pack *q)
     {
@@ -214,7 +214,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       Pack v, by_left, by_right, by_left_rate, by_right_rate;
     };
 
-    /// v for the velocity that the ground would give without its direction, and the derivative.
+    /// Velocity v from that which the ground would give without its direction, and the derivative.
     Pack
     direct(const Pack &v, Pack &slope) const
     {
@@ -232,7 +232,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return direct(f.slope * f.mobility.value, slope);
     }
 
-    /// w and dw/dq.
+    /// Computes w and dw/dq.
     void
     find_stretch(const Pack *q)
     {
@@ -298,13 +298,13 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     const LaneHost &host_;
     const int n_;
     const NodeRule rule_;
-    LaneFriction<Pack> friction_; ///< of the mobility, w^-a
+    LaneFriction<Pack> friction_; ///< friction that gives the mobility, w^-a
     Pack k_, a_, shift_, end_by_w_, end_by_rate_;
     Number shifts_[pairs];
     LaneTridiagonal<Pack, pairs> cells_;
     Pack *w_, *slope_;                                                               ///< [cell]
     Pack *own_mobility_, *own_mobility_slope_, *own_force_, *own_force_by_w_;        ///< [cell] of plain bodies
     Pack *rate_;                                                                     ///< [cell] scratch
-    const Pack *mobility_, *mobility_slope_, *force_, *force_by_w_, *force_by_rate_; ///< [cell] own or the host's
+    const Pack *mobility_, *mobility_slope_, *force_, *force_by_w_, *force_by_rate_; ///< [cell] own arrays or host's
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

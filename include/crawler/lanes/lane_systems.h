@@ -9,10 +9,10 @@
 
 #include <cstddef>
 
-/// The equations and linear systems of the position form for a pack of bodies (included by radau_lanes.h).
+/// Equations and linear systems of the position form for a pack of bodies (included by radau_lanes.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  /// The unknowns are the displacements of the nodes. The systems are K + (g/h) M and K + (l_j/h) M, g and l_j the
+  /// Unknowns are the displacements of the nodes. The systems are K + (g/h) M and K + (l_j/h) M, g and l_j the
   /// eigenvalues of A^-1: blocks of the cells (block_tridiagonal_loops.h) and the tridiagonal system of the corners
   /// between them.
   template <typename Pack, int pairs>
@@ -22,7 +22,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     using Number                      = Complex<Pack>;
     static constexpr bool largest     = false; ///< the size of a vector is its mean square
     static constexpr bool gives_rates = true;  ///< for LaneHost::look_inside
-    static constexpr bool keeps_tries = true;  ///< is a failed try a guess, see Lane::control_step?
+    static constexpr bool keeps_tries = true;  ///< a failed try is a guess, see Lane::control_step
 
     PositionSystem(const LaneSetup &setup, const LaneHost &host)
       : setup_(setup)
@@ -78,7 +78,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return least;
     }
 
-    /// The extreme stretches, and if @p rates the integrals for the velocity @p v.
+    /// Finds the extreme stretches, and if @p rates the integrals for the velocity @p v.
     void
     look(const double *t, const Pack *u, const Pack *v, const Pack *m, const bool rates, LaneLook<Pack> &result)
     {
@@ -117,7 +117,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         one.lay_out(corners, memory);
     }
 
-    /// Memory for slopes().
+    /// Lays out the memory for slopes().
     void
     lay_out(LaneSlopes<Pack> &slopes, const std::size_t points, LaneMemory &memory) const
     {
@@ -130,7 +130,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         memory.piece(slopes.N_rate, points);
     }
 
-    /// Of the laws, for the state (@p u, @p v).
+    /// Slopes of the laws, for the state (@p u, @p v).
     void
     slopes(const double *t, const Pack *u, const Pack *v, LaneSlopes<Pack> &at)
     {
@@ -139,14 +139,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       kernels_.slopes(mesh_, u, v, at);
     }
 
-    /// (dF/du)^T x and dF/dv x.
+    /// Products (dF/du)^T x and dF/dv x.
     void
     transposed(const LaneSlopes<Pack> &at, const Pack *x, Pack *K_x, Pack *M_x) const
     {
       kernels_.transposed(mesh_, at, x, K_x, M_x);
     }
 
-    /// For the state (@p u, @p v); of the transposed systems if so wished.
+    /// Factorizes for the state (@p u, @p v); the transposed systems on request.
     template <bool is_transposed = false>
     void
     factorize(const double *t, const Pack *u, const Pack *v, const Pack *m, const Pack &inverse_h)
@@ -170,14 +170,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       factorize_corners(pairs);
     }
 
-    /// With K + (g/h) M.
+    /// Solves with K + (g/h) M.
     void
     solve(Pack *x) const
     {
       solve_all(x, nullptr);
     }
 
-    /// The real system and, unless @p y is null, K + (l_j/h) M for all pairs, @p y [pair][unknown].
+    /// Solves with the real system and, unless @p y is null, K + (l_j/h) M for all pairs, @p y [pair][unknown].
     void
     solve_all(Pack *x, Number *y) const
     {
@@ -206,8 +206,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         kernels_.complex_backward(N, complex_blocks_ + j * block_size(), y + j * n);
     }
 
-    /// The velocity @p v in which all forces balance; of general bodies by Newton's method from what @p v is before.
-    /// Takes the place of the real factors, and of @p correction. Returns how much it has not settled.
+    /// Computes the velocity @p v in which all forces balance; for general bodies by Newton's method from the given @p
+    /// v. Overwrites the real factors and @p correction. Returns the error that has not settled.
     Pack
     velocity(const double *t, const Pack *u, const Pack *m, Pack *v, Pack *correction)
     {
@@ -227,7 +227,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         kernels_.balance(mesh_, u, v, m, correction, blocks_, schur_);
         factorize_corners(0);
         solve(correction);
-        const auto is_done = left <= 1.; // a lane does not move because others do
+        const auto is_done = left <= 1.; // a lane does not change because others do
         Pack change{}, size{};
         for (int d = 0; d < n_unknowns(); ++d)
         {
@@ -248,7 +248,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
   private:
-    /// The laws for a state.
+    /// Evaluates the laws for a state.
     Pack
     evaluate(const double *t, const Pack *u, const Pack *v, const Pack *m, const bool slopes)
     {
@@ -262,7 +262,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return std::size_t(setup_.degree + 1) * (setup_.degree + 1) * kernels_.n_blocks(mesh_.n_cells);
     }
 
-    /// Of the real system and of the first @p n_pairs complex ones.
+    /// Factorizes the tridiagonal matrices of the real system and of the first @p n_pairs complex ones.
     void
     factorize_corners(const int n_pairs) const
     {

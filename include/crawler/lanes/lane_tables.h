@@ -15,7 +15,7 @@ namespace crawler
   struct LaneMethod
   {
     unsigned int degree, n_cells, n_stages;
-    std::vector<double> cell_ends = {};    ///< of a body of length 1 (mesh/graded_mesh.h)
+    std::vector<double> cell_ends = {};    ///< cell ends of a body of length 1 (mesh/graded_mesh.h)
     bool is_stretch               = false; ///< the stretch form, of degree 1
     bool other_rule               = false; ///< see stretch_method()
     unsigned int laws             = 0;     ///< LaneLaws::Bits of the scene
@@ -26,7 +26,7 @@ namespace crawler
 
   struct RadauTableau;
 
-  /// The tables of a method, as the engine wants them.
+  /// Tables of a method, in the form that the engine reads.
   class LaneTables
   {
   public:
@@ -37,11 +37,11 @@ namespace crawler
     std::vector<double> points;
     LaneSetup setup;
 
-    /// Of a cell, for a body of length 1.
+    /// Size of the smallest cell, for a body of length 1.
     double
     smallest_size() const;
 
-    /// s/L of a sample (LaneStep).
+    /// Place s/L of a sample (LaneStep).
     double
     place_of_sample(unsigned int number) const;
 
@@ -55,11 +55,11 @@ namespace crawler
   void
   state_within(const LaneStep &step, const LaneSetup &setup, double time, std::span<double> y);
 
-  /// The latest are kept from call to call.
+  /// Tables of a method; the latest are kept from call to call.
   std::shared_ptr<const LaneTables>
   lane_tables(const LaneMethod &method);
 
-  /// Scratch memory of the engine: so many doubles, aligned to its packs, all 0.
+  /// Scratch memory of the engine: doubles aligned to its packs, all 0.
   struct LaneStorageFree
   {
     void
@@ -69,14 +69,14 @@ namespace crawler
   LaneStorage
   lane_storage(std::size_t n);
 
-  /// In a batch no stretch may fall below this.
+  /// Smallest stretch admitted in a batch.
   constexpr double small_stretch = 0.1;
 
-  /// Can the engine compute this scene in the position form?
+  /// True if the engine can compute this scene in the position form.
   bool
   fits_lanes(const Scene &scene);
 
-  /// What it has, LaneLaws::Bits.
+  /// LaneLaws::Bits of the scene.
   unsigned int
   lane_laws(const Scene &scene);
 } // namespace crawler

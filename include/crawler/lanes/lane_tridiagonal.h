@@ -9,15 +9,15 @@
 /// Tridiagonal systems of the Radau methods for a pack of bodies (included by lane_stretch.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  /// K + g M with a real g and those with the complex ones of all pairs. All are eliminated together and from both ends
-  /// to the middle: these chains of operations do not wait for each other.
+  /// Tridiagonal matrices K + g M with a real g and with the complex ones of all pairs. All are eliminated together and
+  /// from both ends to the middle: these chains of operations do not wait for each other.
   template <typename Pack, int pairs>
   class LaneTridiagonal
   {
   public:
     using Number = Complex<Pack>;
 
-    /// K and M below, on and above the diagonal.
+    /// Entries of K and M below, on and above the diagonal.
     struct Row
     {
       Pack K[3], M[3];
@@ -45,7 +45,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return rows_[j];
     }
 
-    /// Of the rows; M is the identity unless @p has_M.
+    /// Factorizes the rows; M is the identity unless @p has_M.
     void
     factorize(const Pack &real, const Number *shifts, const bool has_M)
     {
@@ -65,7 +65,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         complex_[p][middle_].pivot = 1. / complex_[p][middle_].pivot;
     }
 
-    /// @p y: right-hand sides of all pairs, one after @p stride of them; null: the real system alone.
+    /// @p y: right-hand sides of all pairs, @p stride apart; null: the real system alone.
     void
     solve(Pack *x, Number *y, const int stride) const
     {
@@ -101,8 +101,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
   private:
-    /// A row and then its factors: what is taken of the row before and of the row after on the way to the middle, and
-    /// 1/pivot; on the way back the one that is needed then, times the pivot.
+    /// Row and then its factors: multiples of the row before and of the row after on the way to the middle, and
+    /// 1/pivot; for the way back the factor needed then, times the pivot.
     template <typename Type>
     struct Factors
     {
@@ -127,7 +127,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return {{row.K[0], Pack{}}, {row.K[1] + shift.re, shift.im}, {row.K[2], Pack{}}};
     }
 
-    /// Takes a row out of the next one towards the middle, which is behind it (@p down) or before it.
+    /// Eliminates a row from the next one towards the middle, which is behind it (@p down) or before it.
     template <typename Type>
     static void
     eliminate(Factors<Type> &row, Factors<Type> &next, const bool down)
@@ -139,7 +139,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       to_row = to_row * row.pivot;
     }
 
-    /// Steps from the first and from the last row to the middle, in turns.
+    /// Applies @p step to the rows from the first and from the last one to the middle, in turns.
     template <typename Step>
     void
     to_the_middle(const Step &step) const

@@ -6,8 +6,8 @@
 #include <cmath>
 
 /**
- * Numbers of several bodies side by side: GCC's vector types (clang has them too), which know + - * / and comparisons,
- * and what they do not know. A plain double is a pack of one.
+ * Packs: numbers of several bodies side by side, by GCC's vector types (clang has them too) with + - * / and
+ * comparisons, and the operations that these lack. A plain double is a pack of one.
  */
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
@@ -49,7 +49,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     return Pack{} + value;
   }
 
-  /// b if they cannot be compared.
+  /// Returns b if they cannot be compared.
   template <typename Pack>
   inline Pack
   smaller(const Pack &a, const Pack &b)
@@ -118,8 +118,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     return result;
   }
 
-  /// @p function of x and y at n points, for any pack. For one body the points take the place of lanes, so that its
-  /// values are those of a batch to the last bit.
+  /// Applies @p function to x and y at n points, for any pack. For one body the points take the place of lanes, so that
+  /// its values are those of a batch to the last bit.
   template <typename Pack, typename Function>
   inline void
   at_points(const Function &function, const Pack *x, const Pack &y, Pack *result, const int n)
@@ -143,7 +143,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         result[i] = function(x[i], y);
   }
 
-  /// x^y = exp(y log x) at n points, x > 0: half the cost of pow, whose last digits it lacks where y log x is large.
+  /// Power x^y = exp(y log x) at n points, x > 0: half the cost of pow, without its last digits if y log x is large.
   template <typename Pack>
   inline void
   power_at_points(const Pack *x, const Pack &y, Pack *result, const int n)
@@ -166,7 +166,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     at_points(function, x, y, result, n);
   }
 
-  /// A complex number in each lane; without the checks for infinities of std::complex.
+  /// Complex number in each lane; without the checks for infinities of std::complex.
   template <typename Pack>
   struct Complex
   {
@@ -203,7 +203,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   {
     a = a * b;
   }
-  /// one/b, for one = 1.
+  /// Quotient one/b, for one = 1.
   template <typename Pack>
   inline Complex<Pack>
   operator/(const double one, const Complex<Pack> &b)

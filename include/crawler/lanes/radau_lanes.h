@@ -12,13 +12,13 @@
 #include <cstddef>
 
 /**
- * The Radau IIA methods on packs of bodies; formulas and their sources are in doc/numerics.md, "Fused engine". Included
- * by lanes.cc alone, once for each instruction set. Nothing here may come from the C++ library: its inline functions
- * would be compiled for this instruction set and might be used by all.
+ * Radau IIA methods on packs of bodies; formulas and their sources are in doc/numerics.md, "Fused engine". Included by
+ * lanes.cc alone, once for each instruction set. This file must not use the C++ library: its inline functions would be
+ * compiled for this instruction set and might be used by all.
  */
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  /// @p System: the equations of a form (lane_systems.h, lane_stretch.h).
+  /// @p System holds the equations of a form (lane_systems.h, lane_stretch.h).
   template <typename Pack, int s, template <typename, int> class System>
   class RadauLanes
   {
@@ -48,7 +48,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return own_size() + RadauLanes(setup, none, nullptr).memory_.size();
     }
 
-    /// Makes one at the beginning of @p memory, which holds all that it needs.
+    /// Constructs an engine at the beginning of @p memory, which holds all its data.
     static void
     start(const LaneSetup &setup, const LaneHost &host, double *memory)
     {
@@ -92,7 +92,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       memory_.piece(scratch_, n_points_);
     }
 
-    /// The next body for a lane, or one at rest that asks nothing.
+    /// Takes the next body for a lane, or one at rest that needs nothing.
     void
     take_next(const int l)
     {
@@ -124,7 +124,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         set_lane(m[i], l, lanes_[l].busy ? scratch_[i] : 0.);
     }
 
-    /// Lengths of the steps, and the active stress in their stages.
+    /// Sets lengths of the steps, and the active stress in their stages.
     void
     begin_step()
     {
@@ -184,7 +184,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           lane.fail();
     }
 
-    /// The square of the size of @p n elements in units of the tolerance.
+    /// Square of the size of @p n elements in units of the tolerance.
     Pack
     relative(const Pack &square, const int n) const
     {
@@ -192,8 +192,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return System<Pack, pairs>::largest ? in_units : in_units * (1. / n);
     }
 
-    /// One correction from the residuals F, in the basis of the eigenvectors of A^-1; returns its mean square in units
-    /// of the tolerance. Lanes that are done keep their state.
+    /// Makes one correction from the residuals F, in the basis of the eigenvectors of A^-1; returns its mean square in
+    /// units of the tolerance. Lanes that are done keep their state.
     Pack
     correct()
     {
@@ -206,7 +206,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return relative(square, s * n_);
     }
 
-    /// The error of the embedded formula, filtered as in time/radau.cc.
+    /// Estimates the error by the embedded formula, filtered as in time/radau.cc.
     void
     estimate_error()
     {
@@ -234,7 +234,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
     }
 
-    /// Accepts or rejects, and finds the next steps.
+    /// Accepts or rejects steps, and finds the next ones.
     void
     decide()
     {
@@ -260,7 +260,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           end(l, LaneOutcome::gave_up);
     }
 
-    /// The accepted lanes go to the ends of their steps.
+    /// Advances the accepted lanes to the ends of their steps.
     void
     advance(const typename PackTraits<Pack>::Mask &accepted)
     {
@@ -274,7 +274,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int i = 0; i < n_points_; ++i)
         m_start_[i] = accepted ? m_[(s - 1) * n_points_ + i] : m_start_[i];
       if constexpr (System<Pack, pairs>::gives_rates)
-        if (host_.look_inside) // that of the stage is Newton's, with its error
+        if (host_.look_inside) // the velocity of the stage has the error of Newton's method
         {
           states_.go_to_rate(s - 1, inverse_h_);
           unsettled_ = system_.velocity(times_[s - 1], states_.y, m_ + (s - 1) * n_points_, states_.v, real_);
@@ -285,7 +285,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           arrive(l);
     }
 
-    /// Keeps the stretch, and the rates if they are asked for, of a stage with the state (@p u, v).
+    /// Keeps the stretch, and the rates if they are requested, of a stage with the state (@p u, v).
     void
     look_at_stage(const int i, const Pack *u)
     {
@@ -310,7 +310,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       elastic_energy_ = sums.elastic_energy;
     }
 
-    /// A lane at the end of its step.
+    /// Handles a lane at the end of its step.
     void
     arrive(const int l)
     {
@@ -361,7 +361,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       lanes_[l].busy = false;
     }
 
-    /// Doubles that the object itself takes.
+    /// Number of doubles of the object itself.
     static std::size_t
     own_size()
     {
@@ -382,15 +382,15 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     LaneStates<Pack, s> states_;
     Lane lanes_[lanes];
     Pack tolerance_, inverse_h_;
-    double times_[s][lanes], start_[lanes]; ///< of the stages, and where the step starts
+    double times_[s][lanes], start_[lanes]; ///< times of the stages, and of the start of the step
     bool friction_changed_ = true;
-    LaneStage stages_[lanes][s]; ///< what the host gets to see
+    LaneStage stages_[lanes][s]; ///< stages as the host sees them
     Pack elastic_energy_{};
-    Pack unsettled_{}; ///< of the velocity at the end of the step, relative to what is asked for
+    Pack unsettled_{}; ///< error of the velocity at the end of the step, relative to the requested one
 
     Pack *F_;            ///< [stage][unknown] residuals
     Pack *real_;         ///< [unknown] right-hand side of the real system, and its solution
-    Number *complex_;    ///< [pair][unknown] of the complex ones
+    Number *complex_;    ///< [pair][unknown] right-hand sides of the complex systems
     Pack *m_, *m_start_; ///< active stress of the stages, and at the start
     double *scratch_;    ///< active stress of one lane
   };

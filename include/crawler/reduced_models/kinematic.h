@@ -14,7 +14,7 @@
 namespace crawler
 {
   /**
-   * A body whose strain e(s,t) is given (the level "kinematic"; doc/theory.md, "Prescribed strain"), in natural units.
+   * Body whose strain e(s,t) is given (the level "kinematic"; doc/theory.md, "Prescribed strain"), in natural units.
    * With g = b(s) g(1+e) and <.> the mean over the body:
    *
    *   v = B_t - <g B_t>/<g>,   B = int_0^s e ds,   <v> = -<(g - <g>)(B_t - <B_t>)>/<g>,   m = int_0^s g v ds - k e.
@@ -24,13 +24,13 @@ namespace crawler
   class KinematicBody
   {
   public:
-    /// @p points are those where fields() looks. Scene (in natural units) and strain must outlive it.
+    /// @p points are those of fields(). Scene (in natural units) and strain must outlive it.
     KinematicBody(const Scene &scene,
                   const StrainHistory &strain,
                   unsigned int n_panels,
                   const std::vector<double> &points = {});
 
-    /// The state at one time, integrated over the body.
+    /// State at one time, integrated over the body.
     struct Integrals
     {
       CellIntegrals sums;    ///< the mean displacement is 0 here: it is the integral of sums.velocity over time
@@ -44,11 +44,11 @@ namespace crawler
       }
     };
 
-    /// Where a stretch is not positive only the extremes are known, and the rest is not a number.
+    /// Evaluates the state at time @p t; where a stretch is not positive only the extremes are known, the rest is NaN.
     const Integrals &
     evaluate(double t);
 
-    /// At the time of evaluate(), the centre of mass being where it was at the start plus @p displacement.
+    /// Fields at the time of evaluate(), with the centre of mass displaced by @p displacement since the start.
     ReducedFields
     fields(double displacement);
 
@@ -69,22 +69,21 @@ namespace crawler
   struct KinematicResult
   {
     double displacement = 0., space_error = 0., time_error = 0.; ///< errors of the quadrature
-    bool stopped = false;                                        ///< keep_going said no
+    bool stopped = false;                                        ///< keep_going returned false
     EnergyBalance energies;
     double net_friction = 0.; ///< largest |int g v ds| over largest int |g v| ds, both over time
     StrainExtremes extremes{};
-    std::optional<StrainExtreme> inversion; ///< where the stretch is not positive; then nothing else is known
+    std::optional<StrainExtreme> inversion; ///< place without a positive stretch; then the rest is unknown
     unsigned int n_space_panels = 0;
-    std::vector<double> time_panels; ///< where those in time begin and end
+    std::vector<double> time_panels; ///< ends of the panels in time
   };
 
   /**
-   * The displacement and the works of a body with a given strain over 0 <= t <= 1. Panels in t are first such that
-   * the strain changes by some times its size in each (by its bounds, so that no event is missed; if that takes too
-   * many the error is infinite). The panels in s and in t are doubled
-   * until the changes of the displacement that this makes are, each, below a quarter of @p tolerance times the
-   * displacement (or of 1e-12), and the works balance to @p tolerance, or until there are a million of them; the
-   * changes are the errors, and the values are those of the doubled panels.
+   * Displacement and works of a body with a given strain over 0 <= t <= 1. Panels in t are first chosen such that the
+   * strain changes by a few times its size in each (by its bounds, so that no event is missed; if that takes too many
+   * the error is infinite). The panels in s and in t are doubled until the changes of the displacement are, each, below
+   * a quarter of @p tolerance times the displacement (or of 1e-12), and the works balance to @p tolerance, or until
+   * there are a million panels; the changes are the errors, and the values are those of the doubled panels.
    */
   KinematicResult
   kinematic(const Scene &scene,

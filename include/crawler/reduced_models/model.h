@@ -5,7 +5,7 @@
 
 namespace crawler
 {
-  /// A level of the model hierarchy (doc/theory.md, "The model hierarchy").
+  /// Level of the model hierarchy (doc/theory.md, "The model hierarchy").
   enum class Model
   {
     automatic, ///< to be chosen

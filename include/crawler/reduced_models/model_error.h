@@ -8,34 +8,34 @@
 
 namespace crawler
 {
-  /// Estimated errors of the displacement that the approximate levels have because of their model, in natural units.
+  /// Estimated model errors of the displacement of the approximate levels, in natural units.
   struct ModelErrors
   {
-    bool known          = false;     ///< not if a stretch is not positive, or if the corrections do not become smaller
-    double perturbation = 0.;        ///< of the series; only for the optimal wave
-    double kinematic    = 0.;        ///< of the body with the approximate strain
-    double displacement = 0.;        ///< after the corrections
-    std::array<double, 3> changes{}; ///< of the displacement by each of the corrections
+    bool known          = false;     ///< false if a stretch is not positive, or if the corrections do not shrink
+    double perturbation = 0.;        ///< error of the series; only for the optimal wave
+    double kinematic    = 0.;        ///< error of the body with the approximate strain
+    double displacement = 0.;        ///< displacement after the corrections
+    std::array<double, 3> changes{}; ///< changes of the displacement by the corrections
   };
 
   /**
-   * Inserts an approximate motion into the full equation and solves for what is missing (doc/numerics.md, "Model
+   * Inserts an approximate motion into the full equation and solves for the correction (doc/numerics.md, "Model
    * error"): with the strain e of the level and its velocity v the residual is r = g v - m_s - k e_s, and
    *
    *   u_t = k u_ss - r,   u_s = 0 at the ends,
    *
    * in cosine modes, which an exponential integrator (r linear in each step) takes through time. With the strain
-   * e + u_s the body goes another distance. This is done three times, with the residual of the corrected motion. The
-   * error is the change of the displacement by all corrections, and a twentieth more for the grid, plus three times the
-   * change by the last one for what follows.
+   * e + u_s the body travels another distance. Three corrections are made, each with the residual of the corrected
+   * motion. The error is the change of the displacement by all corrections, and a twentieth more for the grid, plus
+   * three times the change by the last one for the omitted ones.
    *
-   * This one is for the optimal wave; @p scene is in natural units.
+   * Version for the optimal wave; @p scene is in natural units.
    */
   ModelErrors
   estimate_model_errors(const Scene &scene, const NaturalWave &wave);
 
-  /// The same for an active stress that is taken for that of a stiff body, e = -m/k. The grid is doubled until the
-  /// estimate does not change by more than a tenth.
+  /// Version for an active stress whose strain is taken as that of a stiff body, e = -m/k. The grid is doubled until
+  /// the estimate changes by less than a tenth.
   ModelErrors
   estimate_model_errors(const Scene &scene, const StiffStrain &strain);
 } // namespace crawler

@@ -9,7 +9,7 @@
 namespace crawler
 {
   /**
-   * The level "perturbation": the optimal wave to leading order in chi, in closed form (doc/theory.md, "The model
+   * Level "perturbation": the optimal wave to leading order in chi, in closed form (doc/theory.md, "The model
    * hierarchy"; Santhosh and Serra @cite SanthoshSerra2022). In natural units, with A_n^2 = a_n^2 + b_n^2 of the
    * strain:
    *
@@ -24,23 +24,23 @@ namespace crawler
     {
     }
 
-    /// Of the centre of mass, of order chi^2.
+    /// Displacement of the centre of mass, of order chi^2.
     double
     displacement(double t) const;
 
-    /// Its derivative.
+    /// Velocity: its derivative.
     double
     velocity(double t) const;
 
-    /// The leading order of each; what the actuator spends without what it gets back is not known.
+    /// Energies to leading order; the positive work of the actuator is not known.
     EnergyBalance
     energies(double t) const;
 
-    /// The fields to order chi at @p points, moved along with the centre of mass.
+    /// Fields to order chi at @p points, moved along with the centre of mass.
     ReducedFields
     fields(double t, const std::vector<double> &points) const;
 
-    /// Over the whole run.
+    /// Extremes over the whole run.
     StrainExtremes
     extremes() const;
 

@@ -5,7 +5,7 @@
 
 namespace crawler
 {
-  /// The fields of a level that needs no mesh, at a list of points and one time, in natural units (scene.h).
+  /// Fields of a level without a mesh, at a list of points and one time, in natural units (scene.h).
   struct ReducedFields
   {
     std::vector<double> displacement; ///< zeta - s

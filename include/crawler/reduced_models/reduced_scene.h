@@ -9,7 +9,7 @@
 
 namespace crawler
 {
-  /// A scene as the levels without a mesh see it, in natural units: which of them fit, and with what strain.
+  /// Scene as seen by the levels without a mesh, in natural units: which of them fit, and with what strain.
   class ReducedScene
   {
   public:
@@ -22,37 +22,37 @@ namespace crawler
     {
       return units_;
     }
-    /// In natural units.
+    /// Scene in natural units.
     const Scene &
     scene() const
     {
       return scene_;
     }
 
-    /// The optimal wave; nothing for other active stresses. The perturbation level needs it.
+    /// Optimal wave; nothing for other active stresses. The perturbation level needs it.
     const std::optional<NaturalWave> &
     wave() const
     {
       return wave_;
     }
 
-    /// The strain of the kinematic level: the prescribed one, that of the optimal wave to leading order, or that of a
-    /// stiff body, -m/k. Null if the rate of the active stress is not known, or the stress jumps, so that the level
-    /// does not fit.
+    /// Strain of the kinematic level: the prescribed one, that of the optimal wave to leading order, or that of a stiff
+    /// body, -m/k. Null if the rate of the active stress is not known, or the stress jumps, so that the level does not
+    /// fit.
     const StrainHistory *
     strain() const
     {
       return strain_;
     }
 
-    /// Whether that strain is the body's by definition.
+    /// True if that strain is the body's by definition.
     bool
     is_prescribed() const
     {
       return scene_.active_stress->prescribed_strain() != nullptr;
     }
 
-    /// Of the approximate strain.
+    /// Model errors with the approximate strain.
     ModelErrors
     model_errors() const;
 

@@ -9,10 +9,10 @@
 
 namespace crawler
 {
-  /// The optimal wave in natural units (L = T = gamma = 1), where a few numbers are left of it.
+  /// Optimal wave in natural units (L = T = gamma = 1), which leave a few numbers of it.
   struct NaturalWave
   {
-    /// n = 1, 2, ...; those of amplitude 0 are left out.
+    /// Harmonic n = 1, 2, ...; those of amplitude 0 are left out.
     struct Harmonic
     {
       double q;    ///< 2 pi n
@@ -24,17 +24,17 @@ namespace crawler
     double stiffness;         ///< k T/(gamma L^2)
     std::vector<Harmonic> harmonics;
 
-    /// The largest n.
+    /// Largest n.
     unsigned int
     n_waves() const;
   };
 
-  /// Of a scene in the user's units, whose active stress is @p wave.
+  /// Optimal wave @p wave of a scene in the user's units.
   NaturalWave
   natural_wave(const Scene &scene, const OptimalWave &wave);
 
-  /// The strain of the optimal wave to leading order in chi (theory.md, section 3), in natural units:
-  /// e = sum a (sin q(s+ct) - sin q s) + b (cos q(s+ct) - cos q s).
+  /// Strain of the optimal wave to leading order in chi (theory.md, section 3), in natural units: e = sum a (sin
+  /// q(s+ct) - sin q s) + b (cos q(s+ct) - cos q s).
   class LeadingOrderStrain : public StrainHistory
   {
   public:
@@ -52,11 +52,11 @@ namespace crawler
     const NaturalWave wave_;
   };
 
-  /// The strain of a body that is so stiff that its elastic force balances the active stress at any time: e = -m/k.
+  /// Strain of a body so stiff that its elastic force balances the active stress at any time: e = -m/k.
   class StiffStrain : public StrainHistory
   {
   public:
-    /// @p scene must outlive it, and its active stress know its rate.
+    /// @p scene must outlive it, and its active stress must know its rate.
     explicit StiffStrain(const Scene &scene)
       : scene_(scene)
     {

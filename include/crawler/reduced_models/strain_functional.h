@@ -10,7 +10,7 @@
 
 namespace crawler
 {
-  /// A strain and its rate, or weights of them, on a grid: [time][point].
+  /// Strain and its rate, or weights of them, on a grid: [time][point].
   struct StrainSamples
   {
     std::vector<double> strain, rate;
@@ -24,9 +24,9 @@ namespace crawler
   };
 
   /**
-   * Displacement and works of a body with a given strain (KinematicBody) by quadrature on a grid that stays as it is,
-   * and their derivatives by the strain: what gaits are optimised with. In natural units. With the weights a, b of a
-   * number a strain e + x changes it by sum a x + b x_t to first order, exactly for this quadrature: from
+   * Displacement and works of a body with a given strain (KinematicBody) by quadrature on a fixed grid, and their
+   * derivatives by the strain, for the optimisation of gaits. In natural units. With the weights a, b of a number a
+   * strain e + x changes it by sum a x + b x_t to first order, exactly for this quadrature: from
    *
    *   d<v> = <(1 - g/<g>) dB_t> - <g' v de>/<g>,   dQ = <g' v^2 de> + 2 <g v dB_t>,   B_t = int_0^s e_t ds,
    *
@@ -35,7 +35,7 @@ namespace crawler
   class StrainFunctional
   {
   public:
-    /// What is computed, over 0 <= t <= 1.
+    /// Numbers computed, over 0 <= t <= 1.
     enum Number
     {
       displacement,
@@ -49,7 +49,7 @@ namespace crawler
 
     StrainFunctional(unsigned int n_space_panels, unsigned int n_time_panels);
 
-    /// Times and points of the grid: those of the quadrature, and both ends.
+    /// Places and times of the grid: those of the quadrature, and both ends.
     const std::vector<double> &
     points() const
     {
@@ -64,11 +64,11 @@ namespace crawler
     StrainSamples
     sample(const StrainHistory &history) const;
 
-    /// Nothing if a stretch is not positive. @p body: at points().
+    /// Values for a strain; nothing if a stretch is not positive. @p body: at points().
     std::optional<Values>
     values(const StrainSamples &samples, const BodyAtPoints &body) const;
 
-    /// The weights of one number.
+    /// Weights of one number.
     StrainSamples
     weights(Number number, const StrainSamples &samples, const BodyAtPoints &body) const;
 

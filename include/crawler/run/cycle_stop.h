@@ -10,22 +10,22 @@
 
 namespace crawler
 {
-  /// A run that ended early because its cycles repeat; the others are extrapolated.
+  /// Cycles of a run that ended early because they repeat; the missing ones are extrapolated.
   struct Cycles
   {
     double period; ///< [time]
     unsigned int computed, extrapolated;
-    double bound; ///< of the error of the displacement that comes from the extrapolation [length]
+    double bound; ///< error bound of the displacement for the extrapolation [length]
   };
 
-  /// The wish to end a run when its cycles repeat.
+  /// Request to end a run when its cycles repeat.
   struct CycleWish
   {
-    double period;    ///< of the active stress [time]
-    double accuracy;  ///< of the displacement, relative; the bound takes a fifth of it at most
-    double from = 0.; ///< when the active stress begins to repeat [time]
+    double period;    ///< period of the active stress [time]
+    double accuracy;  ///< relative accuracy of the displacement; the bound takes a fifth of it at most
+    double from = 0.; ///< time at which the active stress begins to repeat [time]
 
-    /// With times in this unit.
+    /// Returns the request with times in this unit.
     CycleWish
     in_units(const double time) const
     {
@@ -36,61 +36,60 @@ namespace crawler
   struct RunParameters;
   struct Scene;
 
-  /// What the entry Time/Cycle stop means for a run with so many output times; nothing if it shall not end early or if
-  /// the active stress has no period of which there are enough.
+  /// Request that the entry Time/Cycle stop makes for a run; nothing if the run shall not end early or if the active
+  /// stress has no period or too few of them.
   std::optional<CycleWish>
   cycle_wish(const RunParameters &parameters, const Scene &scene, bool has_pictures);
 
   /**
    * Watches a run with periodic actuation, from rest over (0, 1], and says when a cycle repeats the one before it
-   * (doc/numerics.md, "Cycle stop"). Cycles end at 1 - j P with whole numbers j, so none of those that are extrapolated
-   * is a part of one. Each is compared with the one before it at n_phases equally spaced phases, in the mean stretches
-   * of n_pieces equal pieces of the body. All lengths are in units of the body's.
+   * (doc/numerics.md, "Cycle stop"). Cycles end at 1 - j P with whole numbers j, so only whole cycles are extrapolated.
+   * Each is compared with the one before it at n_phases equally spaced phases, in the mean stretches of n_pieces equal
+   * pieces of the body. All lengths are in units of the body's.
    */
   class CycleStop
   {
   public:
     static constexpr unsigned int n_phases = 8, n_pieces = 64;
 
-    /// Fewer cycles are not worth the trouble: two must be computed before one can repeat.
+    /// Least number of cycles worth watching: two must be computed before one can repeat.
     static constexpr unsigned int fewest_cycles = 3;
 
-    /// @p wish: its times are in units of the duration. @p tolerance: of the time integration.
+    /// @p wish has its times in units of the duration; @p tolerance is that of the time integration.
     CycleStop(const CycleWish &wish, double tolerance);
 
-    /// Does the duration, which is the unit of times, hold fewest_cycles?
+    /// True if the duration, which is the unit of times, holds fewest_cycles.
     static bool
     fits(const CycleWish &wish);
 
-    /// When cycles end, where steps have to end, too; ascending, in (0, 1). Not all cycles of a long run are watched.
+    /// Ends of cycles, where steps must end, too; ascending, in (0, 1). Not all cycles of a long run are watched.
     const std::vector<double> &
     ends() const
     {
       return end_times_;
     }
 
-    /// When the next state is wanted, infinite if none is; is it one of ends()? States between these may be dense
-    /// output.
+    /// Time at which the next state is wanted, infinite if none is. States between those at ends() may be dense output.
     double
     next_time() const;
     bool
     next_is_end() const;
 
-    /// Sees that state: @p u is the displacement at the ends of all pieces, @p displacement its
-    /// mean, @p energy balance may be null. @p decay is k/(g L^2) with the largest friction g of the run. Returns true
-    /// if the run may end here.
+    /// Observes that state: @p u is the displacement at the ends of all pieces, @p displacement its mean, @p energy
+    /// balance may be null. @p decay is k/(g L^2) with the largest friction g of the run. Returns true if the run may
+    /// end here.
     bool
     observe(std::span<const double> u, double displacement, const EnergyBalance *energy_balance, double decay);
 
-    /// Has observe() said so?
+    /// True if observe() has said so.
     bool
     repeats() const
     {
       return repeats_;
     }
 
-    /// From the state at which the run ended to its end: displacement and, if it is not null, the energy balance. The
-    /// period is in units of the duration.
+    /// Extrapolates displacement and, if it is not null, the energy balance from the state at which the run ended to
+    /// its end. The period is in units of the duration.
     Cycles
     extrapolate(double &displacement, EnergyBalance *energy_balance) const;
 
@@ -98,7 +97,7 @@ namespace crawler
     exchange(Archive &archive);
 
   private:
-    /// At the end of a cycle.
+    /// State at the end of a cycle.
     struct End
     {
       double displacement          = 0.;
@@ -116,16 +115,16 @@ namespace crawler
 
     const CycleWish wish_;
     const double tolerance_;
-    unsigned int n_cycles_ = 0;     ///< whole ones
-    double start_          = 0.;    ///< of the first cycle
-    bool from_rest_        = false; ///< it starts with the run
+    unsigned int n_cycles_ = 0;     ///< whole cycles
+    double start_          = 0.;    ///< start of the first cycle
+    bool from_rest_        = false; ///< the first cycle starts with the run
     std::vector<double> end_times_;
     bool repeats_ = false;
     double bound_ = 0.;
 
-    std::deque<std::vector<double>> stretches_; ///< of the pieces, over the last cycle
-    /// Of each state: root mean square over the body of the strain, of its change since a cycle before, and the largest
-    /// such change. The changes of the first cycle are not known.
+    std::deque<std::vector<double>> stretches_; ///< stretches of the pieces, over the last cycle
+    /// Root mean squares over the body of the strain and of its change since a cycle before, and the largest such
+    /// change, of each state. The changes of the first cycle are not known.
     std::vector<double> strains_, changes_, largest_changes_;
     std::vector<End> ends_;   ///< the start of the first cycle, and the ends of all
     double largest_u_   = 0.; ///< root mean square over the body, largest over time

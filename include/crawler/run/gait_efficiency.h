@@ -9,34 +9,34 @@
 namespace crawler
 {
   /**
-   * The part of the largest displacement that any gait with these extreme stretches and this work can reach, at most 1:
-   * D/(F sqrt(W T/L)), F = 1/sqrt(g_min) - 1/sqrt(g_max) with the least and the largest friction per velocity between
-   * these stretches (doc/theory.md, "Gait efficiency"). W is energy_of_bound(). Nothing if there is no such bound,
-   * since the friction depends on the place or the direction, or if it is not defined: no work, no strain or no
+   * Part of the largest displacement that any gait with these extreme stretches and this work can reach, at most 1:
+   * D/(F sqrt(W T/L)), F = 1/sqrt(g_min) - 1/sqrt(g_max) with the smallest and the largest friction per velocity
+   * between these stretches (doc/theory.md, "Gait efficiency"). W is energy_of_bound(). Nothing if no such bound
+   * exists, since the friction depends on the place or the direction, or if it is not defined: no work, no strain or no
    * resistance that depends on it.
    */
   std::optional<double>
   gait_efficiency(const Scene &scene, const SimulationResult &result);
 
-  /// The same of the last stride alone, with its dissipation: a gait that repeats gives back the elastic energy that
+  /// Efficiency of the last stride alone, with its dissipation: a gait that repeats gives back the elastic energy that
   /// its start took. Nothing if there is no stride.
   std::optional<double>
   stride_efficiency(const Scene &scene, const SimulationResult &result);
 
-  /// The error of both, relative, that the jumps of the extreme stretches make (Extreme::jump).
+  /// Relative error of both that the jumps of the extreme stretches make (Extreme::jump).
   double
   error_of_efficiencies(const Scene &scene, const SimulationResult &result);
 
-  /// Sets both in the result of a run that finished.
+  /// Sets both efficiencies in the result of a run that finished.
   void
   set_efficiencies(const Scene &scene, SimulationResult &result);
 
-  /// The energy that the bound needs [energy]: the work of the active stress if the body starts unstretched, else the
-  /// dissipation, which that work is not sure to exceed.
+  /// Energy in the bound [energy]: the work of the active stress if the body starts unstretched, else the dissipation,
+  /// which that work may not exceed.
   double
   energy_of_bound(const EnergyBalance &balance);
 
-  /// Does the body start unstretched?
+  /// True if the body starts unstretched.
   bool
   starts_from_rest(const EnergyBalance &balance);
 } // namespace crawler

@@ -9,7 +9,7 @@
 namespace crawler
 {
   /**
-   * The extreme stretches that the fused engine has seen in the stages of a step, of the position form: the same as
+   * Extreme stretches that the fused engine has seen in the stages of a step, of the position form, as by
    * Assembler::stretch_range(). Natural units.
    */
   class LaneExtremes
@@ -26,16 +26,17 @@ namespace crawler
     {
     }
 
-    /// Of stage @p i of @p step. If a sample may be a new extreme beyond @p least and @p most, the parabola through its
-    /// neighbours in the cell comes closer. At @p breaks, in lengths of the body, the stretch may jump.
+    /// Range of the stretch in stage @p i of @p step. If a sample may be a new extreme beyond @p least and @p most, the
+    /// parabola through its neighbours in the cell comes closer. At @p breaks, in lengths of the body, the stretch may
+    /// jump.
     Range
     look(const LaneStep &step, unsigned int i, double least, double most, const std::vector<double> &breaks) const;
 
   private:
-    /// At a sample of a cell.
+    /// Stretch at a sample of a cell.
     double
     stretch_at(const LaneStep &step, unsigned int i, unsigned int cell, unsigned int place) const;
-    /// The largest of the jumps at the ends of a cell that are no breaks.
+    /// Largest of the jumps at the ends of a cell that are no breaks.
     double
     jump_at(const LaneStep &step, unsigned int i, unsigned int cell, const std::vector<double> &breaks) const;
     void

@@ -8,8 +8,8 @@
 
 namespace crawler
 {
-  /// The displacement of a body in a lane of the fused engine at the ends of equal pieces of it, at any time within a
-  /// step (the collocation polynomial of the stages); natural units.
+  /// Displacement of a body in a lane of the fused engine at the ends of equal pieces, at any time within a step (the
+  /// collocation polynomial of the stages); natural units.
   class LaneSampler
   {
   public:
@@ -20,7 +20,7 @@ namespace crawler
     void
     sample(const LaneStep &step, double time);
 
-    /// [n_pieces + 1] of the last sample.
+    /// Displacements [n_pieces + 1] of the last sample.
     std::span<const double>
     displacement() const
     {
@@ -34,7 +34,7 @@ namespace crawler
 
   private:
     const LaneSetup &setup_;
-    std::vector<unsigned int> cells_; ///< [n_pieces + 1] in which the ends are
+    std::vector<unsigned int> cells_; ///< [n_pieces + 1] cells that hold the ends
     std::vector<double> shape_;       ///< [degree + 1][n_pieces + 1] shape functions there
     std::vector<double> integral_;    ///< [unknowns] of each shape function
     std::vector<double> u_, at_ends_;

@@ -12,7 +12,7 @@ namespace crawler
   {
     static constexpr std::size_t n = 17;
 
-    /// In the order of entries_with_errors() (result_table.h).
+    /// Bounds in the order of entries_with_errors() (result_table.h).
     std::array<double, n> values;
 
     NumberErrors()

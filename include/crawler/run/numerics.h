@@ -12,23 +12,23 @@
 
 namespace crawler
 {
-  /// The numerical settings of one simulation; numerics_choice.h chooses those that the user leaves open.
+  /// Numerical settings of one simulation; numerics_choice.h chooses those that the user leaves open.
   struct Numerics
   {
     unsigned int degree                = 0;
-    unsigned int n_cells               = 0;  ///< of the first mesh
+    unsigned int n_cells               = 0;  ///< number of cells of the first mesh
     double tolerance                   = 0.; ///< [length]
     double initial_step                = 0.; ///< [time]
-    std::vector<StepLimit> step_limits = {}; ///< of adaptive steps [time]
-    double least_event = 0.; ///< an event of the active stress within a step, if it is this large, is stepped over
-                             ///< again [force]; 0: not looked for
+    std::vector<StepLimit> step_limits = {}; ///< limits of adaptive steps [time]
+    double least_event = 0.; ///< size [force] from which on an event of the active stress within a step makes it be
+                             ///< repeated; 0: events are not looked for
     Formulation formulation = Formulation::position;
-    MeshLimits mesh         = {};    ///< of an adaptive mesh
-    std::string integrator  = "";    ///< what an automatic integrator is (time/integrators.h); empty: bdf
-    Grading grading         = {};    ///< of the first mesh, which has n_cells cells without it
-    double layer            = 0.;    ///< of the stretch form: see layered_cell_ends() [length]; 0: none
-    unsigned int parts      = 1;     ///< of the stretch form, into which each of n_cells is divided
-    bool other_rule         = false; ///< of the stretch form, see stretch_method()
+    MeshLimits mesh         = {};    ///< limits of an adaptive mesh
+    std::string integrator  = "";    ///< integrator that replaces an automatic one (time/integrators.h); empty: bdf
+    Grading grading         = {};    ///< grading of the first mesh, which has n_cells cells without it
+    double layer            = 0.;    ///< size of layers in the stretch form, see layered_cell_ends() [length]; 0: none
+    unsigned int parts      = 1;     ///< cells of the stretch form into which each of n_cells is divided
+    bool other_rule         = false; ///< stretch form with the other rule, see stretch_method()
     bool jumps_move         = false; ///< the active stress jumps at places that move through the cells
 
     void
@@ -39,11 +39,11 @@ namespace crawler
     }
   };
 
-  /// In natural units.
+  /// Converts numerics to natural units.
   Numerics
   in_units(Numerics numerics, const Units &units);
 
-  /// The ends of the cells of the first mesh, for a body of length 1: at the breaks in space, and graded as wished.
+  /// Ends of the cells of the first mesh, for a body of length 1: at the breaks in space, and graded as requested.
   /// Empty if they are n_cells of one size.
   std::vector<double>
   first_cell_ends(const Scene &scene, const Numerics &numerics);

@@ -7,11 +7,11 @@
 
 namespace crawler
 {
-  /// Where the steps of a run must end, and the pictures that it passes. Times are in units of the duration.
+  /// Required ends of steps of a run, and the pictures that it passes. Times are in units of the duration.
   class OutputTimes
   {
   public:
-    /// @p needed: ascending, in (0, 1). @p is_dense: the integrator knows the state at any time within a step as well
+    /// @p needed is ascending, in (0, 1). @p is_dense: the integrator knows the state at any time within a step as well
     /// as at its ends, so steps need not end at snapshots.
     OutputTimes(PictureTimes pictures, std::vector<double> needed, bool is_dense);
 
@@ -19,10 +19,10 @@ namespace crawler
     std::vector<double>
     of_segment(const TimeSegments &segments, double time) const;
 
-    /// Of the next picture; infinite if there is none.
+    /// Time of the next picture; infinite if there is none.
     double
     next() const;
-    /// The next picture, which must be there.
+    /// Next picture, which must exist.
     const PictureTimes::Time &
     picture() const
     {
@@ -33,7 +33,7 @@ namespace crawler
     {
       ++next_;
     }
-    /// The last picture that was passed, if it is of this time.
+    /// Last picture that was passed, if it is of this time.
     const PictureTimes::Time *
     passed_at(double time) const;
 
@@ -43,7 +43,7 @@ namespace crawler
       archive(next_);
     }
 
-    /// Are two times one?
+    /// True if two times are the same.
     static bool
     is_same(const double a, const double b)
     {

@@ -19,7 +19,7 @@ namespace crawler
 
   struct Scene;
 
-  /// Of the last stride (SimulationResult::gait): none, if the active stress says how long it is, or in any case.
+  /// Request for the last stride (SimulationResult::gait): none, if the active stress declares its period, or always.
   enum class GaitWish
   {
     none,
@@ -27,7 +27,7 @@ namespace crawler
     any
   };
 
-  /// What is looked at for the choice of the numerics.
+  /// Request for the numbers that the choice of the numerics needs.
   enum class ResolutionWish
   {
     none,
@@ -35,7 +35,7 @@ namespace crawler
     all   ///< and SimulationResult::unresolved, strain and largest_indicator, which cost as much as a short step
   };
 
-  /// What is computed at each accepted step besides the state.
+  /// Options: numbers computed at each accepted step besides the state.
   struct RecordOptions
   {
     bool energy_balance             = false; ///< works, energies, net friction
@@ -46,32 +46,32 @@ namespace crawler
   };
 
   /**
-   * What the accepted steps of one run give, whoever makes them (Simulation, batches of the lanes, reduced models):
+   * Records one run from its accepted steps, whoever makes them (Simulation, batches of the lanes, reduced models):
    * extremes of the stretch, works, friction, the last stride, and the end of a run whose cycles repeat. Everything is
    * in natural units until finish().
    */
   class Recorder
   {
   public:
-    /// The body is looked at at the ends of so many equal pieces of it.
+    /// Number of equal pieces of the body at whose ends it is sampled.
     static constexpr unsigned int n_pieces = GaitMeter::n_pieces;
     static_assert(n_pieces == CycleStop::n_pieces);
 
-    /// The displacement at the ends of all pieces, and its mean over the body, [n_pieces + 1] and 1.
+    /// Displacement at the ends of all pieces, and its mean over the body, [n_pieces + 1] and 1.
     struct BodySample
     {
       std::span<const double> u;
       double displacement;
     };
-    /// The body at a time of the step that has just been accepted.
+    /// Samples the body at a time of the step that has just been accepted.
     using Sampler = std::function<BodySample(double time)>;
 
     /// @p scene is in the @p units of the user, and must outlive this; @p tolerance is that of the time integration in
-    /// natural units. A gait whose period is not declared is looked for only if @p may_search.
+    /// natural units. A gait whose period is not declared is searched only if @p may_search.
     Recorder(const Scene &scene, const Units &units, const RecordOptions &options, double tolerance, bool may_search);
 
-    /// The mesh is one of high order with cells no smaller than this, in natural units: what it shows of thin layers
-    /// does not count. Not called otherwise.
+    /// Tells that the mesh is of high order with cells no smaller than this, in natural units: its values in thin
+    /// layers do not count. Not called otherwise.
     void
     set_smallest_cell(double size);
 
@@ -79,28 +79,28 @@ namespace crawler
     std::vector<double>
     step_ends() const;
 
-    /// When the body is wanted next, infinite if it is not wanted any more.
+    /// Time of the next sample of the body, infinite if there is none.
     double
     next_sample() const;
 
-    // In the order in which a step gives them:
+    // Observations, in the order in which a step makes them:
 
-    /// The extreme stretches of a state within or at the end of the step; the first call starts the run.
+    /// Observes the extreme stretches of a state within or at the end of the step; the first call starts the run.
     void
     see_stretch(Extreme smallest, Extreme largest);
-    /// int |g v| ds, and |int g v ds| where the velocity balances all forces.
+    /// Observes int |g v| ds, and |int g v ds| where the velocity balances all forces.
     void
     see_friction(double sum_of_sizes, double size_of_sum);
-    /// The end of the step, with the extreme stretches there; @p is_step_end: it is an output time or one of
+    /// Observes the end of the step, with the extreme stretches there; @p is_step_end: it is an output time or one of
     /// step_ends(). Returns true if the run may end here, since its cycles repeat.
     bool
     see_step(double time, bool is_step_end, double smallest, double largest, const Sampler &sample);
 
-    /// The active stress jumps: what follows does not go on smoothly.
+    /// Notes a jump of the active stress: the solution does not continue smoothly.
     void
     interrupt();
 
-    /// The smallest stretch before the last one that was seen.
+    /// Smallest stretch before the last one that was seen.
     const Extreme &
     smallest_before_last() const
     {
@@ -112,16 +112,16 @@ namespace crawler
       return cycle_stop_ && cycle_stop_->repeats();
     }
 
-    /// The result in the user's units, of a run that has ended as result.time says; that of the end time if its cycles
-    /// repeat. The last call.
+    /// Result in the user's units, of a run that has ended as result.time says; that of the end time if its cycles
+    /// repeat. Must be the last call.
     SimulationResult
     finish();
 
-    /// The state between two steps.
+    /// Exchanges the state between two steps.
     void
     exchange(Archive &archive);
 
-    SimulationResult result; ///< whoever runs adds what only it knows
+    SimulationResult result; ///< result, to which the caller adds what only it knows
 
   private:
     void
@@ -138,7 +138,7 @@ namespace crawler
     std::optional<SuddenChanges> sudden_changes_;
     ExtremeHistory smallest_{ExtremeHistory::smallest}, largest_{ExtremeHistory::largest};
     bool started_            = false;
-    bool were_known_         = false;                          ///< the extremes that were seen last, by sudden_changes_
+    bool were_known_         = false;                          ///< sudden_changes_ knew the extremes seen last
     double largest_friction_ = 0., largest_net_friction_ = 0.; ///< over time
   };
 } // namespace crawler

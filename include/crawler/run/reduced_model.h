@@ -13,7 +13,7 @@
 
 namespace crawler
 {
-  /// Computes a scene on a level that needs neither mesh nor time stepper: perturbation or kinematic.
+  /// Model level that needs neither mesh nor time stepper: perturbation or kinematic.
   class ReducedModel
   {
   public:
@@ -21,14 +21,14 @@ namespace crawler
     ReducedModel(const Scene &scene, Model model);
 
     /**
-     * What the level gives, in the user's units. If the error is not known, or larger than @p accuracy times the
-     * displacement (and 1e-12 of the length), the status is "failed" with the reason accuracy_not_met; if the strain
-     * that the level assumes inverts the body it is "inverted". @p keep_going is asked now and then.
+     * Computes the result of the level, in the user's units. If the error is not known, or larger than @p accuracy
+     * times the displacement (and 1e-12 of the length), the status is "failed" with the reason accuracy_not_met; if the
+     * strain that the level assumes inverts the body it is "inverted". @p keep_going is asked now and then.
      */
     SimulationResult
     compute(double accuracy, bool energy_balance, const std::function<bool()> &keep_going = {});
 
-    /// The state at one time, in natural units.
+    /// State at one time, in natural units.
     struct State
     {
       double displacement = 0., velocity = 0., net_friction = std::numeric_limits<double>::quiet_NaN();
@@ -38,15 +38,15 @@ namespace crawler
     };
 
     /**
-     * After compute(): calls @p see with the states at @p times (increasing, from 0 to 1), with fields at @p points.
-     * It ends early if @p see returns false.
+     * Calls @p see, after compute(), with the states at @p times (increasing, from 0 to 1), with fields at @p points.
+     * Ends early if @p see returns false.
      */
     void
     replay(const std::vector<double> &times,
            const std::vector<double> &points,
            const std::function<bool(double time, const State &state)> &see) const;
 
-    /// After compute(): its @p result gets the last stride, if it finished and the active stress declares its period.
+    /// Adds the last stride to the @p result of compute(), if it finished and the active stress declares its period.
     void
     describe_gait(SimulationResult &result) const;
 
@@ -56,7 +56,7 @@ namespace crawler
       return reduced_scene_;
     }
 
-    /// What was computed, in a sentence.
+    /// Description of the computation, in a sentence.
     std::string
     description() const;
 
@@ -71,7 +71,7 @@ namespace crawler
     const Scene &scene_; ///< in the user's units
     const ReducedScene reduced_scene_;
     const Model model_;
-    unsigned int n_space_panels_ = 0; ///< of the kinematic level
-    std::vector<double> time_panels_; ///< of the kinematic level: where they begin and end
+    unsigned int n_space_panels_ = 0; ///< number of panels of the kinematic level
+    std::vector<double> time_panels_; ///< ends of the panels in time of the kinematic level
   };
 } // namespace crawler

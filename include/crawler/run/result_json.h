@@ -7,12 +7,12 @@
 
 namespace crawler
 {
-  /// What summary.json says of a result but for the process that made it (ranks, versions, command line): keys are a
-  /// contract (doc/user_guide.md). What is not known is null or not a number, which is written as null.
+  /// Contents of summary.json for a result without the process that made it (ranks, versions, command line): keys are a
+  /// contract (doc/user_guide.md). Unknown values are null or not a number, which is written as null.
   nlohmann::ordered_json
   summary_of(const SimulationResult &result);
 
-  /// Of the numbers and words of a result: {key, unit, meaning}.
+  /// Entries {key, unit, meaning} of the numbers and words of a result.
   nlohmann::ordered_json
   result_entries();
 } // namespace crawler

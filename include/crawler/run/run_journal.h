@@ -13,29 +13,29 @@
 namespace crawler
 {
   /**
-   * What is known of the runs that make an answer, one after the other: results of those that have ended, and the state
-   * of the one that goes on. An answer is made in the same way each time, so a later process takes its runs from here
-   * until it comes to the one that was broken off, and goes on within it. Every rank has one; one of them writes.
+   * Journal of the runs that make an answer, one after the other: results of those that have ended, and the state of
+   * the present one. An answer is made in the same way each time, so a later process takes its runs from here until it
+   * comes to the one that was interrupted, and continues it. Every rank has one; one of them writes.
    */
   class RunJournal
   {
   public:
-    using Write = std::function<bool(const std::string &bytes)>; ///< false: it could not be kept yet
+    using Write = std::function<bool(const std::string &bytes)>; ///< returns false if the bytes could not be kept yet
 
-    /// @p write keeps all that is known; it is called after each @p interval [s] of wall time, and at stop(). Empty: of
-    /// a rank that writes nothing.
+    /// @p write keeps the bytes of the journal; it is called after each @p interval [s] of wall time, and at stop().
+    /// Empty on a rank that writes nothing.
     RunJournal(double interval, Write write);
 
-    /// Goes on with what was written. Throws FileError if that was not by this program.
+    /// Continues from what was written. Throws FileError if that was not by this program.
     void
     load(std::string bytes);
 
-    /// The next run begins, with all that decides on it as bytes: its result, if it is known. If another run was here
-    /// before, what was known of this one and those after it is forgotten.
+    /// Begins the next run, identified by all inputs that decide on it as bytes: returns its result, if it is known. If
+    /// another run was here before, its entry and all later ones are forgotten.
     std::optional<SimulationResult>
     begin(std::string identity);
 
-    /// The state in which the run that has begun was left; null if it starts.
+    /// State in which the present run was left; null if it starts.
     const std::string *
     state() const
     {
@@ -48,30 +48,30 @@ namespace crawler
       return write_ && !is_closed_;
     }
 
-    /// Is it time for a state?
+    /// True if a state is due.
     bool
     is_due() const;
 
-    /// The state of the run that has begun; written at once.
+    /// Keeps the state of the present run; written at once.
     void
     keep(std::string state);
 
-    /// The end of the run that has begun.
+    /// Ends the present run.
     void
     end(const SimulationResult &result);
 
-    /// Writes what is known, without a state.
+    /// Writes the journal, without a state.
     void
     write();
 
-    /// Nothing is written any more: the runs are being stopped.
+    /// Stops writing: the runs are being stopped.
     void
     close()
     {
       is_closed_ = true;
     }
 
-    /// Has anything been written by this process or by one before?
+    /// True if this process or one before has written anything.
     bool
     was_written() const
     {
@@ -90,16 +90,16 @@ namespace crawler
 
     const double interval_;
     const Write write_;
-    double begin_, last_, cost_ = 0.; ///< of the latest write [s]
+    double begin_, last_, cost_ = 0.; ///< cost of the latest write [s]
     std::vector<Entry> ended_;
     std::size_t n_begun_ = 0; ///< runs of this process
-    std::string identity_;    ///< of the run that goes on
+    std::string identity_;    ///< of the present run
     std::optional<std::string> state_;
     bool is_closed_ = false, was_written_ = false;
   };
 
-  /// Asked after every step whether a run may go on; with a journal, if there is one. Without a question the answer is
-  /// always yes.
+  /// Question asked after every step, whether a run may go on; with a journal, if there is one. Without a question the
+  /// answer is always yes.
   class KeepGoing
   {
   public:

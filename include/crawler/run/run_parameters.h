@@ -15,7 +15,7 @@ namespace crawler
   class Declarations;
   class ParameterFile;
 
-  /// What the parameter file says of one run, in file order.
+  /// Entries of the parameter file for one run, in file order.
   struct RunParameters
   {
     Model model         = Model::nonlinear;
@@ -28,14 +28,15 @@ namespace crawler
     TimeParameters time;
     OutputParameters output;
 
-    /// Makes as many terms of a sum as @p file has; before add_parameters(). Throws InputError if a number is left out.
+    /// Makes as many terms of a sum as @p file has; to be called before add_parameters(). Throws InputError if a number
+    /// is left out.
     void
     count_terms(const ParameterFile &file);
 
     void
     add_parameters(Declarations &declarations);
 
-    /// The physical problem. Throws InputError if entries do not fit together.
+    /// Creates the physical problem. Throws InputError if entries do not fit together.
     Scene
     create_scene() const;
   };

@@ -25,9 +25,9 @@
 namespace crawler
 {
   /**
-   * One crawler: builds mesh, equation and time integration in this order, connects them, and changes the mesh
-   * on the way where that is asked for. It computes in natural units (scene.h); what goes in and comes out
-   * is in the scene's. It can run several times; that reuses everything as long as the mesh did not change.
+   * One crawler: builds mesh, equation and time integration in this order, connects them, and changes the mesh on the
+   * way where requested. Computes in natural units (scene.h); inputs and results are in the scene's. Can run several
+   * times, which reuses everything as long as the mesh did not change.
    */
   class Simulation
   {
@@ -39,16 +39,16 @@ namespace crawler
     Simulation(MPI_Comm communicator, const Scene &scene, const TimeParameters &time, const Numerics &numerics);
     ~Simulation();
 
-    /// Runs from rest. If that is wished it ends when its cycles repeat (cycle_stop.h); the result is that of the end
-    /// time all the same. @p pictures: what observers see besides the ends of steps. @p keep_going is asked after every
-    /// step; what its journal has of the run is not computed again, and the journal gets its states and its result.
+    /// Runs from rest. On request it ends when its cycles repeat (cycle_stop.h); the result is that of the end time all
+    /// the same. @p pictures: what observers see besides the ends of steps. @p keep_going is asked after every step;
+    /// runs in its journal are not computed again, and the journal gets the states and the result of this one.
     SimulationResult
     run(const PictureTimes &pictures,
         const Options &options,
         const Observers &observers  = {},
         const KeepGoing &keep_going = {});
 
-    /// The present mesh, of length 1.
+    /// Present mesh, of length 1.
     const Discretization &
     discretization() const
     {
@@ -61,32 +61,32 @@ namespace crawler
     }
 
   private:
-    /// Why a part of a run ends.
+    /// Reason why a part of a run ends.
     enum class Ending
     {
-      none,    ///< it does not
-      stepper, ///< there is no other step: at the end time, or where the integration failed
+      none,    ///< no end yet
+      stepper, ///< no other step: end time reached, or the integration failed
       lost,    ///< the state must not be used, and the diagnosis says why
-      cycles,  ///< they repeat
+      cycles,  ///< cycles repeat
       stopped, ///< on request
       mesh,    ///< the mesh has to be changed
-      retry,   ///< the active stress did something within the step
+      retry,   ///< the active stress had an event within the step
       jump     ///< the active stress jumps
     };
 
-    /// The equation on the present mesh.
+    /// Equation on the present mesh.
     struct OnMesh
     {
       std::unique_ptr<Discretization> discretization;
       std::unique_ptr<Assembler> assembler;
-      PositionForm *position = nullptr; ///< the assembler, if the form is that
+      PositionForm *position = nullptr; ///< the assembler, if it has this form
       StretchForm *stretch   = nullptr;
       std::unique_ptr<StateVelocity> velocity;
-      std::unique_ptr<EndPower> end_power; ///< once it is needed
+      std::unique_ptr<EndPower> end_power; ///< created once it is needed
       bool is_first = false;               ///< the mesh is that of the start
     };
 
-    /// Who integrates; built when they are needed.
+    /// Time integrators; built when they are needed.
     struct Integrators
     {
       std::unique_ptr<PetscStepper> petsc;
@@ -94,15 +94,15 @@ namespace crawler
       Stepper *present = nullptr; ///< one of them
     };
 
-    /// What a feedback with delay sees.
+    /// Past of the body, for a feedback with delay.
     struct Past
     {
       double delay = 0.; ///< 0: the feedback does not see it
       StretchHistory history;
-      std::shared_ptr<const std::vector<Cell>> cells; ///< of the present mesh
+      std::shared_ptr<const std::vector<Cell>> cells; ///< cells of the present mesh
     };
 
-    /// The last state that was accepted, to which a change of mesh may go back.
+    /// Last accepted state, to which a change of mesh may go back.
     struct Accepted
     {
       std::vector<double> y;
@@ -116,41 +116,41 @@ namespace crawler
       }
     };
 
-    /// Replaces what the time stepper says about the end.
+    /// Diagnosis that replaces the time stepper's account of the end.
     struct Diagnosis
     {
       Status status;
       std::string reason, message;
     };
 
-    /// One run().
+    /// State of one run().
     struct Run
     {
       Options options;
       const Observers &observers;
       const KeepGoing &keep_going;
-      RunJournal *journal; ///< null: there is none
+      RunJournal *journal; ///< null if there is none
       Recorder recorder;
       OutputTimes output_times;
       StepLimiter limiter;
       Accepted accepted = {};
-      StretchRange stretch{};     ///< of the state that is looked at
-      std::vector<double> breaks; ///< in space
+      StretchRange stretch{};     ///< range of the state under examination
+      std::vector<double> breaks; ///< breaks in space
       CellIntegrals integrals{};
-      bool lanes_look              = false; ///< what they see in the stages of steps is taken
+      bool lanes_look              = false; ///< the extremes and rates that they see in the stages of steps are used
       bool lanes_gave_up           = false;
-      RateQuadrature quadrature    = {}; ///< of works
-      EnergyBalance balance_before = {}; ///< at the start of the latest step
-      Resolution largest{};              ///< over time, if looked at
+      RateQuadrature quadrature    = {}; ///< quadrature of works
+      EnergyBalance balance_before = {}; ///< energy balance at the start of the latest step
+      Resolution largest{};              ///< largest over time, if computed
       TimeOutcome before{};              ///< counts of the parts of the run before the last change of mesh
-      Step latest{};                     ///< that was tried, with the counts of the whole run
+      Step latest{};                     ///< last step that was tried, with the counts of the whole run
       std::optional<Diagnosis> diagnosis = {};
       unsigned int tiny_steps            = 0;
       std::vector<CellChange> changes    = {};
-      std::vector<double> indicators     = {};    ///< of all cells, for the present state of an adaptive mesh
-      unsigned long n_failures           = 0;     ///< of the active stress before this run
-      double part_start                  = 0.;    ///< where the present integrator has started
-      bool goes_on                       = false; ///< within a part that was left
+      std::vector<double> indicators     = {};    ///< indicators of all cells of an adaptive mesh, at present
+      unsigned long n_failures           = 0;     ///< failures of the active stress before this run
+      double part_start                  = 0.;    ///< time at which the present integrator has started
+      bool goes_on                       = false; ///< continues within a part that was left
     };
 
     void
@@ -264,7 +264,7 @@ namespace crawler
     keep_state(bool stops, const Step &step);
     SimulationResult
     finish();
-    /// A state that observers see.
+    /// State that observers see.
     struct Shown
     {
       const Step &step; ///< with the time of the state
@@ -273,7 +273,7 @@ namespace crawler
       const StretchRange &stretch;
       const EnergyBalance &energy_balance;
       bool is_step_end;
-      const PictureTimes::Time *picture; ///< null: it is none
+      const PictureTimes::Time *picture; ///< null if the state is none
     };
     void
     show_step(const Step &step, std::span<const double> y);
@@ -305,6 +305,6 @@ namespace crawler
     Past past_;
     std::optional<Run> run_;
     std::vector<double> y_, v_;               ///< the present state and its velocity
-    std::vector<double> y_inside_, v_inside_; ///< of a state within a step
+    std::vector<double> y_inside_, v_inside_; ///< state within a step
   };
 } // namespace crawler

@@ -10,13 +10,13 @@
 
 namespace crawler
 {
-  /// How long the adaptive steps of a run may be: what is foreseen, and less where the active stress did something
-  /// within a step that its ends do not show. Natural units.
+  /// Limits of the adaptive steps of a run: those foreseen, and less where the active stress has events within a step
+  /// that its ends do not show. Natural units.
   class StepLimiter
   {
   public:
-    /// @p limits may be empty; no step is longer than @p longest. An event is what is at least @p least_event [force];
-    /// 0: none is looked for.
+    /// @p limits may be empty; no step is longer than @p longest. Events are changes of at least @p least_event
+    /// [force]; 0: events are not looked for.
     StepLimiter(const std::vector<StepLimit> &limits, double longest, const ActiveStress &stress, double least_event);
 
     std::span<const StepLimit>
@@ -27,11 +27,11 @@ namespace crawler
     double
     longest_step(double t) const;
 
-    /// Did the active stress do something within the step [@p from, @p to]? Then its time is limited to shorter ones.
+    /// True if the active stress had an event within the step [@p from, @p to]; then shorter steps are set there.
     bool
     passed_over_event(double from, double to);
 
-    /// The active stress jumps.
+    /// Restarts after a jump of the active stress.
     void
     restart();
 

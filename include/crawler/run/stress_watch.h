@@ -8,37 +8,37 @@
 
 namespace crawler
 {
-  /// What differs less from what is expected within a step is no event, relative to the largest |m|.
+  /// Smallest deviation within a step from the expected stress that is an event, relative to the largest |m|.
   constexpr double least_event = 0.1;
 
   /**
-   * Looks for events of an active stress that a step has passed over: at times inside of the step that no integrator
-   * can foresee it compares m with the cubic polynomial through its neighbours in time. What is smooth enough for a
-   * step of an integrator hardly differs from that.
+   * Watch for events of an active stress that a step has passed over: at times inside the step that no integrator can
+   * foresee it compares m with the cubic polynomial through its neighbours in time. A stress smooth enough for a step
+   * of an integrator hardly differs from that.
    */
   class StressWatch
   {
   public:
     static constexpr unsigned int n_places = 4, n_inside = 3;
 
-    /// m at places along the body, the ends first, at one time.
+    /// Values of m at places along the body, the ends first, at one time.
     using Values = std::array<double, n_places>;
 
-    /// What differs by less than @p least [force], or than a part of the largest |m| seen, is no event.
+    /// Deviations below @p least [force], or below a part of the largest |m| seen, are no events.
     StressWatch(const ActiveStress &stress, double length, double least);
 
-    /// The active stress jumps: m at the last time says nothing about what follows.
+    /// Restarts after a jump of the active stress: m at the last time does not predict what follows.
     void
     restart()
     {
       end_time_ = -1.;
     }
 
-    /// Is there nothing in the step [@p from, @p to] [time]?
+    /// True if the step [@p from, @p to] [time] has no event.
     bool
     is_calm(double from, double to);
 
-    /// At the times inside of the last step.
+    /// Values at the times inside the last step.
     const std::array<Values, n_inside> &
     inside() const
     {

@@ -6,13 +6,13 @@
 
 namespace crawler
 {
-  /// A wave of stretch along the body, e(s - c t) as far as it is one; what does not change in time is no part of it.
+  /// Wave of stretch along the body, e(s - c t) as far as it is one; the part constant in time is excluded.
   struct StretchWave
   {
-    double speed;     ///< c, positive towards s = L [length/time]; means something only if the wave travels
-    double coherence; ///< 1: all of it travels with this speed; 0: as much goes one way as the other
+    double speed;     ///< c, positive towards s = L [length/time]; meaningful only if the wave travels
+    double coherence; ///< 1: all of it travels with this speed; 0: equal parts travel both ways
 
-    /// Otherwise it is a standing one.
+    /// True for a travelling wave, false for a standing one.
     bool
     travels() const
     {
@@ -21,7 +21,7 @@ namespace crawler
   };
 
   /**
-   * The wave in the samples @p stretch [phase][piece] of one period, equally spaced in time and along the body, an even
+   * Wave in the samples @p stretch [phase][piece] of one period, equally spaced in time and along the body, an even
    * number of pieces. With e the stretch without its mean over time, E_n its Fourier coefficients in time, w = 2 pi/P
    * and q = 1/c a slowness,
    *
@@ -30,7 +30,7 @@ namespace crawler
    * is 1 if and only if e = e(s - c t). The wave is that of the largest S, its coherence S(q) - S(-q). No derivative is
    * taken, so stretches may have steps along the body and in time.
    *
-   * @p swing: how far the smallest and the largest stretch on the body move in this period, as far as it is known
+   * @p swing: range of motion of the smallest and the largest stretch on the body in this period, as far as it is known
    * between the samples, too. Nothing if the stretch hardly changes, or if it changes faster than the samples tell.
    */
   std::optional<StretchWave>

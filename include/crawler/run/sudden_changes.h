@@ -12,11 +12,11 @@
 namespace crawler
 {
   /**
-   * The stretch after the active stress starts or jumps suddenly. From the ends of the body, and from its jumps in
-   * space, layers grow like sqrt(D t) with D = k/(gamma w^a): they are thinner than the cells at first, and the
-   * polynomials there overshoot by some per cent of the jump, on any mesh. In a layer the stretch is between what it
-   * was and what the conditions at the ends and jumps make it; so as long as layers are thin, the extremes are those of
-   * the ends, 1 - m/k, which are known (doc/numerics.md, "Extremes after sudden changes"). Not with feedback.
+   * Stretch after the active stress starts or jumps suddenly. From the ends of the body, and from the jumps in space,
+   * layers grow like sqrt(D t) with D = k/(gamma w^a): at first they are thinner than the cells, and the polynomials
+   * there overshoot by some per cent of the jump, on any mesh. In a layer the stretch lies between its earlier value
+   * and that set by the conditions at the ends and jumps; so as long as layers are thin, the extremes are those of the
+   * ends, 1 - m/k, which are known (doc/numerics.md, "Extremes after sudden changes"). Not with feedback.
    */
   class SuddenChanges
   {
@@ -24,12 +24,12 @@ namespace crawler
     /// @p scene is in the @p units of the user and must outlive this; @p smallest_cell in natural units.
     SuddenChanges(const Scene &scene, const Units &units, double smallest_cell);
 
-    /// The smallest and the largest stretch at the ends, if layers are thin at time @p t (in natural units, not before
-    /// that of the last call).
+    /// Smallest and largest stretch at the ends, if layers are thin at time @p t (in natural units, not before that of
+    /// the last call).
     std::optional<std::pair<Extreme, Extreme>>
     extremes_if_thin(double t);
 
-    /// What the conditions at an end of the body make of the stretch there, if @p s is one; nothing with feedback.
+    /// Stretch that the end conditions set at @p s, if that is an end of the body; nothing with feedback.
     std::optional<double>
     stretch_at_end(double s, double t);
 
@@ -37,7 +37,7 @@ namespace crawler
     struct Stresses
     {
       std::pair<double, double> end_stretch; ///< 1 - m/k at both ends
-      std::vector<double> jumps;             ///< of m/k at the breaks in space
+      std::vector<double> jumps;             ///< jumps of m/k at the breaks in space
     };
 
     Stresses
@@ -49,9 +49,9 @@ namespace crawler
     const double cell_, a_, k_; ///< in natural units
     const std::pair<double, double> end_moduli_;
     std::vector<double> starts_, moduli_; ///< times when the stress may jump; k at both sides of the breaks in space
-    std::size_t next_  = 0;               ///< start
+    std::size_t next_  = 0;               ///< index of the next start
     double thin_until_ = 0.;
     std::vector<double> m_;
-    std::unique_ptr<ActiveStressAtPoints> stress_; ///< at the ends of the body and both sides of the breaks in space
+    std::unique_ptr<ActiveStressAtPoints> stress_; ///< stress at the ends and both sides of the breaks in space
   };
 } // namespace crawler

@@ -9,11 +9,11 @@
 
 namespace crawler
 {
-  /// The text of summary.json.
+  /// Text of summary.json.
   std::string
   summary_json(const SimulationResult &result, unsigned int n_ranks, const std::string &command_line);
 
-  /// The same for people, in a few lines.
+  /// Summary for people, in a few lines.
   std::vector<std::string>
   summary_lines(const SimulationResult &result, const UnitNames &units = {});
 } // namespace crawler

@@ -7,8 +7,8 @@ namespace crawler
 {
   struct Scene;
 
-  /// From natural units to those of the user's @p scene. A finished run has the time of the scene's end, and with an
-  /// energy balance its gait efficiency.
+  /// Converts natural units to those of the user's @p scene. A finished run has the time of the scene's end, and with
+  /// an energy balance its gait efficiency.
   SimulationResult
   in_user_units(SimulationResult result, const Scene &scene, const Units &units);
 } // namespace crawler
