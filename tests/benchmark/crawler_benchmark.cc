@@ -17,6 +17,7 @@
 //                        the bound of the error; also for the cases stiff, a=-3, a=2 and fig2.
 //   case/fig2/1e-6/...   20 strides (T = 20), by petsc, fused and batch.
 //   case/stiff/1e-6/...  The stiff body (a = -1, chi = 0.3, k = 100).
+//   robot/64/1e-4 ...    Robots of so many segments that switch by jumps, in the way of answer/.
 //   general/*/...        Bodies and grounds that are not plain, and the plain one, with one setting: one body (fused),
 //                        256 side by side (batch).
 //   level/linear/1e-4 ... A body at a = 0 by the linear level, and level/nonlinear/... the same by the fused engine,

@@ -255,6 +255,27 @@ namespace crawler::test
         answer.result.error ? answer.result.error->total / std::abs(answer.result.displacement) : HUGE_VAL;
     }
 
+    /// Robot of segments that switch by jumps, with cells graded towards all of them, for one period.
+    void
+    run_robot(benchmark::State &state, const unsigned int n_segments, const double accuracy)
+    {
+      const auto parameters =
+        parameters_with({{"Accuracy", text(accuracy)},
+                         {"Active stress/Generator", "segments"},
+                         {"Active stress/Segments/Number of segments", std::to_string(n_segments)},
+                         {"Active stress/Segments/Amplitude", "0.3"},
+                         {"Active stress/Segments/Frequency", "1"},
+                         {"Active stress/Segments/Phase lag", text(1. / n_segments)},
+                         {"Active stress/Segments/Duty cycle", "0.5"}});
+      const Scene scene = parameters.create_scene();
+      Answer answer;
+      for (auto _ : state)
+        answer = answer_in_memory(parameters, scene, {.energy_balance = true});
+      state.counters["cells"] = answer.result.most_cells;
+      state.counters["steps"] = answer.result.time.steps;
+      state.counters["bound"] = answer.result.error ? answer.result.error->total : HUGE_VAL;
+    }
+
     /// Bodies and grounds that are not plain, all with the same setting, to be compared with the plain one.
     std::map<std::string, Settings>
     general_bodies()
@@ -351,6 +372,9 @@ namespace crawler::test
         (name + "/batch").c_str(), run_many, body, 1e-6, Simulation::Options(), batch_engine())
         ->Unit(benchmark::kMillisecond);
     }
+    for (const unsigned int n_segments : {8, 64})
+      for (const double accuracy : {1e-4, 1e-6})
+        add("robot/" + std::to_string(n_segments) + "/" + text(accuracy), run_robot, n_segments, accuracy);
     for (const auto &[name, laws] : general_bodies())
     {
       add("general/" + name + "/fused", run_general, laws);
