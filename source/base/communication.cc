@@ -15,7 +15,7 @@ namespace crawler
 {
   namespace
   {
-    constexpr int letter = 7; // tag of what send_to_first_rank() sends
+    constexpr int letter = 7; // tag of messages of send_to_first_rank()
   }
 
   unsigned int
@@ -159,8 +159,8 @@ namespace crawler
 
   QuickStart::QuickStart()
   {
-    // Between nodes that are connected by TCP, Open MPI's "rdma" takes seconds for each access to the counters of a
-    // WorkQueue (4.1.4); "pt2pt" takes 0.1 ms.
+    // Open MPI's "rdma" takes seconds for each access to the counters of a WorkQueue between nodes connected by TCP
+    // (4.1.4); "pt2pt" takes 0.1 ms.
     setenv("OMPI_MCA_osc", "^rdma", /*overwrite=*/0);
     constexpr std::string_view launchers[] = {
       "OMPI_COMM_WORLD_", "PMIX_", "PMI_", "SLURM_PROCID=", "SLURM_STEP_ID=", "FLUX_", "JSM_", "PALS_", "ALPS_"};
@@ -168,13 +168,13 @@ namespace crawler
       for (const std::string_view launcher : launchers)
         if (std::string_view(*variable).starts_with(launcher))
           return;
-    // Processes without a daemon would all use one folder for their sessions, which the first to end removes while
-    // another begins.
+    // Processes without a daemon would all use one session folder, which the first to end removes while another begins.
     constexpr std::pair<const char *, const char *> settings[] = {{"OMPI_MCA_ess_singleton_isolated", "1"},
                                                                   {"OMPI_MCA_orte_create_session_dirs", "0"},
                                                                   {"OMPI_MCA_btl", "self"},
                                                                   {"OMPI_MCA_pml", "ob1"}};
-    // Shared memory for file pointers would need the daemon's folder. Read when the first file is opened, so it stays.
+    // Shared memory for file pointers would need the daemon's folder. The variable is read when the first file is
+    // opened, so it stays.
     setenv("OMPI_MCA_sharedfp", "^sm", /*overwrite=*/0);
     for (const auto &[name, value] : settings)
       if (std::getenv(name) == nullptr && setenv(name, value, /*overwrite=*/0) == 0)

@@ -27,7 +27,7 @@ namespace crawler
       return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(blanks) - first + 1);
     }
 
-    /// The next part of @p text before @p separator, which is taken away from it.
+    /// Cuts the part before @p separator off @p text and returns it.
     std::string_view
     next_part(std::string_view &text, const char separator)
     {
@@ -37,7 +37,7 @@ namespace crawler
       return part;
     }
 
-    /// What to do about the rows of a spreadsheet of another country, and about gaps.
+    /// Advice for rows of a spreadsheet with another country's number format, and for gaps.
     std::string
     hint(const std::string_view line, const std::size_t n_columns)
     {
@@ -50,7 +50,7 @@ namespace crawler
       return has_gap && is_of_samples ? " (\"crawler table IN OUT\" fills gaps)" : "";
     }
 
-    /// A finite number if the whole text is one, apart from blanks.
+    /// Returns the finite number that is the whole text apart from blanks, or nothing.
     std::optional<double>
     number_in(std::string_view text)
     {
@@ -61,7 +61,7 @@ namespace crawler
       const auto [end, result] = std::from_chars(text.data(), text.data() + text.size(), value);
       if (result == std::errc::invalid_argument || end != text.data() + text.size())
         return std::nullopt;
-      if (result == std::errc::result_out_of_range) // smaller or larger than any double
+      if (result == std::errc::result_out_of_range) // magnitude smaller or larger than any double
         value = std::strtod(std::string(text).c_str(), nullptr);
       return std::isfinite(value) ? std::optional(value) : std::nullopt;
     }

@@ -30,7 +30,7 @@ namespace crawler
   write_file(const std::filesystem::path &path, const std::string &content)
   {
     const std::filesystem::path temporary = temporary_file(path);
-    std::FILE *const file                 = std::fopen(temporary.c_str(), "wbx"); // a new one, not through a link
+    std::FILE *const file                 = std::fopen(temporary.c_str(), "wbx"); // a new file, not through a link
     bool is_good = file != nullptr && std::fwrite(content.data(), 1, content.size(), file) == content.size();
     int reason   = errno;
     if (file != nullptr && std::fclose(file) != 0 && is_good)

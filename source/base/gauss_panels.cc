@@ -39,7 +39,7 @@ namespace crawler
       Reference()
       {
         using Rule           = boost::math::quadrature::gauss<double, n>;
-        const auto &abscissa = Rule::abscissa(), &weight = Rule::weights(); // of the right half of [-1, 1]
+        const auto &abscissa = Rule::abscissa(), &weight = Rule::weights(); // for the right half of [-1, 1]
         for (unsigned int i = 0; i < n / 2; ++i)
         {
           points[n / 2 + i]      = 0.5 * (1. + abscissa[i]);
@@ -103,7 +103,7 @@ namespace crawler
   void
   GaussPanels::running_integral_transposed(const std::span<const double> x, const std::span<double> result) const
   {
-    double later = 0.; // x of the panels behind
+    double later = 0.; // sum of x in the panels to the right
     for (std::size_t first = points_.size(); first > 0;)
     {
       first -= n;

@@ -7,7 +7,7 @@ namespace crawler
 {
   namespace
   {
-    using Real = long double; // so that the rules are exact to the last bit
+    using Real = long double; // makes the rules exact to the last bit
 
     Real
     legendre(const unsigned int n, const Real x)
@@ -22,7 +22,7 @@ namespace crawler
       return n * (legendre(n - 1, x) - x * legendre(n, x));
     }
 
-    /// A rule that is symmetric about 1/2 from its points x > 0 of [-1, 1], in ascending order, and 0 if n is odd.
+    /// Builds a rule symmetric about 1/2 from its points x > 0 of [-1, 1], in ascending order, and 0 if n is odd.
     template <typename Weight>
     QuadratureRule
     symmetric(const std::vector<Real> &right, const unsigned int n, const Weight &weight)
@@ -51,7 +51,7 @@ namespace crawler
   QuadratureRule
   gauss_lobatto_rule(const unsigned int n)
   {
-    // The inner points are the zeros of P_{n-1}', between those of P_{n-1} one each.
+    // The inner points are the zeros of P_{n-1}', one between each pair of neighbouring zeros of P_{n-1}.
     const std::vector<Real> zeros = boost::math::legendre_p_zeros<Real>(static_cast<int>(n) - 1);
     std::vector<Real> points;
     if (n % 2 == 1)

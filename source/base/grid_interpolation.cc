@@ -8,7 +8,7 @@ namespace crawler
 {
   namespace
   {
-    /// Between knots, with the weights of the curvatures 0.
+    /// Linear interpolation between knots: the weights of the curvatures are 0.
     CubicSpline::Place
     linear_place(const std::vector<double> &knots, const double x)
     {

@@ -20,7 +20,7 @@ namespace crawler
   {
     constexpr double round_off = 1e-12;
 
-    /// Where a table comes from, for messages.
+    /// Origin of a table, for messages.
     struct Source
     {
       std::string file, name, entry;
@@ -33,11 +33,11 @@ namespace crawler
       }
     };
 
-    /// The different values, sorted; values that differ by round-off only are the same.
+    /// Returns the distinct values, sorted; values that differ by round-off only are merged.
     std::vector<double>
     distinct(std::vector<double> values)
     {
-      // The slower of two columns repeats a number many times in succession.
+      // Repeats in succession go first: the slower of two columns has many.
       values.erase(std::unique(values.begin(), values.end()), values.end());
       std::sort(values.begin(), values.end());
       if (!values.empty())
@@ -50,7 +50,7 @@ namespace crawler
       return values;
     }
 
-    /// The index of a value of distinct(); @p guess is looked at first.
+    /// Returns the index of a value in distinct(), trying @p guess first.
     std::size_t
     index_of(const std::vector<double> &values, const double value, const std::size_t guess)
     {
@@ -70,7 +70,7 @@ namespace crawler
       grid.s                = distinct(s);
       grid.t                = distinct(t);
       const std::size_t n_s = grid.s.size(), n_t = grid.t.size(), n = values.size();
-      constexpr std::size_t most_gaps = 100; // points for each row: rather no grid than one with gaps
+      constexpr std::size_t most_gaps = 100; // grid points per row; above, the rows are not taken for a grid with gaps
       if (n_s * n_t > most_gaps * n)
         source.refuse("\"{}\" has {} rows after the header with {} different values of s and {} of t, but a "
                       "full grid, a row for each of them with each, is expected",
@@ -79,11 +79,11 @@ namespace crawler
                       n_s,
                       n_t);
       grid.values.resize(n_s * n_t);
-      std::vector<std::size_t> seen(n_s * n_t, 0); // the number of the row
+      std::vector<std::size_t> seen(n_s * n_t, 0); // number of the row
       Mistakes repetitions;
       for (std::size_t r = 0, i = 0, j = 0; r < n; ++r)
       {
-        // Next to the one before, in a file that is sorted by t, or by s.
+        // Guesses are the next point in a file sorted by t, or by s.
         j                       = index_of(grid.t, t[r], i + 1 < n_s ? j : j + 1);
         i                       = index_of(grid.s, s[r], i + 1 < n_s ? i + 1 : 0);
         const std::size_t point = j * n_s + i;
@@ -127,7 +127,7 @@ namespace crawler
       return grid;
     }
 
-    /// All numbers of a dataset, and its extents.
+    /// A dataset's numbers and extents.
     struct Dataset
     {
       std::vector<double> values;
@@ -171,7 +171,7 @@ namespace crawler
       return result;
     }
 
-    /// Throws InputError unless the numbers of a dataset are finite and increase.
+    /// Throws InputError unless the numbers of a dataset are finite and increasing.
     void
     require_increasing(const std::vector<double> &values, const std::string &name, const Source &source)
     {
@@ -193,7 +193,7 @@ namespace crawler
     GridTable
     read_hdf5(const Source &source)
     {
-      H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own sentence instead of HDF5's stack
+      H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own message instead of HDF5's stack
       Dataset s, t, value;
       const auto read = [&]() {
         const Hdf5Handle file(H5Fopen(source.file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);

@@ -20,8 +20,8 @@ namespace crawler
   {
     if (!out_.is_open())
       return restart(text);
-    // One small write() takes the place of the end. To replace the file each time is quadratic, and ext4 waits for the
-    // disk whenever a file replaces another one.
+    // One small write() replaces the end. Replacing the file each time is quadratic, and ext4 waits for the disk
+    // whenever a file replaces another one.
     out_.seekp(last_lines_);
     out_ << text + end_ << std::flush;
     if (!out_)
@@ -41,7 +41,7 @@ namespace crawler
   void
   GrowingText::open()
   {
-    out_.open(path_, std::ios::binary | std::ios::in | std::ios::out); // "in" keeps what is there
+    out_.open(path_, std::ios::binary | std::ios::in | std::ios::out); // "in" keeps the contents
     if (!out_)
       throw FileError("cannot write \"" + path_.string() + "\": " + std::strerror(errno));
   }

@@ -16,11 +16,11 @@ namespace crawler::hdf5
     using Version = std::tuple<std::string, dev_t, ino_t, off_t, time_t, long>;
     static std::mutex access;
     static std::set<Version> known;
-    constexpr off_t bytes_per_second = 20000000; // of slow disks, and of data that are packed
+    constexpr off_t bytes_per_second = 20000000; // of slow disks, and of compressed data
     constexpr unsigned int least     = 5;
     struct stat state;
     if (::stat(path.c_str(), &state) != 0)
-      return true; // to open it says why
+      return true; // opening it gives the reason
     const Version version = {
       purpose, state.st_dev, state.st_ino, state.st_size, state.st_mtim.tv_sec, state.st_mtim.tv_nsec};
     const std::lock_guard lock(access);

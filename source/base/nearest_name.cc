@@ -47,7 +47,7 @@ namespace crawler
     {
       const std::string other = lower(candidate);
       std::size_t distance    = edit_distance(wanted, other);
-      // A name that contains the other (Length, Body length) is near although many letters differ.
+      // Names that contain each other (Length, Body length) are near although many letters differ.
       if (wanted.size() >= 3 && other.size() >= 3 &&
           (other.find(wanted) != std::string::npos || wanted.find(other) != std::string::npos))
         distance = std::min<std::size_t>(distance, 3);

@@ -9,7 +9,7 @@ namespace crawler
 {
   namespace
   {
-    /// The last end of a character of UTF-8 at or before a place.
+    /// Returns the last end of a UTF-8 character at or before a place.
     std::size_t
     end_of_character(const std::string &text, std::size_t place)
     {
@@ -35,7 +35,7 @@ namespace crawler
       if (end == minus + 1 || (end < text.size() && after.find(text[end]) == after.npos))
         continue;
       if (end + 1 < text.size() && text[end] == ',' && std::isdigit(static_cast<unsigned char>(text[end + 1])) != 0)
-        continue; // a decimal comma, which is repeated as it was
+        continue; // a decimal comma of quoted input, kept as it was
       const bool is_aligned = minus > 1 && text.compare(minus - 2, 2, "  ") == 0;
       text.replace(minus, 1, is_aligned ? " " : "");
     }
@@ -53,13 +53,13 @@ namespace crawler
   {
     constexpr char digits[] = "0123456789abcdef";
     std::string result;
-    unsigned int n_following = 0; // bytes of a character of UTF-8 that has begun
+    unsigned int n_following = 0; // remaining bytes of the present UTF-8 character
     for (std::size_t i = 0; i < text.size(); ++i)
     {
       const auto byte    = static_cast<unsigned char>(text[i]);
       const auto next    = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
       const bool goes_on = n_following > 0 && (byte & 0xc0) == 0x80;
-      // Those of ASCII, those behind it (U+0080 to U+009F), and the latter as single bytes.
+      // Control characters of ASCII, those of U+0080 to U+009F, and the latter as single bytes.
       const bool is_control     = byte < 0x20 || byte == 0x7f || (byte >= 0x80 && byte < 0xa0 && !goes_on);
       const bool begins_control = byte == 0xc2 && next >= 0x80 && next < 0xa0;
       n_following               = goes_on                 ? n_following - 1
@@ -91,7 +91,7 @@ namespace crawler
       result += text.substr(begin, open + 1 - begin);
       if (quoted.size() <= most)
         result += quoted;
-      else // at ends of characters of UTF-8
+      else // cut at ends of UTF-8 characters
         result += quoted.substr(0, end_of_character(quoted, shown)) + " ... (" + std::to_string(quoted.size()) +
                   " characters) ... " + quoted.substr(end_of_character(quoted, quoted.size() - shown));
       result += '"';

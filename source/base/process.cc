@@ -17,7 +17,7 @@ namespace crawler
 {
   namespace
   {
-    /// What comes out of a pipe until its other end is closed.
+    /// Reads a pipe until its other end is closed.
     std::string
     all_of(const int pipe)
     {
@@ -33,8 +33,8 @@ namespace crawler
       }
     }
 
-    /// The child, 0 if there is none yet, and the last signal for it. Any thread may get a signal: it notes the signal
-    /// and then looks for the child, and who starts the child does both in the other order, so none is lost.
+    /// The child, 0 before it exists, and the last signal for it. Any thread may get a signal: it notes the signal and
+    /// then looks for the child; the thread that starts the child does both in the other order, so no signal is lost.
     std::atomic<pid_t> child  = 0;
     std::atomic<int> awaiting = 0;
 
@@ -52,7 +52,7 @@ namespace crawler
       errno = error;
     }
 
-    /// Signals that stop the program go to its child as long as this lives; those that are ignored stay so. They wait
+    /// Forwards signals that stop the program to its child during its lifetime; ignored ones stay ignored. Signals wait
     /// until there is a child.
     class SignalsForChild
     {
@@ -86,7 +86,7 @@ namespace crawler
 
       SignalsForChild(const SignalsForChild &) = delete;
 
-      /// Starts the child, with the signals as they were before. Returns whether it has started.
+      /// Starts the child with the previous signal handling. Returns whether it has started.
       bool
       start(pid_t &id, std::vector<char *> &words, const posix_spawn_file_actions_t &actions)
       {
@@ -164,7 +164,7 @@ namespace crawler
   {
     const pid_t id = fork();
     if (id < 0)
-      return true; // there is no copy to be had, so the original must try
+      return true; // no copy is available, so the original must try
     if (id == 0)
     {
       for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU})

@@ -20,7 +20,7 @@ namespace crawler
 {
   namespace
   {
-    /// What is read of a file must be there.
+    /// Throws InputError if something that must be in the file is missing.
     template <typename Result>
     Result
     found(const Result result, const std::filesystem::path &path, const std::string &what)
@@ -34,7 +34,7 @@ namespace crawler
       return result;
     }
 
-    /// Opens an HDF5 file to read.
+    /// Opens an HDF5 file for reading.
     hid_t
     opened(const std::filesystem::path &path, const hid_t access)
     {
@@ -51,7 +51,7 @@ namespace crawler
       return found(file, path, start == "\x89HDF\r\n\x1a\n" ? "cannot be read as HDF5 file" : "is no HDF5 file");
     }
 
-    /// HDF5 keeps "/" for groups.
+    /// Name of a dataset without "/", which HDF5 reserves for groups.
     std::string
     dataset_name(std::string name)
     {
@@ -65,7 +65,7 @@ namespace crawler
       return column.width == 0 ? H5Tcopy(H5T_IEEE_F64LE) : hdf5::text_type(column.width);
     }
 
-    /// Only texts of one piece, as write_attribute() makes them: others would not fit into what they are read into.
+    /// Reads an attribute that is one text, as write_attribute() makes it: others would not fit into the buffer.
     std::string
     read_attribute_of(const hid_t object, const std::string &name, const std::filesystem::path &path)
     {
@@ -82,15 +82,15 @@ namespace crawler
       return text.substr(0, text.find('\0'));
     }
 
-    /// Throws InputError if HDF5 does not survive what @p read does with the file.
+    /// Throws InputError if @p read would crash HDF5, or never end, on the file.
     void
     require_harmless(const std::filesystem::path &path, const std::string &purpose, const std::function<void()> &read)
     {
-      H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own sentence instead of HDF5's stack
+      H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own message instead of HDF5's stack
       found(hdf5::is_harmless(path, purpose, read) ? 0 : -1, path, "crashes HDF5, or never ends");
     }
 
-    /// Rows @p first to @p first + @p n - 1 of a column; @p value gives the value of row @p first + i.
+    /// Writes rows @p first to @p first + @p n - 1 of a column; @p value gives the value of row @p first + i.
     template <typename Function>
     void
     write_values(const hid_t dataset,
@@ -121,7 +121,8 @@ namespace crawler
       hdf5::checked(H5Dwrite(dataset, type, memory, space, transfer, data.data()), path, "write");
     }
 
-    /// Of a column, which must be whole: numbers or texts of a fixed width, in one dimension and with a place for each.
+    /// Length of a column, which must be complete: numbers or texts of fixed width, one-dimensional, with storage for
+    /// each.
     std::size_t
     length_of(const hid_t dataset, const hid_t type, const std::string &name, const std::filesystem::path &path)
     {
@@ -142,7 +143,7 @@ namespace crawler
 
     const char *const checksums = "/checksums"; ///< of the rows, beside the group
 
-    /// Of the values of a row, in the order of the columns that are written: CRC-32, as they are stored.
+    /// CRC-32 of the values of a row as stored, in the order of the columns written.
     class RowChecksum
     {
     public:
@@ -196,7 +197,7 @@ namespace crawler
                   const std::map<std::string, std::string> &attributes,
                   const Known &known)
   {
-    H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own sentence instead of HDF5's stack
+    H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own message instead of HDF5's stack
     double bytes = 4e3 * static_cast<double>(columns.size());
     for (const Column &column : columns)
       bytes += static_cast<double>(n_rows) * (column.width == 0 ? sizeof(double) : column.width);

@@ -25,7 +25,7 @@ namespace crawler
       error_ = errno;
   }
 
-  // To std::cout all is well, so that it does not fall silent after a loss that passes.
+  // Success is what std::cout always sees: it must not fall silent after a temporary loss.
 
   StandardOutput::int_type
   StandardOutput::overflow(const int_type character)

@@ -46,7 +46,7 @@ namespace crawler
       return std::nullopt;
     }
 
-    /// The wish of this process, if there is one, and how often its place has been reached.
+    /// The request of this process, if any, and the number of times its place has been reached.
     struct Armed
     {
       std::optional<StopWish> wish;

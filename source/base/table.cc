@@ -17,7 +17,7 @@ namespace crawler
     using Numbers = std::vector<double>;
     using Texts   = std::vector<std::string>;
 
-    /// A spreadsheet takes what begins like this for a formula, which may call programs.
+    /// True for texts that a spreadsheet would take for a formula, which may call programs.
     bool
     is_like_formula(const std::string &text)
     {

@@ -23,7 +23,7 @@ namespace crawler
 
     constexpr unsigned int usual = 80;
 
-    /// 0 if this is no terminal, or if nobody has told how wide it is.
+    /// Width of a terminal; 0 if this is none, or its width is unknown.
     unsigned int
     columns_of(const int descriptor)
     {
@@ -31,8 +31,8 @@ namespace crawler
       return ioctl(descriptor, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
     }
 
-    /// mpirun gives its processes terminals without a size, wherever the output goes. What counts is where the output
-    /// of the parent, mpirun, goes; 0 if that is no terminal.
+    /// Width of the terminal of the parent process, mpirun, which gives its processes terminals without a size,
+    /// wherever the output goes; 0 if the parent's output is no terminal.
     unsigned int
     columns_of_parent()
     {

@@ -10,7 +10,7 @@ namespace crawler
 {
   namespace
   {
-    constexpr int owner = 0; // the rank that has the counters
+    constexpr int owner = 0; // rank that holds the counters
   }
 
   WorkQueue::WorkQueue(MPI_Comm communicator, const unsigned long size, std::function<void()> besides)
@@ -67,7 +67,7 @@ namespace crawler
   {
     const unsigned long both[2] = {n, failed};
     MPI_Accumulate(both, 2, MPI_UNSIGNED_LONG, owner, completed, 2, MPI_UNSIGNED_LONG, MPI_SUM, window_);
-    MPI_Win_flush_local(owner, window_); // without waiting until it has arrived
+    MPI_Win_flush_local(owner, window_); // without waiting for arrival
   }
 
   WorkQueue::Done
@@ -99,7 +99,7 @@ namespace crawler
     constexpr double pause = 1e-4; // seconds
     if (!is_owner_ || !has_others_ || now() < served_ + pause)
       return;
-    // Any call lets MPI work; Open MPI looks at TCP in one of eight.
+    // Any call lets MPI progress; Open MPI looks at TCP in one of eight.
     for (int i = 0; i < 8; ++i)
     {
       int ignored = 0;

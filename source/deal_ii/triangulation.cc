@@ -83,7 +83,7 @@ namespace crawler
         return static_cast<unsigned int>(n);
       }
 
-      /// The active cells from left to right; deal.II has them level by level.
+      /// The active cells from left to right; deal.II keeps them level by level.
       std::vector<Iterator>
       cells_along_the_body() const
       {

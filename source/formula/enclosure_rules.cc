@@ -31,14 +31,14 @@ namespace crawler
       return singleton(x.value);
     }
 
-    /// What does not change in the box does not change in time, either, even where a derivative is not known.
+    /// Chain rule: a value constant in the box has the rate 0, even where the derivative is unknown.
     Interval
     chain(const Interval &derivative, const Interval &rate)
     {
       return equal(rate, Interval(0.)) ? rate : derivative * rate;
     }
 
-    /// Of a function that increases.
+    /// Image of an interval under an increasing function.
     Interval
     increasing(double (*f)(double), const Interval &x)
     {
@@ -157,8 +157,8 @@ namespace crawler
       return {f, f * (x[1].rate * of_base + chain(x[1].value * inverse(base), x[0].rate))};
     }
 
-    /// The value of something that jumps where its argument does not tell on which side it is. Jumps at a time are
-    /// infinitely fast; those that depend on the place, too, move, and are looked for elsewhere.
+    /// Value of an operation that jumps, where the side is uncertain. Jumps at a time are infinitely fast; those that
+    /// depend on the place, too, move, and are searched for elsewhere.
     Enclosure
     jumping(const Interval &value, const Arguments x)
     {
@@ -192,14 +192,14 @@ namespace crawler
       return {jump.value, x[0].rate + jump.rate};
     }
 
-    /// 1, 0 or either, from the difference of two values that is sometimes positive or not.
+    /// Truth value 1, 0 or either, from possibility and certainty.
     Enclosure
     truth(const bool is_possible, const bool is_certain, const Arguments x)
     {
       return jumping({is_certain ? 1. : 0., is_possible ? 1. : 0.}, x);
     }
 
-    /// By what two values may be, and by what they are for certain.
+    /// Comparison of two values by its possibility and certainty.
     template <bool (*may_be)(const Interval &, const Interval &), bool (*is)(const Interval &, const Interval &)>
     Enclosure
     comparison(const Arguments x)

@@ -75,7 +75,7 @@ namespace crawler
         result[i] = f(arguments[0][i], arguments[1][i]);
     }
 
-    /// min, max, sum, avg.
+    /// min, max, sum, avg of any number of arguments.
     void
     function_of_many(const Function function,
                      const std::span<const Operand> arguments,
@@ -113,7 +113,7 @@ namespace crawler
                                       {mu::cmLAND, "a&&b", binary<std::logical_and<double>>},
                                       {mu::cmLOR, "a||b", binary<std::logical_or<double>>}};
 
-    /// What users of formulas expect besides muParser's own functions.
+    /// Defines the functions and constants that users expect besides muParser's own.
     void
     define_functions(mu::Parser &parser)
     {
@@ -131,7 +131,7 @@ namespace crawler
   class FormulaReader
   {
   public:
-    /// @p variables: the values of the @p names that the byte code points to.
+    /// Starts with the variables: @p variables are the values of the @p names that the byte code points to.
     FormulaReader(Formula &formula,
                   const mu::Parser &parser,
                   const std::vector<std::string> &names,
@@ -142,7 +142,7 @@ namespace crawler
       for (const auto &[name, function] : parser.GetFunDef())
         names_[reinterpret_cast<Function>(function.GetAddr())] = name;
       for (const std::string &name : names)
-        add_value({name != "t", name != "s"}); // others may change with place and time
+        add_value({name != "t", name != "s"}); // other variables may change with place and time
     }
 
     void
@@ -155,7 +155,7 @@ namespace crawler
     }
 
   private:
-    /// A "c ? a : b" that is being read: the skips over a and over b.
+    /// A "c ? a : b" during reading: the skips over a and over b.
     struct Condition
     {
       unsigned int value;
@@ -213,7 +213,7 @@ namespace crawler
       throw mu::ParserError(mu::ecINTERNAL_ERROR);
     }
 
-    /// x x ... x, multiplied from the left as muParser does.
+    /// Power by repeated multiplication from the left, as in muParser.
     void
     power(const unsigned int variable, const unsigned int exponent)
     {
@@ -225,7 +225,7 @@ namespace crawler
       }
     }
 
-    /// @p count is negative for functions of any number of arguments.
+    /// Calls a function; @p count is negative for functions of any number of arguments.
     void
     call(const mu::generic_callable_type &function, const int count)
     {
@@ -239,7 +239,7 @@ namespace crawler
           static_cast<std::size_t>(std::abs(count)));
     }
 
-    /// Its position.
+    /// Adds a skip and returns its position.
     std::size_t
     skip(const bool branch)
     {
@@ -259,7 +259,7 @@ namespace crawler
       add({.loop = select, .tangent = tangent_of("?"), .bound = bound_of("?")}, 3);
     }
 
-    /// Takes the arguments from the stack, puts the result there and the operation into the list where it belongs.
+    /// Takes the arguments from the stack, puts the result there and adds the operation to its list.
     void
     add(Formula::Operation operation, const std::size_t n_arguments)
     {
@@ -317,7 +317,7 @@ namespace crawler
 
     Formula &formula_;
     const std::vector<double> &variables_;
-    std::map<Function, std::string> names_; ///< Of muParser's functions and ours.
+    std::map<Function, std::string> names_; ///< Names of muParser's functions and of the program's own.
     std::vector<unsigned int> stack_;       ///< Values.
     std::vector<Condition> conditions_;
   };

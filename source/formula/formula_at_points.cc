@@ -24,7 +24,7 @@ namespace crawler
       if (formula_->kept_[value])
         of_place_[value].resize(n_points_);
     of_place_[Formula::s_] = points;
-    compute(formula_->of_time_, 0, 1); // those that are constant
+    compute(formula_->of_time_, 0, 1); // operations that are constant
     for (std::size_t first = 0; first < n_points_; first += block_size)
       compute(formula_->of_place_, first, std::min(block_size, n_points_ - first));
   }
@@ -60,7 +60,7 @@ namespace crawler
         operation.loop(operation.function, arguments_, place(operation.result, first), n);
         continue;
       }
-      bool needed = operation.target == position + 1; // nothing to skip
+      bool needed = operation.target == position + 1; // no operations to skip
       for (std::size_t i = 0; i < n && !needed; ++i)
         needed = (arguments_[0][i] != 0.) == operation.branch;
       if (!needed)

@@ -14,7 +14,7 @@ namespace crawler
       std::fill_n(values_.data() + value * block_size, block_size, formula_->scalars_[value]);
   }
 
-  /// Both sides of a choice are computed; the wrong one is not taken, whatever it is.
+  /// Computes both branches of a choice; the unused one has no effect, whatever its value.
   template <typename Use>
   void
   FormulaGradient::for_operations(const std::size_t n, const Use &use)

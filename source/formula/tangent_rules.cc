@@ -15,7 +15,7 @@ namespace crawler
     using Tangent = FormulaOperation::Tangent;
     using Numbers = std::span<const double *const>;
 
-    /// A function of one argument x with the value f, by f'(x).
+    /// Tangent of a function of one argument x with the value f, by f'(x).
     template <auto derivative>
     void
     chain(const Numbers x, const Numbers dx, const double *f, double *df, const std::size_t n)
@@ -52,7 +52,7 @@ namespace crawler
         df[i] = (dx[0][i] - f[i] * dx[1][i]) / x[1][i];
     }
 
-    /// x^y; where one of the two does not change its part is left out, so that (-1)^2 and 0^2 have a derivative.
+    /// Tangent of x^y. Terms of a constant base or exponent are left out, so that (-1)^2 and 0^2 have a derivative.
     void
     power(const Numbers x, const Numbers dx, const double *f, double *df, const std::size_t n)
     {
@@ -83,7 +83,7 @@ namespace crawler
         df[i] = x[0][i] != 0. ? dx[1][i] : dx[2][i];
     }
 
-    /// The smallest or largest argument: the one that is the result.
+    /// Tangent of the smallest or largest argument: that of the argument equal to the result.
     void
     extreme(const Numbers x, const Numbers dx, const double *f, double *df, const std::size_t n)
     {

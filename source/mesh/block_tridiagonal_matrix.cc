@@ -9,7 +9,7 @@ namespace crawler
 {
   namespace
   {
-    /// How many doubles a number has.
+    /// Number of doubles in a number.
     template <typename Number>
     constexpr int doubles_in = sizeof(Number) / sizeof(double);
   } // namespace
@@ -96,8 +96,8 @@ namespace crawler
     return ok;
   }
 
-  /// The system of the shared nodes 0 ... ranks, the same on every rank: the values at the first and the last node of
-  /// the own cells, for the right-hand sides that are left of them.
+  /// Solves the system of the shared nodes 0 ... ranks, the same on every rank: returns the values at the first and
+  /// last node of the own cells, from their remaining right-hand sides.
   template <typename Number>
   std::pair<Number, Number>
   BlockTridiagonalMatrix<Number>::solve_shared(const Number first, const Number last) const
@@ -107,7 +107,7 @@ namespace crawler
     if (ranks == 1)
     {
       const Number *S = reduced_.data();
-      // Eliminate the first node; the sum of both rows keeps the digits when the friction term is small.
+      // Elimination of the first node; the sum of both rows keeps the digits when the friction term is small.
       const Number factor = S[2] / S[0];
       const Number x_last = (last - factor * first) / (S[3] - factor * S[1]);
       return {(first - S[1] * x_last) / S[0], x_last};

@@ -9,8 +9,8 @@
 
 namespace crawler
 {
-  /// A sequence of meshes: cells of one size or between given ends, and what became of them. Most runs never adapt
-  /// their mesh, and need no triangulation.
+  /// Sequence of meshes: cells of one size or between given ends, and their adaptations. Most runs never adapt their
+  /// mesh and need no triangulation.
   struct Discretization::Mesh
   {
     /// The ends of the cells of the first mesh.
@@ -44,8 +44,8 @@ namespace crawler
 
     const double length;
     const unsigned int n_ranks, n_coarse_cells;
-    const std::vector<double> ends               = {};      ///< of the coarse cells; empty if they have one size
-    std::unique_ptr<Triangulation> triangulation = nullptr; ///< once the mesh is adapted
+    const std::vector<double> ends               = {};      ///< of the coarse cells; empty if these have one size
+    std::unique_ptr<Triangulation> triangulation = nullptr; ///< made when the mesh is first adapted
   };
 
   Discretization::Discretization(MPI_Comm communicator,
@@ -123,7 +123,7 @@ namespace crawler
       return static_cast<int>(cells_[c].level) + static_cast<int>(changes[c]);
     };
     const auto keep = [&](const unsigned int c) {
-      // The other half cannot be joined alone.
+      // The other half is kept too: it cannot be joined alone.
       changes[c]                                      = CellChange::keep;
       changes[cells_[c].is_left_half ? c + 1 : c - 1] = CellChange::keep;
     };

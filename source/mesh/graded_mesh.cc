@@ -8,14 +8,14 @@ namespace crawler
 {
   namespace
   {
-    /// Cells for pieces of these lengths: @p least each; the others one by one to the piece whose cells are the
-    /// largest.
+    /// Numbers of cells for pieces of these lengths: @p least each; the rest goes, one by one, to the piece with the
+    /// largest cells.
     std::vector<unsigned int>
     shared_out(const unsigned int n_cells, const std::vector<double> &lengths, const unsigned int least)
     {
       std::vector<unsigned int> cells(lengths.size(), least);
       unsigned int left = n_cells - std::min(n_cells, least * static_cast<unsigned int>(lengths.size()));
-      // Most of them at once.
+      // Shares most of them out at once.
       const unsigned int many = left;
       for (std::size_t i = 0; i < lengths.size(); ++i)
       {
@@ -93,7 +93,7 @@ namespace crawler
       const double left = pieces[i], length = pieces[i + 1] - left, d = std::min(layer / length, 1.);
       const auto cells = static_cast<unsigned int>(std::max(fewest, std::round(n_cells * length))) * parts;
       const double A = 0.25 / std::log1p(1. / d), B = 0.5;
-      const auto part_of = [&](const double x) // of the cells, to the left of x
+      const auto part_of = [&](const double x) // fraction of the cells to the left of x
       { return A * (std::log1p(x / d) - std::log1p(-x / (1. + d))) + B * x; };
       double x = 0.;
       for (unsigned int c = 1; c < cells; ++c)

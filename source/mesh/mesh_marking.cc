@@ -59,7 +59,7 @@ namespace crawler
   {
     constexpr double share = 0.01, worth = 0.25;
     const unsigned int n = mesh.n_cells();
-    // The indicator of a smooth stretch goes with the size of the cell to the power 2q + 1.
+    // Growth of the indicator by joining: for smooth stretch it scales with the cell size to the power 2q + 1.
     const double growth = std::ldexp(1., 2 * static_cast<int>(mesh.element().degree));
     std::vector<CellChange> changes(n, CellChange::keep);
     unsigned int joined = 0;

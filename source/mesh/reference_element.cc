@@ -16,7 +16,7 @@ namespace crawler
       for (std::size_t i = 0; i < nodes.size(); ++i)
       {
         double factorial = 1., scale = 1.;
-        std::vector<double> derivatives(derivative + 1, 0.); // over their factorials
+        std::vector<double> derivatives(derivative + 1, 0.); // divided by their factorials
         derivatives[0] = 1.;
         for (std::size_t j = 0; j < nodes.size(); ++j)
           if (j != i)

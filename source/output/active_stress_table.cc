@@ -107,7 +107,7 @@ namespace crawler
     for (unsigned int j = 0; j <= n_parts; ++j)
       times.push_back(j == n_parts ? end_time : end_time * j / n_parts);
     std::ranges::sort(times);
-    const double beside = 1e-9 * end_time; // before a jump
+    const double beside = 1e-9 * end_time; // just before a jump
     for (std::size_t j = 0; j < times.size(); ++j)
     {
       const double t = times[j];

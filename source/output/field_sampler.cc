@@ -21,7 +21,7 @@ namespace crawler
       return x;
     }
 
-    /// Throws NonfiniteStress on all ranks if one of them has something else than finite numbers.
+    /// Throws NonfiniteStress on all ranks if a value of any rank is not finite.
     void
     require_finite(const std::vector<double> &m, const double t, const Discretization &discretization)
     {

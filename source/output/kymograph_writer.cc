@@ -72,7 +72,7 @@ namespace crawler
       if (field.in_kymograph)
       {
         const std::vector<double> all = gather(fields.*field.values, d.communicator());
-        (rows_.*field.values).insert((rows_.*field.values).end(), all.begin(), all.end()); // nothing but on rank 0
+        (rows_.*field.values).insert((rows_.*field.values).end(), all.begin(), all.end()); // empty except on rank 0
       }
   }
 
@@ -120,7 +120,7 @@ namespace crawler
   KymographWriter::ground_arrays() const
   {
     constexpr unsigned int n_places = 400;
-    constexpr double margin         = 0.3; // on both sides, of the length
+    constexpr double margin         = 0.3; // on both sides, relative to the length
     if (!ground_)
       return "";
     const auto [low, high] = std::minmax_element(rows().displacement.begin(), rows().displacement.end());

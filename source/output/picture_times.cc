@@ -14,10 +14,10 @@ namespace crawler
     constexpr unsigned int per_stride = 64, most_snapshots = 640, fewest_rows = 128, most_strides = 20;
     constexpr std::size_t most_jumps    = 1000;
     constexpr double strides_if_unknown = 4.;
-    /// Times that differ by less are one, in units of the duration.
+    /// Times closer than this are one, in units of the duration.
     constexpr double same_time = 1e-12;
 
-    /// n equal parts of (from, end_time].
+    /// Returns the ends of @p n equal parts of (from, end_time].
     std::vector<double>
     equal_times(const unsigned int n, const double from, const double end_time)
     {
@@ -45,7 +45,7 @@ namespace crawler
       else
       {
         Time &other = times_.back();
-        if (time.kinds.is_snapshot) // keeps its last bit
+        if (time.kinds.is_snapshot) // keep its exact time
           other.value = time.value;
         other.kinds = {other.kinds.is_snapshot || time.kinds.is_snapshot, other.kinds.is_row || time.kinds.is_row};
       }

@@ -24,13 +24,13 @@ namespace crawler
       corners.insert(corners.end(), {left, bottom, 0., right, bottom, 0., right, top, 0., left, top, 0.});
     }
 
-    /// Makes @p drawn the larger range @p seen with @p more on the sides that have grown. True if it has grown by more
-    /// than a tenth.
+    /// Extends @p drawn to the range @p seen, with @p more on the sides that have grown. Returns true if it has grown
+    /// by more than a tenth.
     bool
     grow(FieldRange &drawn, const FieldRange &seen, const double more)
     {
       const double slack = 0.1 * (drawn.second - drawn.first);
-      bool grown         = drawn.first > drawn.second; // nothing has been seen before
+      bool grown         = drawn.first > drawn.second; // first range
       if (grown)
         drawn = seen;
       if (seen.first < drawn.first - slack)
@@ -46,7 +46,7 @@ namespace crawler
       return grown;
     }
 
-    /// A field at equidistant s.
+    /// Interpolates a field at equidistant s.
     std::vector<double>
     at_grips(const Frame &frame, const double length, const std::vector<double> &values)
     {
@@ -128,7 +128,7 @@ namespace crawler
       {
         sizes_[f].add(frame.time, at_grips(frame, length_, values));
         const FieldRange now = shown(f);
-        if (drawn_[f].second - drawn_[f].first > 2. * (now.second - now.first)) // a peak was all that had been seen
+        if (drawn_[f].second - drawn_[f].first > 2. * (now.second - now.first)) // only a peak had been seen
           drawn_[f] = no_numbers;
       }
       changed = grow(drawn_[f], shown(f), 0.) || changed;

@@ -24,7 +24,7 @@ namespace crawler
     opened(const std::filesystem::path &path)
     {
       const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-      H5Pset_sieve_buf_size(access, 1); // numbers reach the file at once
+      H5Pset_sieve_buf_size(access, 1); // write numbers to the file at once
       return {hdf5::checked(H5Fopen(path.c_str(), H5F_ACC_RDWR, access), path, "open"), H5Fclose};
     }
 
@@ -75,7 +75,7 @@ namespace crawler
   void
   SnapshotHdf5::create(const std::filesystem::path &path, const std::size_t n_frames, const std::size_t n)
   {
-    H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own sentence instead of HDF5's stack
+    H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own message instead of HDF5's stack
     double bytes = 1e5;
     for (const auto &[name, layout] : layouts())
       bytes += 8. * static_cast<double>(product(shape(layout, n_frames, n)));

@@ -35,7 +35,7 @@ namespace crawler
       {"max stretch at [length]", "{:.9g}", [](const Row &r) { return r.stretch.max.s; }},
       {"rejected steps [1]", "{}", [](const Row &r) { return 1. * r.step.rejected; }},
       {"newton iterations [1]", "{}", [](const Row &r) { return 1. * r.step.newton_iterations; }},
-      // With the energy balance:
+      // Columns with the energy balance:
       {"velocity [length/time]", "{:.12g}", [](const Row &r) { return r.velocity; }},
       {"stress power [force length]", "{:.12g}", [](const Row &r) { return r.energy_balance.stress_work; }},
       {"dissipation [force length]", "{:.12g}", [](const Row &r) { return r.energy_balance.dissipation; }},
@@ -128,7 +128,7 @@ namespace crawler
     for (std::size_t i = 0; i < n_columns_; ++i)
     {
       line += i > 0 ? "," : "";
-      if (const double value = columns[i].value(row); !std::isnan(value)) // nothing for what is not known
+      if (const double value = columns[i].value(row); !std::isnan(value)) // unknown values stay empty
         line += fmt::format(fmt::runtime(columns[i].format), value);
     }
     out_ << with_plain_numbers(line) << '\n';

@@ -9,8 +9,8 @@ namespace crawler
   namespace
   {
     constexpr double rare = 0.02;                            ///< of body and time
-    constexpr int steps   = 8;                               ///< of sizes in a factor of two
-    constexpr int zero    = std::numeric_limits<int>::min(); ///< the step of what does not move
+    constexpr int steps   = 8;                               ///< sizes per factor of two
+    constexpr int zero    = std::numeric_limits<int>::min(); ///< step of the size 0
   }                                                          // namespace
 
   void

@@ -11,7 +11,7 @@ namespace crawler
 {
   namespace
   {
-    /// As VTK numbers them.
+    /// Cell types as numbered by VTK.
     enum class CellType : std::uint8_t
     {
       line          = 3,
@@ -21,7 +21,8 @@ namespace crawler
 
     using Indices = std::vector<std::int32_t>;
 
-    /// A file with cells of one type: the text of its field and point data, points and the points of the cells.
+    /// A file with cells of one type, from the text of its field and point data, its points and the points of the
+    /// cells.
     std::string
     vtu_file(const CellType type,
              const std::string &field_data,
@@ -49,7 +50,7 @@ namespace crawler
                     vtk_array("types", std::vector<std::uint8_t>(n_cells, static_cast<std::uint8_t>(type)))));
     }
 
-    /// Cells that have their points for themselves.
+    /// Cells that share no points.
     Indices
     in_order(const std::vector<double> &points)
     {
@@ -128,7 +129,7 @@ namespace crawler
                                        "byte_order=\"LittleEndian\">\n  <Collection>\n",
                          *list_end   = "  </Collection>\n</VTKFile>\n";
 
-    /// The line of a file in a list.
+    /// Line of a file in the list.
     std::string
     entry(const double time, const unsigned int part, const std::string &name, const std::string &file)
     {

@@ -32,8 +32,8 @@ namespace crawler
       return fmt::format("{}", fmt::join(numbers, " "));
     }
 
-    /// Describes datasets, or their part for the frame of a row. That part is named by its place in the file, as binary
-    /// numbers: of ParaView's three readers one alone knows parts of HDF5 datasets.
+    /// Describes datasets, or their part for the frame of a row. The part is given by its offset in the file, as binary
+    /// numbers: only one of ParaView's three readers knows parts of HDF5 datasets.
     class DataItems
     {
     public:
@@ -61,7 +61,7 @@ namespace crawler
                            file_.place(name, layout.has_rows ? row_ : 0),
                            type,
                            words(shape),
-                           row_); // ParaView's XDMF Reader takes points for those that it has if the texts begin alike
+                           row_); // ParaView's XDMF Reader reuses the points of another frame if the texts begin alike
       }
 
       std::string
@@ -77,7 +77,7 @@ namespace crawler
           "<Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Node\">\n{}</Attribute>\n", name, item(dataset));
       }
 
-      /// A grid of cells that the dataset "cells" of the group lists.
+      /// Grid whose cells are listed in the dataset "cells" of the group.
       std::string
       cells(const std::string &group, const char *type, const std::vector<std::string> &fields) const
       {
@@ -116,7 +116,7 @@ namespace crawler
     : path_(folder / "solution.h5")
     , length_(length)
     , expected_(n_frames)
-    , most_frames_(std::min<std::size_t>(n_frames, 4096)) // more only when they come
+    , most_frames_(std::min<std::size_t>(n_frames, 4096)) // grows if there are more
     , body_(folder / "solution.xdmf", description_begin, description_end)
     , line_(folder / "line.xdmf", description_begin, description_end)
   {
@@ -158,7 +158,7 @@ namespace crawler
     write(grip + "friction_force", forces);
     write("step", {static_cast<double>(frame.step)});
     write("n_points", {static_cast<double>(n)});
-    write("time", {frame.time}); // last: whoever finds it finds the rest
+    write("time", {frame.time}); // last: a frame with its time is complete
     frames_.push_back({frame.time, n});
     if (grows)
       rewrite_descriptions();
@@ -194,7 +194,7 @@ namespace crawler
     std::tie(most_frames_, most_points_) = file_->size();
     if (most_frames_ < frames_.size())
       throw FileError("cannot go on with \"" + path_.string() + "\": it has fewer frames than were written");
-    rewrite_descriptions(); // the places of the frames in the file may have changed since
+    rewrite_descriptions(); // positions of the frames in the file may have changed
   }
 
   void
@@ -238,7 +238,7 @@ namespace crawler
   {
     Corners corners = scenery.ground();
     const Corners last(corners.end() - 3, corners.end());
-    while (corners.size() < 12 * Scenery::most_ground) // the rest is of no size
+    while (corners.size() < 12 * Scenery::most_ground) // the remaining quadrilaterals have no area
       corners.insert(corners.end(), last.begin(), last.end());
     file_->write(ground + "points", corners);
     file_->write(scale + "points", scenery.scale());

@@ -17,7 +17,7 @@ namespace crawler
   {
     constexpr double most_values = 100000;
 
-    /// Without the noise of round-off: 0.03 and not 0.030000000000000002, 100 and not 99.99999999999999.
+    /// Text without round-off noise: 0.03 and not 0.030000000000000002, 100 and not 99.99999999999999.
     std::string
     clean_text(const double value)
     {
@@ -38,7 +38,7 @@ namespace crawler
         name);
     }
 
-    /// The values of linspace(...) or logspace(...); @p text is all that stands behind the colon.
+    /// The values of linspace(...) or logspace(...); @p text is the whole text behind the colon.
     std::vector<std::string>
     evenly_spaced(const Call &call, const std::string &text, const std::string &name)
     {

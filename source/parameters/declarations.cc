@@ -28,13 +28,13 @@ namespace crawler
       return static_cast<unsigned int>(std::stoul(text));
     }
 
-    /// What is perhaps wrong with a number like "10 cm".
+    /// Hint at the probable error in a number like "10 cm".
     std::string
     number_hint(const std::string &text)
     {
-      if (to_number(text)) // it is one, but out of the range
+      if (to_number(text)) // a number out of range
         return "";
-      if (!probable_slip(text).empty()) // which is told with the place of the entry
+      if (!probable_slip(text).empty()) // reported with the place of the entry
         return "";
       char *end = nullptr;
       std::strtod(text.c_str(), &end);
@@ -48,7 +48,7 @@ namespace crawler
       return "";
     }
 
-    /// The shorter name of a file in the current folder or below it.
+    /// File name relative to the current folder if it is in or below it.
     std::string
     seen_from_here(const std::string &file)
     {
@@ -56,7 +56,7 @@ namespace crawler
       return near.empty() || *near.begin() == ".." ? file : near.string();
     }
 
-    /// The names of a list with semicolons, each of them changed.
+    /// Applies @p changed to each name of a list with semicolons.
     std::string
     each_name(const std::string &list, const std::function<std::string(const std::string &)> &changed)
     {
@@ -73,7 +73,7 @@ namespace crawler
       return fmt::format("{}", fmt::join(words, "/"));
     }
 
-    /// The section that an entry is in.
+    /// Path of the section of an entry.
     std::string
     section_of(const std::vector<std::string> &words)
     {
@@ -85,7 +85,7 @@ namespace crawler
     template <typename Value>
     constexpr bool may_be_automatic<std::optional<Value>> = true;
 
-    /// A default value as it is written.
+    /// A default value as text.
     template <typename Value>
     std::string
     default_text(const Value &value)
@@ -98,7 +98,7 @@ namespace crawler
         return fmt::format("{}", value);
     }
 
-    // How values are read: nothing if a text is not admissible.
+    // Readers of values: nothing if a text is not admissible.
 
     auto
     reader(const Range &range)
@@ -123,7 +123,7 @@ namespace crawler
       return fmt::format("a whole number from {} to {}", lower, upper);
     }
 
-    /// The nearest of the words that a choice offers, as a hint.
+    /// Hint naming the nearest word of a choice.
     std::string
     nearest_word(const std::string &value, const std::vector<std::string> &words)
     {
@@ -439,7 +439,7 @@ namespace crawler
     refuse_name(path);
   }
 
-  /// With the nearest names: those of the same section, else any entry of a near name elsewhere.
+  /// Reports the nearest names: those of the same section, else any entry of a near name elsewhere.
   void
   Declarations::refuse_name(const std::vector<std::string> &words) const
   {

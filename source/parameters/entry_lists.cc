@@ -14,7 +14,7 @@ namespace crawler
   {
     using Json = nlohmann::ordered_json;
 
-    /// The section that an entry is in; empty at the top level.
+    /// Path of the section of an entry; empty at the top level.
     std::string
     section_of(const std::string &path)
     {
@@ -28,7 +28,7 @@ namespace crawler
       return kind == EntryKind::text || kind == EntryKind::constants || kind == EntryKind::profile;
     }
 
-    /// A value as JSON has it.
+    /// A value as JSON.
     Json
     typed(const std::string &text, const EntryKind kind)
     {
@@ -92,7 +92,7 @@ namespace crawler
       const std::vector<std::string> words = split_path(entry.path);
       for (std::size_t i = 0; i + 1 < words.size(); ++i)
       {
-        // A section that is numbered stands for all of its kind.
+        // A numbered section stands for all of its kind.
         const bool is_numbered = words[i].ends_with(" 1");
         place                  = is_numbered
                                    ? &(*place)["patternProperties"]["^" + words[i].substr(0, words[i].size() - 1) + "[1-9][0-9]*$"]

@@ -18,8 +18,8 @@ namespace crawler
       return entry.path.size() > section.size() && std::equal(section.begin(), section.end(), entry.path.begin());
     }
 
-    /// The words of @p text in lines of at most so many characters; the last one is shorter than that, as in what
-    /// dealii::ParameterHandler writes.
+    /// Breaks @p text into lines of at most @p width characters; the last one is shorter than that, as
+    /// dealii::ParameterHandler writes them.
     std::vector<std::string>
     lines_of(const std::string &text, const std::size_t width)
     {
@@ -36,7 +36,7 @@ namespace crawler
       return lines;
     }
 
-    /// One section of a .prm file, whose entries and sections stand in the order in which they were declared.
+    /// A section of a .prm file, with its entries and sections in the order of their declaration.
     class Section
     {
     public:

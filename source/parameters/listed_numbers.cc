@@ -13,7 +13,7 @@ namespace crawler
 {
   namespace
   {
-    constexpr std::size_t longest_list = 10000; ///< that a place in brackets makes
+    constexpr std::size_t longest_list = 10000; ///< that a number in brackets may create
 
     std::vector<ListedNumber>
     in_places(const std::vector<double> &numbers)
@@ -24,7 +24,7 @@ namespace crawler
       return list;
     }
 
-    /// None of a list with an error, which whoever reads the formula names.
+    /// Constants of a formula; none if the list has an error, which the reader of the formula reports.
     std::vector<ListedNumber>
     constants_of(const std::string &text)
     {
@@ -47,7 +47,7 @@ namespace crawler
       throw InputError(fmt::format("\"{}[{}]\" {}", entry.path, key, reason), entry.path);
     }
 
-    /// Says what may stand in the brackets instead.
+    /// Throws InputError that says which keys are admissible.
     [[noreturn]] void
     refuse_key(const EntryInfo &entry,
                const std::string &text,
@@ -95,7 +95,7 @@ namespace crawler
       }
     }
 
-    /// The numbers of the entry, and which of them the key names; a list is as long as the key says.
+    /// The numbers of the entry, and the index that the key names; a list is extended to it.
     std::pair<std::vector<ListedNumber>, std::size_t>
     numbers_with(const EntryInfo &entry, const std::string &text, const std::string &key)
     {

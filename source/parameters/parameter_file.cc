@@ -21,7 +21,7 @@ namespace crawler
     constexpr unsigned int most_included  = 1000;
     constexpr std::size_t most_bytes      = 1 << 26; // with all included files
 
-    /// All, or somewhat more than is admissible.
+    /// Reads all bytes, up to slightly more than admissible.
     std::string
     read_bytes(std::istream &in)
     {
@@ -55,7 +55,7 @@ namespace crawler
       return read_bytes(in);
     }
 
-    /// The first word of a line, and the rest.
+    /// Splits a line into its first word and the rest.
     std::pair<std::string, std::string>
     first_word(const std::string &line)
     {
@@ -65,11 +65,11 @@ namespace crawler
       return {line.substr(0, end), trimmed(line.substr(end))};
     }
 
-    /// A line without its comment, with those that continue it.
+    /// A line without its comment, joined with its continuation lines.
     struct Statement
     {
       std::string text;
-      unsigned int line; ///< where it begins
+      unsigned int line; ///< its first line
     };
 
     std::vector<Statement>
@@ -94,7 +94,7 @@ namespace crawler
       return statements;
     }
 
-    /// The error of an assignment, with its place and a probable slip. A foreign sign takes the place of its error.
+    /// Error of an assignment, with its place and a probable slip. A foreign sign is reported instead.
     InputError
     at_place(const Assignment &assignment, const InputError &error)
     {
@@ -144,7 +144,7 @@ namespace crawler
       throw InputError(fmt::format("{}: this is a binary file; a text file of parameters is expected", name));
 
     const auto folder = std::filesystem::path(name).parent_path();
-    std::vector<std::pair<std::string, unsigned int>> open; // sections, and the lines that opened them
+    std::vector<std::pair<std::string, unsigned int>> open; // open sections, and the lines that opened them
     const auto path = [&open](const std::string &last) {
       std::string result;
       for (const auto &[section, line] : open)
@@ -221,7 +221,7 @@ namespace crawler
       throw InputError(fmt::format("{}: \"include\" without the name of a file", place));
     if (const std::string sign = home_sign(file_name); !sign.empty())
       throw InputError(fmt::format("{}: {}", place, sign));
-    const auto file = (folder / (file_name == "-" ? "./-" : file_name)).string(); // standard input is no part of a file
+    const auto file = (folder / (file_name == "-" ? "./-" : file_name)).string(); // standard input cannot be included
     std::string included;
     try
     {

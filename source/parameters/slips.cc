@@ -12,7 +12,7 @@ namespace crawler
 {
   namespace
   {
-    /// A sign in UTF-8, its name, and what stands on the keyboard for it.
+    /// A UTF-8 sign, its name, and the keyboard's sign for it.
     struct Sign
     {
       const char *bytes, *name, *expected;
@@ -75,7 +75,7 @@ namespace crawler
   probable_slip(const std::string &value)
   {
     std::smatch found;
-    // One comma between digits; not the two arguments of a function, nor a list of three and more.
+    // One comma between digits; neither two arguments of a function nor a list of three or more.
     static const std::regex comma(R"((^|[^\w.,])(\d+),(\d+)(?![\d.,]))"), arguments(R"(\(\d+,\d+\))");
     if (const std::string rest = std::regex_replace(value, arguments, ""); std::regex_search(rest, found, comma))
       return fmt::format("; decimals are written with a point: {}.{}", found.str(2), found.str(3));

@@ -22,11 +22,11 @@ namespace crawler
   {
     /// Remaining error of Newton's method, relative to the admissible error of a step.
     constexpr double newton_fraction = 0.01;
-    /// The same if it is only predicted, with the constant of an earlier step.
+    /// Version for an error that is only predicted, with the constant of an earlier step.
     constexpr double predicted_fraction = 0.1 * newton_fraction;
 
-    /// Keeps PETSc's duplicate of a communicator that lasts until the end; it would be made and freed with the objects
-    /// of every time stepper. PETSc frees it at its own end.
+    /// Keeps PETSc's duplicate of a communicator until PETSc frees it at its end; otherwise it would be made and freed
+    /// with the objects of every time stepper.
     void
     keep_duplicate(MPI_Comm communicator)
     {
@@ -55,20 +55,20 @@ namespace crawler
     PetscOwner<Mat> jacobian;
     PetscOwner<TS> ts;
 
-    // Since begin().
+    // Values since begin().
     std::vector<double> ends; ///< of the course
     std::size_t next_end = 0;
     double tolerance     = 0.;
     double fixed_step    = 0.;
     Step step{};
-    std::vector<double> y;          ///< behind it
-    std::optional<TimeOutcome> end; ///< if it has ended
-    std::optional<Archive> goes_on; ///< where begin() is to go on
+    std::vector<double> y;          ///< state after `step`
+    std::optional<TimeOutcome> end; ///< outcome, once the course has ended
+    std::optional<Archive> goes_on; ///< where begin() is to continue from
     bool jacobian_ok    = true;
-    double refused_at   = -1.; ///< time of the last state that was refused
-    double nonfinite_at = -1.; ///< time of the last residual that was not a finite number
+    double refused_at   = -1.; ///< time of the last refused state
+    double nonfinite_at = -1.; ///< time of the last residual that was not finite
     std::span<const StepLimit> limits;
-    unsigned int limit = 0;                          ///< the present one
+    unsigned int limit = 0;                          ///< number of the present limit
     bool underflow     = false;                      ///< a step is below the resolution of the time
     std::optional<double> user_tolerance, user_step; ///< options -ts_atol and -ts_dt
     double relative_tolerance   = 0.;                ///< option -ts_rtol
@@ -154,7 +154,7 @@ namespace crawler
     set_options();
   }
 
-  /// The choices of the program first, then the user's options after "--".
+  /// Sets the choices of the program, then the user's options after "--".
   void
   PetscStepper::Implementation::set_options()
   {
@@ -172,7 +172,8 @@ namespace crawler
     petsc(TSAdaptSetType(adapt, parameters.step_control == StepControl::fixed ? TSADAPTNONE : TSADAPTBASIC));
     if (method.petsc_type == radau_type)
       petsc(TSAdaptSetClip(adapt, radau::least_change, radau::most_change));
-    petsc(TSSetExactFinalTime(stepper, TS_EXACTFINALTIME_STEPOVER)); // choose_step() makes steps end where they must
+    petsc(TSSetExactFinalTime(stepper, TS_EXACTFINALTIME_STEPOVER)); // choose_step() makes steps end at the required
+                                                                     // times
     petsc(TSSetMaxSNESFailures(stepper, -1));
     petsc(TSSetMaxStepRejections(stepper, 30));
     petsc(TSSetErrorIfStepFails(stepper, PETSC_FALSE));
@@ -195,7 +196,7 @@ namespace crawler
     petsc(SNESSetType(snes, SNESNEWTONLS));
     petsc(SNESGetLineSearch(snes, &line_search));
     petsc(SNESLineSearchSetType(line_search, SNESLINESEARCHBASIC));
-    // No tolerance for the correction: a line search that fails after a small one would count as converged.
+    // No tolerance of the correction: a line search that fails after a small one would count as converged.
     petsc(SNESSetTolerances(snes, PETSC_DEFAULT, PETSC_DEFAULT, /*correction=*/0., /*iterations=*/10, PETSC_DEFAULT));
     petsc(SNESSetConvergenceTest(snes, newton_converged, this, nullptr));
     petsc(SNESGetKSP(snes, &ksp));
@@ -209,7 +210,7 @@ namespace crawler
     petsc(PCShellSetApply(pc, precondition));
   }
 
-  /// What the user says behind "--"; it must be one of the integrators.
+  /// Applies the user's options after "--"; the integrator must be among those offered.
   void
   PetscStepper::Implementation::apply_user_options()
   {
@@ -224,7 +225,7 @@ namespace crawler
     if (code != 0)
       throw InputError("PETSc refuses an option behind \"--\": " + words);
 
-    // begin() sets these anew each time.
+    // Options that begin() resets each time.
     const auto option = [&](const char *option_name) {
       PetscReal value = 0.;
       PetscBool found = PETSC_FALSE;
@@ -258,7 +259,7 @@ namespace crawler
                      "; \"bdf\" or \"radau\" is expected");
   }
 
-  /// The elimination becomes a preconditioner from the right, so that residuals are the true ones.
+  /// Makes the elimination a right preconditioner, so that residuals are the true ones.
   void
   PetscStepper::Implementation::use_krylov_method()
   {
@@ -354,8 +355,9 @@ namespace crawler
   }
 
   /**
-   * Newton's method with an exact Jacobian converges quadratically: after a correction d the error that remains is
-   * about C d^2. C is taken from the last solve that needed two corrections; until there is one, two are made.
+   * Convergence test of Newton's method, which converges quadratically with an exact Jacobian: after a correction d the
+   * remaining error is about C d^2. C is taken from the last solve that needed two corrections; before the first, two
+   * are made.
    */
   PetscErrorCode
   PetscStepper::Implementation::newton_converged(SNES,
@@ -379,7 +381,7 @@ namespace crawler
         *reason = SNES_CONVERGED_FNORM_ABS;
       return 0;
     }
-    // In units of the admissible error.
+    // Norms in units of the admissible error.
     double d = dx_norm / self.tolerance, x = x_norm / self.tolerance;
     const double rms = 1. / std::sqrt(static_cast<double>(self.n_unknowns));
     d *= rms;
@@ -393,7 +395,7 @@ namespace crawler
     return 0;
   }
 
-  /// Shortens the step such that it, or the one after it, ends where a step must end.
+  /// Shortens the step so that it, or the next one, ends at a required time.
   void
   PetscStepper::Implementation::choose_step()
   {
@@ -412,7 +414,7 @@ namespace crawler
     petsc(TSSetTimeStep(ts.get(), size));
   }
 
-  /// Errors come back as codes, not printed.
+  /// Makes a step; errors are returned as codes, not printed.
   PetscErrorCode
   PetscStepper::Implementation::make_step()
   {
@@ -422,7 +424,7 @@ namespace crawler
     return code;
   }
 
-  /// At the end of an accepted step; null if it was none.
+  /// Completes an accepted step; null if there was none.
   const Step *
   PetscStepper::Implementation::arrive()
   {
@@ -438,7 +440,7 @@ namespace crawler
     const double size = time - previous;
     if (!(size > 4. * std::numeric_limits<double>::epsilon() * time))
     {
-      underflow = true; // nothing can be gained, and this is no divisor
+      underflow = true; // shorter steps do not help, and `size` cannot be a divisor
       return nullptr;
     }
     const TimeOutcome so_far = counts();
@@ -448,7 +450,7 @@ namespace crawler
     return &step;
   }
 
-  /// The state to the monitors of PETSc's options.
+  /// Shows the state to the monitors of PETSc's options.
   void
   PetscStepper::Implementation::show()
   {
@@ -480,7 +482,7 @@ namespace crawler
     return result;
   }
 
-  /// Gives what PETSc says a name.
+  /// Names the failure that PETSc reports.
   TimeOutcome
   PetscStepper::Implementation::failure(const PetscErrorCode code)
   {
@@ -490,8 +492,7 @@ namespace crawler
     SNESConvergedReason newton_reason;
     TSGetSNES(stepper, &snes);
     SNESGetConvergedReason(snes, &newton_reason);
-    // Refused states and residuals on the way to this one count if they were close: the steps became small because of
-    // them. Each rank knows of its own.
+    // Refused states and residuals count if their times were close: they made the steps small. Each rank knows its own.
     double latest[2] = {refused_at, nonfinite_at};
     MPI_Allreduce(
       MPI_IN_PLACE, latest, 2, MPI_DOUBLE, MPI_MAX, PetscObjectComm(reinterpret_cast<PetscObject>(stepper)));
@@ -663,7 +664,8 @@ namespace crawler
       petsc(VecDuplicate(implementation_->solution.get(), &vec));
       implementation_->interpolated.reset(vec);
     }
-    // PETSc refuses times outside of the step, also by a last bit: the start of a step is its end less its size.
+    // Times outside of the step are refused by PETSc, even by a last bit: it takes the start of a step as its end less
+    // its size.
     TS ts          = implementation_->ts.get();
     PetscReal from = 0., to = 0.;
     petsc(TSGetPrevTime(ts, &from));

@@ -16,14 +16,14 @@ namespace crawler
 {
   namespace
   {
-    /// Slower convergence than this factor per iteration asks for new factors.
+    /// Convergence factor per iteration above which new factors are computed.
     constexpr double slow = 0.1;
-    /// So many steps are done with the Krylov method after the simplified Newton method failed.
+    /// Number of steps with the Krylov method after the simplified Newton method failed.
     constexpr unsigned int krylov_steps = 10;
-    /// Relative tolerance of the Krylov method then.
+    /// Relative tolerance of the Krylov method in these steps.
     constexpr double krylov_tolerance = 0.01;
     constexpr int krylov_iterations   = 30;
-    /// Of a step that cannot be judged, relative to the tolerance.
+    /// Error of a step that cannot be estimated, relative to the tolerance.
     constexpr double hopeless_error = 1e6;
 
     struct Radau
@@ -36,17 +36,17 @@ namespace crawler
       PetscOwner<Vec> y, y_dot, f, start;
       PetscOwner<Vec> z, residual;
       PetscOwner<Mat> jacobian;
-      PetscOwner<KSP> linear, krylov; ///< if the solver's own, linear, is preonly
+      PetscOwner<KSP> linear, krylov; ///< if `linear`, the solver's own, is preonly
       unsigned int hard_steps = 0;
       std::size_t n_owned     = 0;
       double n_all            = 0.; ///< unknowns of all ranks
       std::vector<double> work, x_dot;
       std::vector<std::complex<double>> complex_work;
 
-      double h = 0., t = 0.;   ///< of the step that is tried
+      double h = 0., t = 0.;   ///< of the attempted step
       double error       = 0.; ///< its error in units of the tolerance
       unsigned int steps = 0;  ///< accepted since the last start
-      // The last accepted step, for interpolation and the next guess.
+      // The last accepted step, for interpolation and the next first guess.
       std::vector<double> old_start, old_z;
       double old_h = 0., old_t = 0.;
 
@@ -80,7 +80,7 @@ namespace crawler
           n_stages(), tableau->inverse.data(), static_cast<int>(i), 1. / h, z.data(), n(), result.data());
       }
 
-      // As the loops want them.
+      // Arguments of the loops.
       int
       n_stages() const
       {
@@ -99,7 +99,7 @@ namespace crawler
       return *static_cast<Radau *>(ts->data);
     }
 
-    /// From the last step if there is one, or from rest; returns false for the latter.
+    /// Sets the first guess from the last step if there is one, or from rest; returns false for the latter.
     bool
     first_guess(TS ts)
     {
@@ -123,7 +123,7 @@ namespace crawler
       return true;
     }
 
-    /// One attempt with the solver's own linear method or with the Krylov method.
+    /// Makes one attempt with the solver's own linear method or with the Krylov method.
     PetscErrorCode
     attempt(TS ts, const bool krylov, bool &ok)
     {
@@ -145,9 +145,9 @@ namespace crawler
     }
 
     /**
-     * Solves for the stages: by the simplified Newton method if that is what the user left in place, and where it fails
-     * with exact products, for some steps at once. A guess that leads nowhere is replaced by rest, which is in the
-     * domain of F.
+     * Solves for the stages: by the simplified Newton method unless the user chose otherwise, and where it fails with
+     * exact products, which then stay for some steps. A guess that fails is replaced by rest, which is in the domain of
+     * F.
      */
     PetscErrorCode
     solve_stages(TS ts)
@@ -192,7 +192,7 @@ namespace crawler
       return 0;
     }
 
-    /// Factors at the stage in the middle of the step.
+    /// Computes the factors at the stage in the middle of the step.
     PetscErrorCode
     factorize(TS ts, const std::span<const double> z)
     {
@@ -212,7 +212,7 @@ namespace crawler
       });
     }
 
-    /// Products with the exact Jacobian of all stages, at the present state of Newton's method.
+    /// Prepares products with the exact Jacobian of all stages, at the present state of Newton's method.
     PetscErrorCode
     setup_products(TS ts)
     {
@@ -280,7 +280,7 @@ namespace crawler
                                data(static_cast<TS>(context)).factors_ok ? PC_NOERROR : PC_FACTOR_NUMERIC_ZEROPIVOT);
     }
 
-    /// In the basis of the eigenvectors of A^-1 the stages do not depend on each other.
+    /// Preconditions in the basis of the eigenvectors of A^-1, where the stages do not depend on each other.
     PetscErrorCode
     precondition(PC pc, Vec B, Vec X)
     {
@@ -332,7 +332,8 @@ namespace crawler
       return std::sqrt(sum / (radau.n_all * radau.tableau->n));
     }
 
-    /// The iteration converges linearly; with the rate so far the error that remains is rate/(1-rate) corrections.
+    /// Convergence test: the iteration converges linearly; with the rate so far the remaining error is rate/(1-rate)
+    /// corrections.
     PetscErrorCode
     newton_converged(SNES snes,
                      const PetscInt it,
@@ -378,8 +379,8 @@ namespace crawler
       return 0;
     }
 
-    /// (K + sigma M)^-1 ( -F(t, y, -sigma e.z) ), the error of the embedded formula. Where the filter has to damp
-    /// disturbed stiff components it is applied again if the error is large; then the step must not grow.
+    /// Estimates the error by the embedded formula, (K + sigma M)^-1 ( -F(t, y, -sigma e.z) ). If it is large and the
+    /// filter has to damp disturbed stiff components, the filter is applied again; then the step must not grow.
     PetscErrorCode
     estimate_error(TS ts)
     {
@@ -420,7 +421,7 @@ namespace crawler
         PetscReal absolute = 0., relative = 0.;
         TSErrorWeightedNorm(
           ts, radau.start.get(), radau.y.get(), ts->adapt->wnormtype, &radau.error, &absolute, &relative);
-        if (!std::isfinite(radau.error)) // the filter lost the stretch
+        if (!std::isfinite(radau.error)) // the filter made the stretch negative
         {
           radau.error = hopeless_error;
           break;
@@ -455,7 +456,7 @@ namespace crawler
           return code;
         if (accept)
         {
-          if (radau.factors_h != radau.h) // nothing had to be solved
+          if (radau.factors_h != radau.h) // no system had to be solved
           {
             const ReadAccess z(radau.z.get());
             code = factorize(ts, z.span);
@@ -507,7 +508,7 @@ namespace crawler
     PetscErrorCode
     weighted_error(TS ts, NormType, PetscInt *order, PetscReal *error)
     {
-      *order = static_cast<PetscInt>(data(ts).tableau->n + 1); // the step size goes as error^(1/order)
+      *order = static_cast<PetscInt>(data(ts).tableau->n + 1); // the step size scales as error^(1/order)
       *error = data(ts).error;
       return 0;
     }

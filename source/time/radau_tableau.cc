@@ -14,7 +14,7 @@ namespace crawler
 {
   namespace
   {
-    // With more digits than the tables have, since the eigenvectors are nearly parallel.
+    // Extended precision: the eigenvectors are nearly parallel.
     using Real    = long double;
     using Complex = std::complex<Real>;
 
@@ -41,7 +41,7 @@ namespace crawler
       std::vector<Number> entries;
     };
 
-    /// By Gauss and Jordan with pivots.
+    /// Inverts by Gauss-Jordan elimination with pivoting.
     template <typename Number>
     Matrix<Number>
     inverse_of(Matrix<Number> a)
@@ -77,8 +77,8 @@ namespace crawler
       return result;
     }
 
-    /// The eigenvalues, which are single: the zeros of the characteristic polynomial, all at once (Weierstrass). The
-    /// real one first, then pairs with falling imaginary parts, the positive one of each pair before the other.
+    /// The eigenvalues, which are simple: all zeros of the characteristic polynomial at once (Weierstrass). The real
+    /// one first, then pairs with falling imaginary parts, in each pair the positive one first.
     std::vector<Complex>
     eigenvalues_of(const Matrix<Real> &matrix)
     {
@@ -128,7 +128,7 @@ namespace crawler
       return zeros;
     }
 
-    /// The Radau points in (0, 1]: the zeros of P_s - P_{s-1}, between whose sign changes on a grid there is one each.
+    /// The Radau points in (0, 1]: the zeros of P_s - P_{s-1}, one in each grid interval where the sign changes.
     std::vector<double>
     radau_points(const unsigned int n)
     {
@@ -152,7 +152,7 @@ namespace crawler
       return points;
     }
 
-    /// The polynomial l_j with l_j(c_i) = (i == j), as its coefficients of 1, x, x^2, ...
+    /// Coefficients of 1, x, x^2, ... of the polynomial l_j with l_j(c_i) = (i == j).
     std::vector<Real>
     lagrange_polynomial(const std::vector<double> &c, const unsigned int j)
     {
@@ -243,8 +243,8 @@ namespace crawler
       for (unsigned int j = 0; j < n; ++j)
         rows.push_back(rounded(left(k, j)));
 
-    // b^ integrates polynomials up to degree s-1 exactly together with the weight gamma_0 of f(0), so with l_j:
-    // b^_j = b_j - gamma_0 l_j(0).
+    // The weights b^ integrate polynomials up to degree s-1 exactly together with the weight gamma_0 of f(0), so with
+    // l_j: b^_j = b_j - gamma_0 l_j(0).
     const double gamma_0 = 1. / real_eigenvalue;
     for (unsigned int j = 0; j < n; ++j)
     {

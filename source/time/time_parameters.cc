@@ -11,7 +11,7 @@ namespace crawler
 {
   namespace
   {
-    /// The words of the entry.
+    /// Words of the entry.
     std::vector<std::string>
     integrator_names()
     {

@@ -17,13 +17,13 @@
 namespace crawler
 {
   /**
-   * The state of objects as bytes, exactly: written by an archive without bytes, and read by one with them. One
-   * function says what belongs to a type for both directions,
+   * The exact state of objects as bytes: an archive made without bytes writes, one made with bytes reads. One function
+   * lists the members of a type for both directions,
    *
    *     void exchange(Archive &archive) { archive(first_, second_); }
    *
-   * Bytes are those of this machine, for the same program only. To read what was not written throws FileError; sizes
-   * are looked at before memory is asked for.
+   * The bytes are valid for the same program on the same kind of machine only. Reading what was not written throws
+   * FileError; sizes are checked before memory is allocated.
    */
   class Archive
   {
@@ -40,13 +40,13 @@ namespace crawler
     {
       return reads_;
     }
-    /// All that was written.
+    /// All bytes written.
     const std::string &
     bytes() const
     {
       return bytes_;
     }
-    /// Nothing is left to be read.
+    /// True if nothing is left to read.
     bool
     is_at_end() const
     {
@@ -60,7 +60,7 @@ namespace crawler
       (one(values), ...);
     }
 
-    /// Does what was read make sense?
+    /// Throws FileError unless the values read make sense.
     void
     require(const bool makes_sense, const char *what) const
     {
@@ -68,7 +68,8 @@ namespace crawler
         fail(what);
     }
 
-    /// What must be the same as when it was written: numbers and kinds of things that are not exchanged themselves.
+    /// Checks a value that must equal the one at writing: numbers and kinds of things that are not exchanged
+    /// themselves.
     template <typename Type>
     void
     require_same(Type value, const char *what)
@@ -84,8 +85,8 @@ namespace crawler
     {
       value.exchange(archive);
     };
-    /// Numbers, and structures of nothing but numbers: all bytes are a value. A structure with truth values or enums
-    /// must say what belongs to it (exchange), so that each is looked at.
+    /// True for numbers and structures of nothing but numbers, whose bytes are their value. A structure with truth
+    /// values or enums must list its members (exchange), so that each is checked.
     template <typename Type>
     static constexpr bool is_raw =
       !has_exchange<Type> && !std::is_same_v<Type, bool> &&
@@ -115,7 +116,7 @@ namespace crawler
         require(number < std::size(Words<Enum>::list), "a kind");
       value = static_cast<Enum>(number);
     }
-    /// A byte that is neither 0 nor 1 is no truth value, and using it as one is undefined.
+    /// Truth values are checked: using a byte other than 0 or 1 as one is undefined.
     void
     one(bool &value)
     {

@@ -5,12 +5,11 @@
 
 namespace crawler
 {
-  /// Seconds of a clock that only goes forward, for differences. Every limit of time and every time that is printed
-  /// comes from it.
+  /// Seconds of a monotonic clock, for differences. All time limits and printed times come from it.
   double
   now();
 
-  /// Seconds since it was made.
+  /// Seconds since its construction.
   class Stopwatch
   {
   public:
@@ -24,7 +23,7 @@ namespace crawler
     double start_ = now();
   };
 
-  /// Another clock in place of now(), for tests of limits of time, as long as this lives.
+  /// Replaces now() during its lifetime, for tests of time limits.
   class ClockOfTest
   {
   public:

@@ -11,25 +11,25 @@
 
 namespace crawler
 {
-  /// Number of this process, and of all.
+  /// Number of this process; below, the number of all processes.
   unsigned int
   rank_of(MPI_Comm communicator);
   unsigned int
   size_of(MPI_Comm communicator);
 
-  /// Is it so on any rank? (collective)
+  /// Returns on all ranks whether @p is_true holds on any of them (collective).
   bool
   is_true_anywhere(bool is_true, MPI_Comm communicator);
 
-  /// The text of rank 0, on all ranks.
+  /// Returns the text of rank 0 on all ranks.
   std::string
   broadcast(const std::string &text, MPI_Comm communicator);
 
-  /// The texts of all ranks in their order, on rank 0; nothing on the others (collective).
+  /// Returns on rank 0 the texts of all ranks in rank order, on the others nothing (collective).
   std::vector<std::string>
   gather(const std::string &text, MPI_Comm communicator);
 
-  /// The numbers of all ranks, one after another in their order, on rank 0; nothing on the others (collective).
+  /// Returns on rank 0 the numbers of all ranks, concatenated in rank order, on the others nothing (collective).
   std::vector<double>
   gather(const std::vector<double> &numbers, MPI_Comm communicator);
 
@@ -40,22 +40,22 @@ namespace crawler
   std::string
   on_first_rank(MPI_Comm communicator, const std::function<std::string()> &action);
 
-  /// The same of an exit code: rank 0 says how all ranks end.
+  /// Version for an exit code: rank 0 decides how all ranks end.
   ExitCode
   exit_code_of_first_rank(MPI_Comm communicator, const std::function<ExitCode()> &action);
 
-  /// Sends bytes to rank 0 from another rank, and waits until they are taken there.
+  /// Sends bytes from another rank to rank 0, and waits until they are received.
   void
   send_to_first_rank(const std::string &text, MPI_Comm communicator);
 
-  /// Hands to @p keep, on rank 0, what other ranks are sending. Throws what that throws.
+  /// Passes what other ranks are sending to @p keep, on rank 0. Throws what @p keep throws.
   void
   take_from_others(MPI_Comm communicator, const std::function<void(const std::string &)> &keep);
 
   /**
-   * Open MPI in a process that no launcher has started runs a daemon and looks for networks, which takes longer than
-   * most runs. While this object lives, when MPI is initialized, it does neither; what the user has set in the
-   * environment stays. Where a launcher is seen, only the slow access to counters is excluded.
+   * Speeds up MPI_Init: in a process without a launcher Open MPI starts a daemon and looks for networks, which takes
+   * longer than most runs. If MPI is initialized while this object lives, it does neither; settings in the user's
+   * environment stay. Under a launcher only the slow access to counters is excluded.
    */
   class QuickStart
   {
@@ -65,6 +65,6 @@ namespace crawler
     QuickStart(const QuickStart &) = delete;
 
   private:
-    std::vector<const char *> set_; ///< variables that programs started by this one do not inherit
+    std::vector<const char *> set_; ///< variables to be removed again, so that child processes do not inherit them
   };
 } // namespace crawler

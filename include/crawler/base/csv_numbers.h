@@ -13,7 +13,7 @@ namespace crawler
   class Mistakes
   {
   public:
-    /// Notes a row; is it the first mistake? Then say() is to be called.
+    /// Notes a row. Returns true for the first mistake: then say() must be called.
     bool
     is_first(std::size_t row);
     void
@@ -48,7 +48,7 @@ namespace crawler
               const std::string &file,
               const std::string &entry);
 
-  /// The same of the file @p file; @p expected says in messages what belongs there.
+  /// Version for the file @p file; @p expected says in messages what belongs there.
   CsvNumbers
   read_csv_numbers(const std::string &file,
                    const std::vector<std::string> &names,

@@ -25,16 +25,16 @@ namespace crawler
 
     explicit CubicSpline(std::vector<double> knots, Ends ends = Ends::not_a_knot);
 
-    /// The second derivatives at the knots of the spline through @p values (as long as the knots).
+    /// Second derivatives at the knots of the spline through @p values (as long as the knots).
     std::vector<double>
     curvatures(std::span<const double> values) const;
 
-    /// The same for many splines at a time: @p values and the result are [knot][spline].
+    /// Version for many splines at a time: @p values and the result are [knot][spline].
     std::vector<double>
     curvatures(std::span<const double> values, std::size_t n_splines) const;
 
-    /// A place between the knots: value = a y_i + b y_(i+1) + c M_i + d M_(i+1), with the values y and curvatures M;
-    /// and the same for the derivative.
+    /// Interpolation weights at a place between knots: value = a y_i + b y_(i+1) + c M_i + d M_(i+1), with the values y
+    /// and curvatures M; likewise for the derivative.
     struct Place
     {
       std::size_t i;
@@ -42,7 +42,7 @@ namespace crawler
       double da, db, dc, dd;
     };
 
-    /// Where @p x is; beyond the ends the outermost cubic goes on.
+    /// Finds the place of @p x; beyond the ends the outermost cubic continues.
     Place
     place(double x) const;
 
@@ -57,7 +57,8 @@ namespace crawler
     const Ends ends_;
     std::vector<double> h_;                      ///< knot i+1 - knot i
     std::vector<double> factor_, pivot_, upper_; ///< the triangular factors of the equations of the inner knots
-    std::vector<double> coupling_;               ///< periodic: how the inner curvatures depend on that of the ends
+    std::vector<double> coupling_;               ///< periodic: derivative of the inner curvatures by that of the ends,
+                                                 ///< with the sign changed
     double end_pivot_ = 1.;                      ///< periodic
   };
 } // namespace crawler

@@ -3,9 +3,9 @@
 
 namespace crawler
 {
-  /// The address of a function of the shared library crawler_deal_ii (source/deal_ii). It alone links deal.II, whose
-  /// loading takes ten times as long as that of all else, and which most commands do not need: so it is loaded when a
-  /// function is first asked for. Throws FileError if that fails.
+  /// Address of a function of the shared library crawler_deal_ii (source/deal_ii). It alone links deal.II, which takes
+  /// ten times as long to load as all the rest and which most commands do not need; so it is loaded on first use.
+  /// Throws FileError if that fails.
   void *
   deal_ii_symbol(const char *name);
 

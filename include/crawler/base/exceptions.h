@@ -6,7 +6,7 @@
 
 namespace crawler
 {
-  /// What the process returns to the shell. These numbers are a contract with users' scripts.
+  /// Exit codes of the process, a contract with users' scripts.
   enum class ExitCode
   {
     finished          = 0,
@@ -20,9 +20,9 @@ namespace crawler
   };
 
   /**
-   * The user's input is wrong. One sentence: what was found, what was expected, where to change it.
-   * `entry` is the full name of the parameter at fault ("Body/Length"), empty if there is none; the
-   * reader of the file adds file and line to the message when it knows them.
+   * Wrong input of the user, in one sentence: what was found, what was expected, where to change it. `entry` is the
+   * full name of the parameter at fault ("Body/Length"), empty if there is none; the reader of the file adds file and
+   * line to the message when it knows them.
    */
   class InputError : public std::runtime_error
   {
@@ -36,14 +36,14 @@ namespace crawler
     const std::string entry;
   };
 
-  /// An active stress that is to be written is not a finite number. All ranks that write together throw it together.
+  /// Thrown by all ranks of a collective write if an active stress to be written is not a finite number.
   class NonfiniteStress : public std::runtime_error
   {
   public:
     using std::runtime_error::runtime_error;
   };
 
-  /// A file or folder cannot be read or written.
+  /// Thrown if a file or folder cannot be read or written.
   class FileError : public std::runtime_error
   {
   public:
@@ -53,6 +53,6 @@ namespace crawler
     {
     }
 
-    const bool on_all_ranks; ///< all ranks throw it together, so the program can end in order
+    const bool on_all_ranks; ///< thrown by all ranks together, so the program can end in order
   };
 } // namespace crawler

@@ -8,15 +8,15 @@
 
 namespace crawler
 {
-  /// An extreme value, and where and when it was seen.
+  /// An extreme value with its place and time.
   struct Extreme
   {
     double value = 1., s = 0., t = 0.;
-    double jump = 0.; ///< of what should be continuous, where the cell of s ends: what the value may be wrong by
+    double jump = 0.; ///< jump of a continuous quantity at the end of the cell of s: possible error of the value
   };
 
-  /// Keeps the smallest (or the largest) of the values that are shown to it in the order of time. Between them the
-  /// parabola through three of them comes closer.
+  /// Keeps the smallest (or largest) of the values shown to it in order of time, sharpened between samples by the
+  /// parabola through three of them.
   class ExtremeHistory
   {
   public:
@@ -53,7 +53,7 @@ namespace crawler
       }
     }
 
-    /// A value that does not go on smoothly from those before.
+    /// Adds a value that does not continue the previous ones smoothly.
     void
     add_alone(const Extreme &now)
     {
@@ -62,7 +62,7 @@ namespace crawler
         extreme_ = now;
     }
 
-    /// What comes does not go on smoothly from what was.
+    /// Separates later values from earlier ones: they do not continue them smoothly.
     void
     interrupt()
     {
@@ -74,7 +74,7 @@ namespace crawler
     {
       return extreme_;
     }
-    /// The value shown before the last one.
+    /// The value before the last one.
     const Extreme &
     before_last() const
     {

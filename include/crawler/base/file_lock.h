@@ -5,12 +5,12 @@
 
 namespace crawler
 {
-  /// A file that one process at a time may have locked (flock). The lock ends with the process, however it ends; the
-  /// file stays. It keeps two programs from writing to the same folder, on file systems that have locks.
+  /// A file that one process at a time can lock (flock). The lock ends with the process, however it ends; the file
+  /// stays. Keeps two programs from writing to the same folder, on file systems that support locks.
   class FileLock
   {
   public:
-    /// Makes the file if there is none, and does not wait. Throws FileError if it cannot be made.
+    /// Creates the file if it does not exist, without waiting. Throws FileError if that fails.
     explicit FileLock(const std::filesystem::path &path);
     ~FileLock();
     FileLock(const FileLock &) = delete;
@@ -22,15 +22,15 @@ namespace crawler
       not_offered ///< by the file system
     };
 
-    /// Tries again unless the lock is there. The file may have been removed by the process that had the lock.
+    /// Tries again unless locked already. The previous holder may have removed the file.
     State
     lock();
 
-    /// Throws FileError if the file is not that of its name any more: its folder was removed or replaced.
+    /// Throws FileError if the file no longer has its name: its folder was removed or replaced.
     void
     require_in_place() const;
 
-    /// Removes the file of a lock that is mine; to be called when nothing is written any more.
+    /// Removes the file if this process holds the lock; to be called after the last write.
     void
     remove();
 

@@ -36,11 +36,11 @@ namespace crawler
       return n_panels_;
     }
 
-    /// The integral over all panels of what has the values @p f at the points.
+    /// Integral over all panels of a function with the values @p f at the points.
     double
     integral(std::span<const double> f) const;
 
-    /// The integrals from the left end to each of the points.
+    /// Integrals from the left end to each of the points.
     void
     running_integral(std::span<const double> f, std::span<double> result) const;
 
@@ -48,13 +48,12 @@ namespace crawler
     void
     running_integral_transposed(std::span<const double> x, std::span<double> result) const;
 
-    /// The least number of equal panels on [0, 1], a multiple of @p n, so that one of them ends at each of these
-    /// places;
-    /// @p n if that would take more than @p most.
+    /// The smallest number of equal panels on [0, 1], a multiple of @p n, for which each of the places is an end of a
+    /// panel; @p n if that would exceed @p most.
     static unsigned int
     number_ending_at(const std::vector<double> &places, unsigned int n, unsigned int most);
 
-    /// The integrals from the left end to any places: prepared once, then a few products for each.
+    /// Integrals from the left end to given places, prepared once: then a few products for each.
     class Places
     {
     public:

@@ -13,7 +13,7 @@ namespace crawler
 {
   /**
    * A function of s and t through samples on a grid, linear or by cubic splines in both directions (tensor product).
-   * Before the first and after the last s it keeps the value there.
+   * Before the first and after the last s it is constant.
    */
   class GridInterpolation
   {
@@ -24,21 +24,21 @@ namespace crawler
       cubic   ///< needs four
     };
 
-    /// What the function is before the first and after the last t.
+    /// Continuation before the first and after the last t.
     enum class Outside
     {
       go_on,   ///< the outermost polynomial
       hold,    ///< the outermost value
-      periodic ///< the same as within; at the first and at the last t of the grid the values must be equal
+      periodic ///< the values at the first and the last t of the grid must be equal
     };
 
-    /// The samples at given points s, which do not change, as functions of t.
+    /// The function at fixed points s, as functions of t.
     class AtPoints;
 
     GridInterpolation(GridTable grid, Method method, Outside outside);
     ~GridInterpolation();
 
-    /// The result refers to this object.
+    /// Evaluator at the points, which refers to this object.
     std::unique_ptr<AtPoints>
     at(const std::vector<double> &points) const;
 
@@ -49,7 +49,7 @@ namespace crawler
     }
 
   private:
-    /// Functions of t by their values, and curvatures in t if they are splines, at the knots.
+    /// Functions of t by their values at the knots, and their curvatures in t if they are splines.
     struct Columns
     {
       std::size_t n;
@@ -67,7 +67,7 @@ namespace crawler
     const Outside outside_;
     std::optional<CubicSpline> in_s_, in_t_;       ///< if cubic
     std::vector<double> curvatures_;               ///< [t][s], in s, if cubic
-    mutable std::shared_ptr<const Columns> knots_; ///< of all knots of s, once it is needed
+    mutable std::shared_ptr<const Columns> knots_; ///< at all knots of s, made on first use
   };
 
   class GridInterpolation::AtPoints
@@ -75,10 +75,10 @@ namespace crawler
   public:
     AtPoints(const GridInterpolation &owner, const std::vector<double> &points);
 
-    /// The function at all points into @p result (as long as the list of points).
+    /// Writes the function at all points into @p result (as long as the list of points).
     void
     values(double t, std::span<double> result);
-    /// Its derivative with respect to t; at the kinks of a linear one that of either side.
+    /// Writes its derivative with respect to t; at the kinks of a linear interpolation that of either side.
     void
     rates(double t, std::span<double> result);
 
@@ -92,8 +92,8 @@ namespace crawler
     combine(std::size_t i, const Weights &weights, std::span<double> result);
 
     const GridInterpolation &owner_;
-    // Either the columns are functions at the points, or, for many points, those at the knots of s: their values and,
-    // if cubic, their curvatures in s. What is fewer is combined from times; the places are then for the second case.
+    // Columns are functions at the points or, if there are more points than knots of s, at the knots: their values and,
+    // if cubic, their curvatures in s. In that case `places_` interpolate between them at each time.
     std::shared_ptr<const Columns> columns_;
     std::vector<CubicSpline::Place> places_;
     std::vector<double> at_knots_;

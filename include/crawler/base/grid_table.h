@@ -14,18 +14,18 @@ namespace crawler
   };
 
   /**
-   * Reads the samples of the function @p name ("m") from a file of one of two kinds, which its first bytes tell apart:
-   *  - CSV: the header s,t,NAME and one row a sample of a full grid, in any order. A byte order mark, carriage returns,
-   *    blanks and empty rows do not matter; values of s (or t) that differ by round-off only (1e-12 of their range) are
-   *    the same.
-   *  - HDF5: datasets s[ns], t[nt], both increasing, and NAME[nt,ns] in the root group, of any type of numbers.
-   * Throws InputError for @p entry, with numbers of rows (the header is row 1) or indices (from 0), if there is no such
-   * file, if it has not this form, if something is not a finite number, or if a point is missing or given twice.
+   * Reads the samples of the function @p name ("m") from a file of one of two kinds, distinguished by its first bytes:
+   *  - CSV: the header s,t,NAME and one row per sample of a full grid, in any order. A byte order mark, carriage
+   *    returns, blanks and empty rows do not matter; values of s (or t) that differ by round-off only (1e-12 of their
+   *    range) are the same.
+   *  - HDF5: datasets s[ns], t[nt], both increasing, and NAME[nt,ns] in the root group, of any type of numbers. Throws
+   * InputError for @p entry, with numbers of rows (the header is row 1) or indices (from 0), if there is no such file,
+   * if it does not have this form, if something is not a finite number, or if a point is missing or given twice.
    */
   GridTable
   read_grid_table(const std::string &file, const std::string &name, const std::string &entry);
 
-  /// Throws InputError for @p entry unless @p values of @p name ("s") are at least @p least ones.
+  /// Throws InputError for @p entry unless there are at least @p least @p values of @p name ("s").
   void
   require_number_of_values(const std::vector<double> &values,
                            std::size_t least,
@@ -34,8 +34,7 @@ namespace crawler
                            const std::string &entry);
 
   /// Throws InputError for @p entry unless @p values of @p name reach from 0 to @p end, the whole of @p what ("body").
-  /// What is missing by less than a millionth of it, as in single precision, is no more than round-off: the first or
-  /// the last value is moved.
+  /// Gaps below a millionth of it, as in single precision, count as round-off: the first or last value is moved.
   void
   reach_ends(std::vector<double> &values,
              double end,

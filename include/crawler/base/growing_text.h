@@ -13,18 +13,18 @@ namespace crawler
   class GrowingText
   {
   public:
-    /// Nothing is written yet. The file will begin with @p begin and end with @p end.
+    /// Sets the first lines @p begin and the last lines @p end of the file; writes nothing yet.
     GrowingText(const std::filesystem::path &path, const std::string &begin, const std::string &end);
 
-    /// Throws FileError.
+    /// Adds text before the last lines. Throws FileError.
     void
     add(const std::string &text);
 
-    /// Replaces all that was added. Throws FileError.
+    /// Replaces everything added so far. Throws FileError.
     void
     restart(const std::string &text);
 
-    /// How much there is; a file that has grown since then becomes as it was. Throws FileError if it is shorter.
+    /// Exchanges the length; a file that has grown since then is cut back. Throws FileError if it is shorter.
     void
     exchange(Archive &archive);
 
@@ -35,6 +35,6 @@ namespace crawler
     const std::filesystem::path path_;
     const std::string begin_, end_;
     std::ofstream out_;
-    std::streamoff last_lines_ = 0; ///< where they begin
+    std::streamoff last_lines_ = 0; ///< their position in the file
   };
 } // namespace crawler

@@ -5,8 +5,8 @@
 
 namespace crawler
 {
-  /// An object of HDF5 that is closed at the end of its life; nothing is closed if the identifier is negative, which is
-  /// how HDF5 says that a call went wrong.
+  /// An object of HDF5, closed at the end of its life; nothing is closed if the identifier is negative, HDF5's sign of
+  /// a failed call.
   class Hdf5Handle
   {
   public:

@@ -7,9 +7,9 @@
 
 namespace crawler::hdf5
 {
-  /// Whether @p read, which reads the structure of the HDF5 file @p path, comes to an end: HDF5 1.10 crashes on some
-  /// damaged files, and never ends on others, so a copy of this process tries it first, once for each @p purpose and
-  /// each state of a file.
+  /// True if @p read, which reads the structure of the HDF5 file @p path, terminates. HDF5 1.10 crashes on some damaged
+  /// files and never ends on others, so a copy of this process tries first, once for each @p purpose and each state of
+  /// a file.
   bool
   is_harmless(const std::filesystem::path &path, const std::string &purpose, const std::function<void()> &read);
 } // namespace crawler::hdf5

@@ -2,9 +2,9 @@
 #pragma once
 
 /**
- * The loops over cells are templates that several files compile, some of them for instruction sets that not every
- * processor has (source/lanes). Each instruction set has a namespace of its own, or the linker could take a function
- * that was compiled for one of them for the whole program.
+ * Namespace of the loops over cells: templates that several files compile, some for instruction sets that not every
+ * processor has (source/lanes). Each instruction set has its own namespace, or the linker could use a function compiled
+ * for one of them in the whole program.
  */
 #ifndef CRAWLER_INSTRUCTION_SET
 #  define CRAWLER_INSTRUCTION_SET generic

@@ -3,7 +3,7 @@
 
 namespace crawler
 {
-  /// MPI and PETSc, from here to the end of its life. PETSc sees the arguments. Throws PetscFailure if it refuses one.
+  /// MPI and PETSc during its lifetime. PETSc sees the arguments. Throws PetscFailure if it refuses one.
   class MpiSession
   {
   public:

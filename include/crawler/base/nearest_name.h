@@ -11,8 +11,8 @@ namespace crawler
   std::vector<std::string>
   nearest_names(const std::string &name, const std::vector<std::string> &candidates, unsigned int count = 3);
 
-  /// The one that @p name is most likely a slip of: no more than a third of its letters are wrong. Nothing if there is
-  /// none.
+  /// The candidate of which @p name is most likely a misspelling, with at most a third of its letters wrong; nothing if
+  /// there is none.
   std::vector<std::string>
   nearly_alike(const std::string &name, const std::vector<std::string> &candidates);
 

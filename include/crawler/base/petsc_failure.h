@@ -6,7 +6,7 @@
 
 namespace crawler
 {
-  /// A function of PETSc has failed.
+  /// Thrown when a function of PETSc fails.
   class PetscFailure : public std::runtime_error
   {
   public:

@@ -22,7 +22,7 @@ namespace crawler
     throw PetscFailure(code, text != nullptr ? text : "without a message", code == PETSC_ERR_MEM);
   }
 
-  /// The integrator of the option -ts_type behind "--", else @p otherwise.
+  /// The integrator that the option -ts_type behind "--" names, else @p otherwise.
   inline std::string
   integrator_of_petsc(const std::string &otherwise)
   {
@@ -32,7 +32,7 @@ namespace crawler
     return found ? type : otherwise;
   }
 
-  /// Keeps the words of PETSc's errors instead of printing them with their stack, as long as this lives.
+  /// Keeps the messages of PETSc's errors instead of printing them with their stack, during its lifetime.
   class PetscErrorWords
   {
   public:

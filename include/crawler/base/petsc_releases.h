@@ -3,7 +3,7 @@
 
 #include <petscsnes.h>
 
-/// What PETSc's releases name or type differently (doc/upgrading.md).
+/// Names and types that differ between PETSc's releases (doc/upgrading.md).
 namespace crawler
 {
   /// Newton's method met a residual that is not finite.

@@ -6,13 +6,13 @@
 
 namespace crawler
 {
-  /// The text with 0 and nan instead of the numbers -0, -0.000 and -nan, which mean the same to a reader; columns stay
-  /// where they are.
+  /// The text with 0 and nan in place of -0, -0.000 and -nan, which mean the same to a reader; columns keep their
+  /// places.
   std::string
   with_plain_numbers(std::string text);
 
-  /// The text with every control character in words (\\x1b), so that texts of others (names of files, formulas) cannot
-  /// steer a terminal; ends of lines and tabs stay as they are if @p keep_lines.
+  /// The text with every control character spelled out (\\x1b), so that foreign texts (file names, formulas) cannot
+  /// steer a terminal; ends of lines and tabs stay if @p keep_lines.
   std::string
   without_controls(const std::string &text, bool keep_lines = true);
 

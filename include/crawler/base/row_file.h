@@ -18,19 +18,19 @@
 
 namespace crawler
 {
-  /// So many bytes of a UTF-8 @p text, at most @p width, are whole characters.
+  /// Largest number of bytes of a UTF-8 @p text, at most @p width, that are whole characters.
   std::size_t
   whole_characters(const std::string &text, std::size_t width);
 
-  /// A text that is too long for this width ends with dots.
+  /// The text, cut and ended with dots if it is longer than @p width.
   std::string
   shortened(const std::string &text, std::size_t width);
 
   /**
-   * A table in an HDF5 file into which all ranks write rows as they come (parallel HDF5). Its layout is fixed when it
-   * is created: a group with a dataset for each column, contiguous and allocated, so later only numbers are written, no
-   * structure, and a file whose writers were killed is a valid file with all rows that were written. A row that has not
-   * been written has NaN in its numbers and empty texts. Each row that is written has a checksum.
+   * A table in an HDF5 file into which all ranks write rows as they come (parallel HDF5). Its layout is fixed at
+   * creation: a group with a dataset for each column, contiguous and allocated. Later only numbers are written, no
+   * structure, so a file whose writers were killed is valid and has all rows written before. Unwritten rows have NaN as
+   * numbers and empty texts. Each written row has a checksum.
    */
   class RowFile
   {
@@ -38,20 +38,20 @@ namespace crawler
     struct Column
     {
       std::string name, unit, description;
-      unsigned int width = 0; ///< 0: numbers; otherwise texts of at most so many bytes (UTF-8)
+      unsigned int width = 0; ///< 0: numbers; otherwise texts of at most this number of bytes (UTF-8)
     };
     using Value = std::variant<double, std::string>; ///< texts that are too long are cut
     using Row   = std::vector<Value>;                ///< one for each column
 
-    /// What the first columns have in their rows from the beginning.
+    /// Values of the first columns in some rows, known at creation.
     struct Known
     {
       std::size_t n_columns;
       std::function<Value(std::size_t column, unsigned long row)> value;
     };
 
-    /// Creates the file: @p n_rows rows, empty but for what is @p known. @p attributes are those of the group @p group.
-    /// Throws FileError.
+    /// Creates the file: @p n_rows rows, empty except for the @p known values. @p attributes belong to the group @p
+    /// group. Throws FileError.
     static void
     create(const std::filesystem::path &path,
            const std::string &group,
@@ -60,8 +60,8 @@ namespace crawler
            const std::map<std::string, std::string> &attributes,
            const Known &known = {});
 
-    /// Opens a file that create() has made, for writing into these of its columns (collective, and so is the
-    /// destructor). Throws FileError.
+    /// Opens a file made by create() for writing into the given columns (collective, as is the destructor). Throws
+    /// FileError.
     RowFile(MPI_Comm communicator,
             const std::filesystem::path &path,
             const std::string &group,
@@ -69,8 +69,8 @@ namespace crawler
     ~RowFile();
     RowFile(const RowFile &) = delete;
 
-    /// Writes rows @p first, first + 1, ... (this rank alone). The last column is written last, so whoever finds it
-    /// there finds the others, too. Throws FileError.
+    /// Writes rows @p first, first + 1, ... (this rank alone). The last column is written last: a row that has it is
+    /// complete. Throws FileError.
     void
     write(unsigned long first, std::span<const Row> rows);
 
@@ -81,19 +81,19 @@ namespace crawler
     std::unique_ptr<Handles> handles_;
   };
 
-  /// A whole table in such a file. Throws FileError.
+  /// Writes a whole table to such a file. Throws FileError.
   void
   write_hdf5(const std::filesystem::path &path,
              const std::string &group,
              const Table &table,
              const std::map<std::string, std::string> &attributes);
 
-  /// Reads parts of a table that RowFile has made, so that a large one need not fit into the memory.
+  /// Reads parts of a table that RowFile has written; a large one need not fit into memory.
   class RowReader
   {
   public:
-    /// Collective, and so is the destructor. Throws FileError if there is no such file, InputError if RowFile did not
-    /// make it or it is damaged.
+    /// Opens the file (collective, as is the destructor). Throws FileError if there is none, InputError if RowFile did
+    /// not make it or it is damaged.
     RowReader(MPI_Comm communicator, const std::filesystem::path &path, const std::string &group);
     ~RowReader();
     RowReader(const RowReader &) = delete;
@@ -106,19 +106,19 @@ namespace crawler
     std::size_t
     n_columns() const;
 
-    /// The number of the column of this name. Throws FileError if there is none.
+    /// Number of the column of this name. Throws FileError if there is none.
     std::size_t
     index_of(const std::string &name) const;
 
-    /// @p n rows from row @p first on, of one column (by its number) or of all in the order in which they were made
+    /// Reads @p n rows from row @p first on, of one column (by its number) or of all in the order of their creation
     /// (this rank alone). Throws FileError.
     crawler::Column
     read(std::size_t number, unsigned long first, unsigned long n) const;
     Table
     read(unsigned long first, unsigned long n) const;
 
-    /// Whether these rows have still what was written into them, the columns @p written (this rank alone). Nothing if
-    /// the file has no checksums. Throws FileError.
+    /// Tells for each row whether its columns @p written are unchanged since they were written (this rank alone);
+    /// nothing if the file has no checksums. Throws FileError.
     std::optional<std::vector<bool>>
     intact(const std::vector<RowFile::Column> &written, unsigned long first, unsigned long n) const;
 
@@ -135,8 +135,8 @@ namespace crawler
     unsigned long n_rows_ = 0;
   };
 
-  /// An attribute of the group. Throws FileError if there is no such file, InputError if there is no such attribute in
-  /// it or it is damaged.
+  /// Reads an attribute of the group. Throws FileError if there is no such file, InputError if the attribute is missing
+  /// or damaged.
   std::string
   read_attribute(const std::filesystem::path &path, const std::string &group, const std::string &name);
 } // namespace crawler

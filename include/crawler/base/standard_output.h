@@ -6,8 +6,8 @@
 
 namespace crawler
 {
-  /// While this object lives std::cout writes through it, so that text which is lost (a full disk) is noticed. What
-  /// others write with stdio stays in its order.
+  /// Receives the output of std::cout while it lives, so that lost text (a full disk) is noticed. Output that others
+  /// write with stdio keeps its order.
   class StandardOutput : private std::streambuf
   {
   public:
@@ -15,8 +15,8 @@ namespace crawler
     StandardOutput(const StandardOutput &) = delete;
     ~StandardOutput() override;
 
-    /// Writes what still waits. Why some text was lost so far, in the system's words; empty if none was. A reader that
-    /// has left, as in `crawler ... | head`, wants no more text: nothing is lost.
+    /// Flushes, and returns the system's reason why text was lost so far; empty if none was. A reader that has left, as
+    /// in `crawler ... | head`, wants no more text: that is no loss.
     std::string
     problem();
 

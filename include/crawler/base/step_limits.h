@@ -3,16 +3,16 @@
 
 namespace crawler
 {
-  /// From this time on no step is longer than that, until the next limit.
+  /// A limit of the step from its time on, until the next limit.
   struct StepLimit
   {
     double from, longest;
   };
 
   /**
-   * The longest step from @p t, but not longer than @p wanted, that the limits admit: a step may end where a smaller
-   * limit begins, but may not be longer than any limit that it meets. @p limits are @p n in ascending times. @p present
-   * is a limit at some earlier time, at first 0; it is moved on. (Not inline: each instruction set has its own.)
+   * Returns the longest step from @p t, at most @p wanted, that the limits admit: a step may end where a smaller limit
+   * begins, but must not exceed any limit within it. @p limits are @p n in ascending times. @p present is the number of
+   * a limit at some earlier time, at first 0; it is advanced. (Not inline: each instruction set has its own.)
    */
   [[maybe_unused]] static double
   admitted_step(const StepLimit *limits, const unsigned int n, unsigned int &present, const double t, double wanted)

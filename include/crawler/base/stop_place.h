@@ -7,8 +7,8 @@
 namespace crawler
 {
   /**
-   * Places of the program at which tests of kills, signals and interruptions stop it. A place is where the work stands,
-   * not a time, so such a test does the same on every machine. The environment variable
+   * Places of the program at which tests of kills, signals and interruptions stop it. A place is a state of the work,
+   * not a time, so a test does the same on every machine. The environment variable
    *
    *     CRAWLER_STOP_AT=PLACE[:NUMBER]:SIGNAL[:RANK]
    *
@@ -31,11 +31,12 @@ namespace crawler
     row
   };
 
-  /// The work is at this place, as many times as @p times. Throws InputError if CRAWLER_STOP_AT is none of the above.
+  /// Notes that the work has reached this place @p times times. Throws InputError if CRAWLER_STOP_AT is none of the
+  /// above.
   void
   reach(StopPlace place, unsigned long times = 1);
 
-  /// A whole file is about to get this name. Throws as reach().
+  /// Notes that a complete file is about to get this name. Throws as reach() does.
   void
   reach_write(const std::filesystem::path &path);
 
@@ -43,7 +44,7 @@ namespace crawler
   void
   check_stop_place();
 
-  /// What CRAWLER_STOP_AT asks for.
+  /// The request in CRAWLER_STOP_AT.
   struct StopWish
   {
     std::string place; ///< as in the table

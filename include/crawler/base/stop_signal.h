@@ -7,9 +7,8 @@
 
 namespace crawler
 {
-  /// As long as this lives, SIGINT, SIGTERM (what Slurm sends at the time limit) and SIGUSR1 (what it can be asked to
-  /// send before) are noted instead of ending the process. A second one ends it. What was to happen before is to happen
-  /// afterwards.
+  /// Notes SIGINT, SIGTERM (sent by Slurm at the time limit) and SIGUSR1 (which it can be asked to send before) during
+  /// its lifetime; they do not end the process, but a second one does. The previous handlers are restored afterwards.
   class StopSignal
   {
   public:
@@ -17,11 +16,11 @@ namespace crawler
     ~StopSignal();
     StopSignal(const StopSignal &) = delete;
 
-    /// Has one arrived on this rank?
+    /// Returns whether a signal has arrived on this rank.
     bool
     arrived() const;
 
-    /// Has one arrived on any rank? (collective)
+    /// Returns whether a signal has arrived on any rank (collective).
     bool
     arrived_anywhere(MPI_Comm communicator) const;
 

@@ -7,7 +7,7 @@
 
 namespace crawler
 {
-  /// A column of numbers (what is not known is not a number) or of texts, one for each row.
+  /// A column of numbers (unknown ones are NaN) or of texts, one for each row.
   struct Column
   {
     std::string name, unit, description;
@@ -17,11 +17,11 @@ namespace crawler
   /// Columns of one length, each with a name of its own.
   using Table = std::vector<Column>;
 
-  /// The table as comma-separated values (RFC 4180) with a line of names; what is not known is empty.
+  /// The table as comma-separated values (RFC 4180) with a line of names; unknown numbers are empty.
   std::string
   csv(const Table &table);
 
-  /// Its two parts: the line of names, and the lines of the rows.
+  /// The two parts of csv(): the line of names, and the lines of the rows.
   std::string
   csv_names(const Table &table);
   std::string

@@ -3,12 +3,12 @@
 
 namespace crawler
 {
-  /// Columns of the terminal that standard output goes to; 0 if that is none, or one that cannot move its cursor
-  /// (TERM = dumb).
+  /// Columns of the terminal that standard output goes to; 0 if it is no terminal, or cannot move its cursor (TERM =
+  /// dumb).
   unsigned int
   terminal_width();
 
-  /// Whether the user's language settings (LC_ALL, LC_CTYPE, LANG) say that texts are in UTF-8.
+  /// True if the user's locale (LC_ALL, LC_CTYPE, LANG) is in UTF-8.
   bool
   terminal_has_utf8();
 } // namespace crawler

@@ -9,8 +9,8 @@
 
 namespace crawler
 {
-  /// A number in six digits, or in all of them if one of the others that stand beside it in a sentence is another one
-  /// but would look the same.
+  /// The number in six digits, or in all of them if one of the @p others in the sentence differs from it but would look
+  /// the same.
   inline std::string
   told_apart(const double value, const std::initializer_list<double> others)
   {

@@ -6,7 +6,7 @@
 
 namespace crawler
 {
-  /// Names and versions of this program and of what it is built on.
+  /// Names and versions of this program and of its libraries.
   std::map<std::string, std::string>
   versions();
 } // namespace crawler

@@ -10,8 +10,8 @@
 
 namespace crawler
 {
-  /// The words for the values of an enum, as files and outputs have them. Specialised beside the enum with a
-  /// `static constexpr const char *list[]` in the order of its values, which count from 0.
+  /// Words for the values of an enum in files and outputs. Specialised beside the enum with a `static constexpr const
+  /// char *list[]` in the order of its values, which count from 0.
   template <typename Enum>
   struct Words;
 
@@ -35,7 +35,7 @@ namespace crawler
     return {std::begin(Words<Enum>::list), std::end(Words<Enum>::list)};
   }
 
-  /// Nothing if it is none of the words.
+  /// Returns the value of a word; nothing if it is none of the words.
   template <HasWords Enum>
   std::optional<Enum>
   from_word(const std::string_view word)

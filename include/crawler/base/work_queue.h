@@ -10,42 +10,42 @@ namespace crawler
 {
   /**
    * Hands out the numbers 0, 1, ..., size-1 to all ranks, each number once, to whoever asks next. No rank manages: the
-   * counters are in the memory of rank 0 and the others change them from outside (one-sided MPI, MPI_Fetch_and_op).
-   * Within a node and over networks with atomic operations they do so without rank 0. Elsewhere (TCP) their requests
-   * wait until rank 0 calls MPI, which serve() is for.
+   * counters are in the memory of rank 0, and the others change them by one-sided MPI (MPI_Fetch_and_op). Within a node
+   * and over networks with atomic operations rank 0 takes no part. Elsewhere (TCP) requests wait until rank 0 calls
+   * MPI: hence serve().
    */
   class WorkQueue
   {
   public:
-    /// Collective, and so is the destructor: it waits for the other ranks, asleep rather than spinning.
-    /// @p besides is what rank 0 does whenever it serves, the destructor included; it must not throw.
+    /// Creates the queue (collective, as is the destructor, which waits for the other ranks, asleep rather than
+    /// spinning). @p besides is called by rank 0 whenever it serves, also in the destructor; it must not throw.
     WorkQueue(MPI_Comm communicator, unsigned long size, std::function<void()> besides = {});
     ~WorkQueue();
     WorkQueue(const WorkQueue &) = delete;
 
-    /// The next number, or nothing if none is left.
+    /// Returns the next number, or nothing if none is left.
     std::optional<unsigned long>
     next();
 
-    /// Says that so much more is done, usually a number that next() gave, and how much of it failed.
+    /// Reports @p n items done, usually one number from next(), of which @p failed failed.
     void
     done(unsigned long n = 1, unsigned long failed = 0);
 
-    /// What all ranks together have done.
+    /// Totals of all ranks.
     struct Done
     {
-      unsigned long done, failed; ///< failed: those that were said to be so
+      unsigned long done, failed; ///< `failed` counts those reported as failed
     };
 
-    /// On rank 0, which reports it; zeros on the others.
+    /// Returns the totals on rank 0, zeros on the others.
     Done
     so_far();
 
-    /// To be called now and then while computing (at every step: it mostly returns at once).
+    /// Serves requests; to be called now and then while computing (at every step: it mostly returns at once).
     void
     serve();
 
-    /// No number is given any more.
+    /// Closes the queue: no number is given any more.
     void
     close();
 

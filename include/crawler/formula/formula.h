@@ -15,22 +15,22 @@ namespace crawler
   /**
    * A formula of some variables, s and t unless others are named, read by muParser and then evaluated for many points
    * at a time: each operation is one loop over a block of points instead of one step of muParser's interpreter per
-   * point. What depends on t only is computed once per time, what depends on s only once per mesh. Every operation is
-   * muParser's, so the values are the same to the last bit. (muParser's own bulk mode reads the text again at every
-   * call, and Debian's starts threads.)
+   * point. Values of t only are computed once per time, values of s only once per mesh. Every operation is muParser's,
+   * so the values agree to the last bit. (muParser's own bulk mode parses the text at every call, and Debian's starts
+   * threads.)
    */
   class Formula
   {
   public:
     using Constants = std::vector<std::pair<std::string, double>>;
 
-    /// Throws mu::ParserError if @p text is not a formula of the @p variables and the @p constants. FormulaAtPoints and
-    /// FormulaRateAtPoints are for the variables s and t; FormulaGradient is for any.
+    /// Compiles a formula. Throws mu::ParserError if @p text is not a formula of the @p variables and the @p constants.
+    /// FormulaAtPoints and FormulaRateAtPoints need the variables s and t; FormulaGradient takes any.
     Formula(const std::string &text,
             const Constants &constants,
             const std::vector<std::string> &variables = {"s", "t"});
 
-    /// Does the value depend on the variable with this number?
+    /// True if the value depends on the variable with this number.
     bool
     uses(unsigned int variable) const;
 
@@ -44,19 +44,19 @@ namespace crawler
     friend class FormulaBound;
     friend class FormulaReader;
 
-    /// What a value depends on.
+    /// Dependence of a value on the variables.
     struct Dependence
     {
       bool on_s, on_t;
     };
 
-    static constexpr unsigned int s_ = 0, t_ = 1; ///< The values that are the variables, if these are s and t.
+    static constexpr unsigned int s_ = 0, t_ = 1; ///< Numbers of the values s and t, if these are the variables.
 
     std::vector<bool> used_;
     std::vector<Dependence> dependence_;
-    std::vector<double> scalars_; ///< At the constants among the values what they are.
+    std::vector<double> scalars_; ///< Constants among the values; other places are unused.
     std::vector<Operation> of_time_, of_place_, of_both_;
-    std::vector<bool> kept_; ///< Values of s alone that operations of both, or the result, use.
+    std::vector<bool> kept_; ///< Values of s alone that are used by operations of both, or by the result.
     unsigned int result_ = 0;
   };
 
@@ -76,7 +76,7 @@ namespace crawler
     void
     compute(const std::vector<Formula::Operation> &operations, std::size_t first, std::size_t n);
 
-    /// Where @p value is for the points from @p first on.
+    /// Address of @p value for the points from @p first on.
     double *
     place(unsigned int value, std::size_t first);
 
@@ -86,8 +86,8 @@ namespace crawler
     const std::shared_ptr<const Formula> formula_;
     const std::size_t n_points_;
     std::vector<double> scalars_;               ///< Values that do not depend on s.
-    std::vector<std::vector<double>> of_place_; ///< Kept values that depend on s only, at all points; others are empty.
+    std::vector<std::vector<double>> of_place_; ///< Kept values of s only, at all points; others are empty.
     std::vector<double> blocks_;                ///< All other values, for one block of points.
-    std::vector<Formula::Operand> arguments_;   ///< Of one operation.
+    std::vector<Formula::Operand> arguments_;   ///< Arguments of one operation.
   };
 } // namespace crawler

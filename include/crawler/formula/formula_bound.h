@@ -7,17 +7,17 @@
 namespace crawler
 {
   /**
-   * Encloses a formula of s and t and its derivative by t in boxes: intervals of both are handed on from operation to
-   * operation (interval arithmetic with forward-mode automatic differentiation; Moore @cite Moore1966),
-   * without directed rounding. Nothing in the box can be missed, however short it is, but the enclosure may be too
-   * wide: the less so the smaller the box.
+   * Encloses a formula of s and t and its derivative by t in boxes: interval arithmetic with forward-mode automatic
+   * differentiation (Moore @cite Moore1966), without directed rounding. No event in the box is missed, however short,
+   * but the enclosure may be too wide: the less so the smaller the box.
    */
   class FormulaBound
   {
   public:
     explicit FormulaBound(std::shared_ptr<const Formula> formula);
 
-    /// For s and t in these intervals. Infinite where the formula may jump at a time, or where nothing can be said.
+    /// Encloses for s and t in these intervals. Infinite where the formula may jump at a time, or where nothing is
+    /// known.
     Enclosure
     operator()(const Interval &s, const Interval &t);
 

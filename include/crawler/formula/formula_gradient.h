@@ -7,17 +7,17 @@ namespace crawler
 {
   /**
    * The value of a formula of any variables, and its derivatives with respect to some of them, at points that change
-   * with each call. Derivatives are exact up to round-off (each operation hands
-   * on the derivative of its result: forward-mode automatic differentiation); at a jump or a kink they are those of one
-   * of the sides.
+   * with each call. Derivatives are exact up to round-off (forward-mode automatic differentiation); at a jump or a kink
+   * they are one-sided.
    */
   class FormulaGradient
   {
   public:
     explicit FormulaGradient(std::shared_ptr<const Formula> formula);
 
-    /// @p arguments: for each variable its values at the points, or one number for all of them. @p derivatives: for
-    /// each variable where the derivative with respect to it goes, empty if it is not wanted; the list may be shorter.
+    /// Evaluates at points. @p arguments: for each variable its values at the points, or one number for all. @p
+    /// derivatives: for each variable the destination of the derivative with respect to it, empty if unwanted; the list
+    /// may be shorter.
     void
     evaluate(std::span<const std::span<const double>> arguments,
              std::span<double> f,

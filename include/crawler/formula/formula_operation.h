@@ -22,12 +22,12 @@ namespace crawler
     }
   };
 
-  /// One operation. A skip (without a loop) goes on at `target` if no point of the block needs what stands between.
+  /// One operation. A skip (without a loop) jumps to `target` if no point of the block needs the operations between.
   struct FormulaOperation
   {
     using Function = void (*)();
     using Loop     = void (*)(Function, std::span<const FormulaOperand> arguments, double *result, std::size_t n);
-    /// The derivative of the result, from the arguments, their derivatives and the result (one number a point each).
+    /// Derivative of the result, from the arguments, their derivatives and the result (one number per point each).
     using Tangent = void (*)(std::span<const double *const> arguments,
                              std::span<const double *const> rates,
                              const double *result,
@@ -38,12 +38,13 @@ namespace crawler
     using Bound = Enclosure (*)(std::span<const Enclosure> arguments);
 
     Loop loop                           = nullptr;
-    Tangent tangent                     = nullptr; ///< null: the result does not change, except by jumps
+    Tangent tangent                     = nullptr; ///< null: the result is constant except for jumps
     Bound bound                         = nullptr;
-    Function function                   = nullptr; ///< For loops that call a function, of any type.
+    Function function                   = nullptr; ///< Of any type, for loops that call a function.
     std::vector<unsigned int> arguments = {};      ///< Values; for a skip the condition.
     unsigned int result                 = 0;       ///< Value.
-    bool branch                         = false;   ///< Of a skip: the points where the condition is this need it.
-    std::size_t target                  = 0;       ///< Of a skip.
+    bool branch                         = false;   ///< For a skip: value of the condition at points that need the
+                                                   ///< skipped operations.
+    std::size_t target                  = 0;       ///< For a skip: number of the operation to go on with.
   };
 } // namespace crawler

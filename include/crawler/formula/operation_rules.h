@@ -7,13 +7,13 @@
 
 namespace crawler
 {
-  /// The rule by which an operation hands on enclosures: a function by its name, an operator as "a+b" or "a<=b", "-"
-  /// for the sign and "?" for the choice "c ? a : b". Throws std::logic_error for an unknown name.
+  /// Returns the rule by which an operation propagates enclosures: a function by its name, an operator as "a+b" or
+  /// "a<=b", "-" for the sign and "?" for the choice "c ? a : b". Throws std::logic_error for an unknown name.
   FormulaOperation::Bound
   bound_of(const std::string &operation);
 
-  /// The rule of differentiation of an operation by its name as above; null for those that are
-  /// constant except for jumps. Throws std::logic_error for an unknown name.
+  /// Returns the differentiation rule of an operation by its name as above; null if it is constant except for jumps.
+  /// Throws std::logic_error for an unknown name.
   FormulaOperation::Tangent
   tangent_of(const std::string &operation);
 } // namespace crawler

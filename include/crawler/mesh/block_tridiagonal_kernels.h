@@ -17,12 +17,12 @@ namespace crawler
     return std::isfinite(x.real()) && std::isfinite(x.imag());
   }
 
-  /// The loops over the dense blocks [cell][degree+1][degree+1] of a chain matrix, compiled for each degree; real or
-  /// complex numbers.
+  /// Loops over the dense blocks [cell][degree+1][degree+1] of a block-tridiagonal matrix, compiled for each degree;
+  /// real or complex numbers.
   template <typename Number>
   struct BlockTridiagonalKernels
   {
-    /// y += A x for the chain of blocks.
+    /// y += A x.
     void (*multiply)(unsigned int n_cells, const Number *blocks, const Number *x, Number *y);
     /**
      * Static condensation of every cell's inner nodes. In: the blocks. Out: `blocks` overwritten by the factors and
@@ -31,11 +31,11 @@ namespace crawler
     bool (*condense)(unsigned int n_cells, Number *blocks, Number *schur);
     /// Eliminates the inner nodes from the right-hand side @p x (in place).
     void (*forward)(unsigned int n_cells, const Number *blocks, Number *x);
-    /// From the end nodes of all cells to the inner ones (in place).
+    /// Recovers the inner nodes from the end nodes of all cells (in place).
     void (*backward)(unsigned int n_cells, const Number *blocks, Number *x);
   };
 
-  /// The kernels for one degree, 1 to ReferenceElement::highest_degree.
+  /// Returns the kernels for one degree, 1 to ReferenceElement::highest_degree.
   template <typename Number>
   const BlockTridiagonalKernels<Number> &
   block_tridiagonal_kernels(unsigned int degree);

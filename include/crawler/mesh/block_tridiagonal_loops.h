@@ -5,8 +5,8 @@
 
 /**
  * The elimination of the inner nodes 1 ... q-1 of one cell from its dense block, [n][n] with n = q+1. Number is real,
- * complex, or a pack of either. Included by what compiles it; users want block_tridiagonal_kernels.h. After
- * condense_cell() a block holds [1..q-1][1..q-1]  L (unit diagonal not stored) and U of A_ii, with 1/U_ii on the
+ * complex, or a pack of either. Included where it is compiled; users include block_tridiagonal_kernels.h. After
+ * condense_cell() a block holds [1..q-1][1..q-1] L (unit diagonal not stored) and U of A_ii, with 1/U_ii on the
  * diagonal [1..q-1][0 and q] X = A_ii^-1 A_ib [0 and q][1..q-1] A_bi
  */
 namespace crawler::CRAWLER_INSTRUCTION_SET
@@ -94,7 +94,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     eliminate_inner<q>(A, q, y);
   }
 
-  /// From the solution at the end nodes to that at the inner ones.
+  /// Recovers the inner nodes from the solution at the end nodes.
   template <int q, typename Number>
   inline void
   backward_cell(const Number *A, Number *y)

@@ -10,10 +10,10 @@
 namespace crawler
 {
   /**
-   * A matrix that is a chain of dense blocks, one per cell, neighbours overlapping in one node; and its direct
-   * solution in O(N) operations without fill and without pivoting: inner nodes cell by cell, then the end nodes of the
-   * cells one after the other down to a 2x2 system per rank, then the small tridiagonal system of those on every rank.
-   * Number is double or std::complex<double>.
+   * A block-tridiagonal matrix: a chain of dense blocks, one per cell, neighbours overlapping in one node. Its direct
+   * solution takes O(N) operations without fill and without pivoting: inner nodes cell by cell, then the end nodes of
+   * the cells in turn down to a 2x2 system per rank, then the small tridiagonal system of these on every rank. Number
+   * is double or std::complex<double>.
    */
   template <typename Number>
   class BlockTridiagonalMatrix
@@ -21,7 +21,7 @@ namespace crawler
   public:
     explicit BlockTridiagonalMatrix(const Discretization &discretization);
 
-    /// The blocks [local cell][degree+1][degree+1], row by row, to be filled. Filling them voids the factors.
+    /// The blocks [local cell][degree+1][degree+1], row by row, to be filled. Filling them invalidates the factors.
     std::vector<Number> &
     blocks()
     {
@@ -52,8 +52,8 @@ namespace crawler
     const Discretization *discretization_;
     std::vector<Number> blocks_, factors_, schur_;
 
-    // Elimination of the end nodes 1 ... n-1 of the own cells, node 0 and n kept. For node i: its inverse pivot and
-    // the couplings row/column 0, and to the next node.
+    // Elimination of the end nodes 1 ... n-1 of the own cells, keeping nodes 0 and n. For node i: its inverse pivot,
+    // and its couplings in row/column 0 and to the next node.
     std::vector<Number> inverse_, row_zero_, column_zero_, next_, below_;
     std::vector<Number> reduced_; ///< [rank][4] the 2x2 systems of all ranks
     mutable std::vector<Number> local_, reduced_rhs_;

@@ -10,8 +10,8 @@ namespace crawler
   struct Cell
   {
     double left, size;  ///< [length]
-    unsigned int level; ///< how often one of the cells of the first mesh was halved
-    bool is_left_half;  ///< of the cell of which it is a half
+    unsigned int level; ///< number of halvings from a cell of the first mesh
+    bool is_left_half;  ///< the cell is the left half of its parent
 
     void
     exchange(auto &archive)
@@ -20,7 +20,7 @@ namespace crawler
     }
   };
 
-  /// What is to become of a cell; two halves of a former cell are joined if both are marked.
+  /// Change of a cell; two halves of a former cell are joined if both are marked.
   enum class CellChange : signed char
   {
     join   = -1,

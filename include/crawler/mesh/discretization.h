@@ -14,25 +14,25 @@ namespace crawler
 {
   /**
    * Mesh, element and numbering of the unknowns. Each rank owns a run of neighbouring cells (ranks beyond the number of
-   * cells own none). A mesh that is adapted is a deal.II parallel::shared::Triangulation<1>. Unknowns are numbered
-   * along the body: node i of cell c has the number c*degree + i, so each matrix is a chain of small dense blocks.
+   * cells own none). Adaptive meshes are a deal.II parallel::shared::Triangulation<1>. Unknowns are numbered along the
+   * body: node i of cell c has the number c*degree + i, so each matrix is a chain of small dense blocks.
    *
    * A rank owns the unknowns of its cells except the first node of its first cell, which the rank to the left owns
-   * (rank 0 owns that too). "Local" arrays hold all nodes of the own cells, that first one included: local node
-   * number = (cell - first_cell)*degree + i. On the first rank, and in a serial run, owned and local are the same.
+   * (rank 0 owns it itself). "Local" arrays hold all nodes of the own cells, including the first: local node number =
+   * (cell - first_cell)*degree + i. On the first rank, and in a serial run, owned and local are the same.
    */
   class Discretization
   {
   public:
-    /// Cells of one size.
+    /// Makes a mesh of equal cells.
     Discretization(MPI_Comm communicator, double length, unsigned int n_cells, unsigned int degree);
 
-    /// Cells between neighbours of @p cell_ends [length], which start with 0 and end with the length.
+    /// Makes cells between neighbours of @p cell_ends [length], which start with 0 and end with the length.
     Discretization(MPI_Comm communicator, std::vector<double> cell_ends, unsigned int degree);
     ~Discretization();
 
-    /// This mesh with cells divided and joined as @p changes says for all cells (the same on all ranks); neighbours
-    /// differ by one level at most, so more cells may be divided and fewer joined (collective).
+    /// This mesh with cells divided and joined according to @p changes, given for all cells (the same on all ranks);
+    /// neighbours differ by one level at most, so more cells may be divided and fewer joined (collective).
     std::unique_ptr<Discretization>
     adapted(std::vector<CellChange> changes) const;
 
@@ -73,7 +73,7 @@ namespace crawler
       return cells_.size() * element_.degree + 1;
     }
 
-    /// The cells of this rank: left ends [length] and sizes [length].
+    /// Left ends of this rank's cells [length]; below, their sizes [length].
     const std::vector<double> &
     cell_left() const
     {
@@ -116,35 +116,35 @@ namespace crawler
     {
       return rank_;
     }
-    /// All ranks of the communicator.
+    /// Number of ranks of the communicator.
     unsigned int
     n_ranks() const
     {
       return n_ranks_;
     }
-    /// Ranks that own cells: 0 ... n_active_ranks() - 1.
+    /// Number of ranks that own cells: 0 ... n_active_ranks() - 1.
     unsigned int
     n_active_ranks() const
     {
       return n_active_ranks_;
     }
 
-    /// Material coordinates of @p places (0 to 1) in the own cells, cell by cell [length].
+    /// Material coordinates [length] of @p places (0 to 1) in the own cells, cell by cell.
     std::vector<double>
     points(const std::vector<double> &places) const;
 
-    /// A local array from the owned values of all ranks (collective). Returns @p owned itself where nothing is
-    /// missing; else fills and returns @p buffer.
+    /// Completes a local array from the owned values of all ranks (collective). Returns @p owned itself where nothing
+    /// is missing; else fills and returns @p buffer.
     template <typename Number>
     std::span<const Number>
     to_local(std::span<const Number> owned, std::vector<Number> &buffer) const;
 
-    /// Owned sums from local contributions (collective): @p local is added up where two ranks share a node.
+    /// Sums local contributions to owned ones (collective): @p local is added up where two ranks share a node.
     template <typename Number>
     void
     add_to_owned(std::span<const Number> local, std::span<Number> owned) const;
 
-    /// All ranks' parts of a distributed array, in the order of the ranks, on all ranks (collective).
+    /// Concatenates all ranks' parts of a distributed array, in rank order, on all ranks (collective).
     std::vector<double>
     gather(std::span<const double> own) const;
 
@@ -163,6 +163,6 @@ namespace crawler
     unsigned int n_active_ranks_ = 0, first_cell_ = 0;
     std::vector<Cell> cells_;
     std::vector<double> cell_left_, cell_size_;
-    std::shared_ptr<Mesh> mesh_; ///< shared along a sequence of adapted meshes; in the state of the latest
+    std::shared_ptr<Mesh> mesh_; ///< shared by a sequence of adapted meshes; in the state of the latest
   };
 } // namespace crawler

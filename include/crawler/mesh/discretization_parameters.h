@@ -9,7 +9,7 @@ namespace crawler
 {
   class Declarations;
 
-  /// In which unknowns the user wants the equation solved.
+  /// Unknowns of the equation chosen by the user.
   enum class FormulationEntry
   {
     position,
@@ -46,7 +46,7 @@ namespace crawler
     static constexpr const char *list[] = {"automatic", "yes", "no"};
   };
 
-  /// Section "Discretization"; what is left empty is chosen from the wanted accuracy.
+  /// Section "Discretization"; empty entries are chosen from the wanted accuracy.
   struct DiscretizationParameters
   {
     FormulationEntry formulation = FormulationEntry::automatic;
@@ -60,7 +60,7 @@ namespace crawler
     void
     add_parameters(Declarations &declarations);
 
-    /// Whether several ranks should share a mesh of @p cells cells.
+    /// True if several ranks should share a mesh of @p cells cells.
     bool
     shares(unsigned int cells) const;
   };

@@ -6,11 +6,11 @@
 
 namespace crawler
 {
-  /// How the cells become smaller towards the ends of the body and both sides of each break in space.
+  /// Refinement of the cells towards the ends of the body and both sides of each discontinuity in space.
   struct Grading
   {
-    unsigned int levels = 0;    ///< cells that are added at each of these places; 0: none
-    double ratio        = 0.25; ///< of the sizes of neighbours among them [1], in (0, 1)
+    unsigned int levels = 0;    ///< cells added at each of these places; 0: none
+    double ratio        = 0.25; ///< ratio of the sizes of neighbours among them [1], in (0, 1)
   };
 
   /**
@@ -23,20 +23,20 @@ namespace crawler
   std::vector<double>
   cell_ends(unsigned int n_cells, const std::vector<double> &breaks, const Grading &grading);
 
-  /// For fewer cells than this, before they are graded, cell_ends() gives the same mesh.
+  /// Least number of cells, before grading, that matters: cell_ends() gives the same mesh for fewer.
   unsigned int
   least_cells(std::size_t n_breaks, const Grading &grading);
 
-  /// A number of cells, before they are graded, for a mesh that is certainly finer than that of @p n_cells: @p factor
-  /// times as many, or one more for each piece between breaks if that is more.
+  /// Number of cells, before grading, of a mesh that is certainly finer than that of @p n_cells: @p factor times as
+  /// many, or one more for each piece between breaks if that is more.
   unsigned int
   finer_n_cells(double factor, unsigned int n_cells, std::size_t n_breaks, const Grading &grading);
 
   /**
-   * The ends of cells of a body of length 1 that are images of cells of one size: half of them are in layers at the
-   * ends of the body and at the @p breaks, where at the distance @p layer cells are about twice as large. Each of the
-   * pieces between the breaks has its part of @p n_cells (4 at least), each divided into @p parts: such meshes are one
-   * family, and errors of second order fall with the square of @p parts.
+   * The ends of cells of a body of length 1 that are images of cells of one size: half of them lie in layers at the
+   * ends of the body and at the @p breaks, with cells about twice as large at the distance @p layer. Each piece between
+   * the breaks has its share of @p n_cells (4 at least), each divided into @p parts: these meshes are one family, and
+   * errors of second order fall with the square of @p parts.
    *
    * The density of the cells of a piece of length l is A/(layer + s) + A/(layer + l - s) + B.
    */

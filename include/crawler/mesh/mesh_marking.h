@@ -5,7 +5,7 @@
 
 namespace crawler
 {
-  /// What an adaptive mesh may become.
+  /// Limits of an adaptive mesh.
   struct MeshLimits
   {
     double tolerance        = 0.; ///< admissible sum of all error indicators [length]; 0: the mesh does not change
@@ -13,20 +13,20 @@ namespace crawler
     unsigned int most_cells = 100000;
   };
 
-  /// The indicators of all ranks' cells from left to right (collective).
+  /// Gathers the indicators of all ranks' cells from left to right (collective).
   std::vector<double>
   all_indicators(const std::vector<double> &own, const Discretization &discretization);
 
   /**
-   * The cells to divide such that the sum of the indicators falls below the tolerance: those with the largest
-   * indicators, until the others together have less than a tenth of it; and their neighbours, since waves travel.
-   * Empty if no cell that should be divided may be.
+   * Marks the cells to divide so that the sum of the indicators falls below the tolerance: those with the largest
+   * indicators, until the others together have less than a tenth of it; and their neighbours, since waves travel. Empty
+   * if the limits forbid to divide any of them.
    */
   std::vector<CellChange>
   mark_for_division(const std::vector<double> &indicators, const Discretization &mesh, const MeshLimits &limits);
 
-  /// The cells to join: pairs whose indicators are so small that, joined, they would stay below their share of a
-  /// hundredth of the tolerance. Empty if there are too few to be worth a change.
+  /// Marks the cells to join: pairs whose indicators would, after joining, stay below their share of a hundredth of the
+  /// tolerance. Empty if they are too few to be worth a change.
   std::vector<CellChange>
   mark_for_joining(const std::vector<double> &indicators, const Discretization &mesh, const MeshLimits &limits);
 } // namespace crawler

@@ -6,9 +6,9 @@
 namespace crawler
 {
   /**
-   * Tables of the Lagrange element of degree q on the Gauss-Lobatto nodes of [0,1] (deal.II's FE_Q, nodes from left
-   * to right) and of the Gauss formula with q + 1 points. Cells of a line are affine, so these numbers and a cell's
-   * size are all that integration needs; FEValues is not in the hot path.
+   * Tables of the Lagrange element of degree q on the Gauss-Lobatto nodes of [0,1] (deal.II's FE_Q, nodes from left to
+   * right) and of the Gauss formula with q + 1 points. Cells of a line are affine, so integration needs only these
+   * numbers and a cell's size; FEValues is not in the hot path.
    */
   struct ReferenceElement
   {
@@ -28,7 +28,7 @@ namespace crawler
     std::vector<double> right_derivatives; ///< [n nodes] derivatives at 1
     std::vector<double> stiffness;         ///< [n nodes][n nodes] sum of weight derivative derivative
 
-    // The stretch is a polynomial of degree q - 1: Gauss points that fix it.
+    // Gauss points that determine the stretch, a polynomial of degree q - 1.
     std::vector<double> node_weights;        ///< [n] Gauss-Lobatto weights of the nodes
     std::vector<double> stretch_points;      ///< [q] Gauss points of the stretch
     std::vector<double> stretch_weights;     ///< [q]
@@ -39,11 +39,11 @@ namespace crawler
     std::vector<double> integrate_points;
   };
 
-  /// The tables of a degree, made when they are first asked for and kept: a mesh is made more often than they change.
+  /// Returns the tables of a degree, made on first use and kept: meshes change more often.
   const ReferenceElement &
   reference_element(unsigned int degree);
 
-  /// The Lagrange polynomials through @p nodes, or their derivatives, at @p points: [points][nodes].
+  /// Values of the Lagrange polynomials through @p nodes, or of their derivatives, at @p points: [points][nodes].
   std::vector<double>
   interpolation_matrix(const std::vector<double> &nodes,
                        const std::vector<double> &points,

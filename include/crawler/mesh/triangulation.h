@@ -10,7 +10,7 @@
 
 namespace crawler
 {
-  /// The cells of a mesh that is adapted, as deal.II's triangulation (parallel::shared::Triangulation<1>) keeps them.
+  /// Cells of an adaptive mesh, kept by deal.II's triangulation (parallel::shared::Triangulation<1>).
   class Triangulation
   {
   public:
@@ -24,20 +24,20 @@ namespace crawler
     virtual std::size_t
     n_cells() const = 0;
 
-    /// The cells from left to right, each of them a part of one of the first mesh, @p coarse.
+    /// The cells from left to right, each a part of a cell of the first mesh, @p coarse.
     virtual std::vector<Cell>
     cells(const std::vector<Cell> &coarse) const = 0;
 
-    /// Divides and joins cells (collective): both halves of a cell are joined, and neighbours differ by one level at
-    /// most.
+    /// Divides and joins cells (collective): both halves of a cell are joined, and neighbours differ by at most one
+    /// level.
     virtual void
     change(const std::vector<CellChange> &changes) = 0;
   };
 
-  /// Cells between neighbours of @p ends [length] (collective).
+  /// Creates cells between neighbours of @p ends [length] (collective).
   std::unique_ptr<Triangulation>
   create_triangulation(MPI_Comm communicator, const std::vector<double> &ends);
 
-  /// Does it, with the library that links deal.II (base/deal_ii_library.h).
+  /// Its implementation in the library that links deal.II (base/deal_ii_library.h).
   using CreateTriangulation = Triangulation *(MPI_Comm communicator, const std::vector<double> &ends);
 } // namespace crawler

@@ -10,7 +10,7 @@
 
 namespace crawler
 {
-  /// Throws InputError unless the entry Output/Active stress table has nothing, or two whole numbers from 2 on, and the
+  /// Throws InputError unless the entry Output/Active stress table is empty, or two whole numbers from 2 on, and the
   /// active stress is a function of s and t alone.
   void
   require_table_fits(const std::vector<double> &size, const ActiveStress &stress);
@@ -18,7 +18,7 @@ namespace crawler
   /**
    * Writes the samples of an active stress at @p n_s equally spaced places of the whole body [length] and @p n_t
    * equally spaced times from 0 to @p end_time [time]: CSV with the header s,t,m, which the generator "table" reads.
-   * Gives what is wrong instead, and writes nothing, if a sample is not a finite number. Throws FileError.
+   * Returns an error message, and writes nothing, if a sample is not a finite number. Throws FileError.
    */
   std::string
   write_active_stress_table(const std::filesystem::path &path,
@@ -33,9 +33,9 @@ namespace crawler
   require_segment_table_fits(unsigned int n_parts, const ActiveStress &stress);
 
   /**
-   * Writes what a controller of segments needs: segments.csv has a column with the active stress of each segment, and
-   * rows at the ends of @p n_parts equal parts of the duration and at all jumps, two there; segment_switching.csv has a
-   * row for each time at which a segment is switched on or off. Throws FileError.
+   * Writes the input of a controller of segments: segments.csv has a column with the active stress of each segment, and
+   * rows at the ends of @p n_parts equal parts of the duration and two at each jump; segment_switching.csv has a row
+   * for each switching time. Throws FileError.
    */
   void
   write_segment_tables(const std::filesystem::path &folder,

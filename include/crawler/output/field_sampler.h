@@ -6,13 +6,13 @@
 
 namespace crawler
 {
-  /// The fields that are written, at a list of points, in the user's units.
+  /// Output fields at a list of points, in the user's units.
   struct Fields
   {
     std::vector<double> position, displacement, stretch, velocity, active_stress, elastic_stress, friction_force;
   };
 
-  /// What files call a field, and its unit.
+  /// Name of a field in files, and its unit.
   struct FieldName
   {
     const char *name, *unit;

@@ -16,13 +16,13 @@ namespace crawler
   class Kymograph : public Observer
   {
   public:
-    static constexpr unsigned int n_points = 201; ///< of the usual ones, both ends included
+    static constexpr unsigned int n_points = 201; ///< of the default points, both ends included
 
-    /// Parts of the length, from 0 to 1: the usual points.
+    /// The default points, as fractions of the length from 0 to 1.
     static std::vector<double>
     equidistant();
 
-    /// @p points are parts of the length, increasing.
+    /// Takes @p points as increasing fractions of the length.
     explicit Kymograph(std::vector<double> points = equidistant());
 
     void
@@ -44,34 +44,34 @@ namespace crawler
     {
       return times_;
     }
-    /// [time][point] of those fields of field_names that are in_kymograph, on rank 0.
+    /// Values [time][point] of those fields of field_names that are in_kymograph, on rank 0.
     const Fields &
     rows() const
     {
       return rows_;
     }
-    /// What pictures show of a field that is in_kymograph: all, or its usual size if it has peaks. On rank 0.
+    /// Range shown in pictures of a field that is in_kymograph: all, or its usual size if it has peaks. On rank 0.
     FieldRange
     shown(const FieldName &field) const;
 
   private:
-    /// Those of the points that lie in this rank's cells.
+    /// The points that lie in this rank's cells.
     std::vector<FieldSampler::Point>
     own_points(const Discretization &discretization) const;
 
     const std::vector<double> points_;
-    std::unique_ptr<FieldSampler> sampler_; ///< for the mesh of this number
+    std::unique_ptr<FieldSampler> sampler_; ///< for the mesh mesh_number_
     unsigned int mesh_number_ = 0;
     std::vector<double> times_;
     Fields rows_;
   };
 
-  /// Writes them as one structured grid (kymograph.vts: x is s/L, y is t/T) when the run ends, with what pictures show
-  /// of each field ("shown_stretch": two numbers) and the ground below the body's path.
+  /// Writes the kymograph as one structured grid (kymograph.vts: x is s/L, y is t/T) when the run ends, with the range
+  /// shown of each field ("shown_stretch": two numbers) and the ground below the body's path.
   class KymographWriter : public Kymograph
   {
   public:
-    /// @p length L [length]; @p ground may be null.
+    /// Takes the length L [length]; @p ground may be null.
     KymographWriter(double length,
                     double end_time,
                     std::shared_ptr<const Profile> ground,
@@ -81,7 +81,7 @@ namespace crawler
     end() override;
 
   private:
-    /// Arrays of places on the ground and of its factor there; nothing where it is the same everywhere.
+    /// Arrays of places on the ground and of its factor there; empty for a uniform ground.
     std::string
     ground_arrays() const;
 

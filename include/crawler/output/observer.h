@@ -9,27 +9,26 @@
 
 namespace crawler
 {
-  /// A state of a run, read-only, in the user's units except for what the equation is computed in: assembler, y, v and
-  /// computed_time, whose units are given. It is the end of an accepted step, or what the integrator knows of a time
-  /// within one; the first is the initial state.
+  /// A state of a run, read-only, in the user's units except for assembler, y, v and computed_time, which are in
+  /// `units`. It is the end of an accepted step, or interpolated within one; the first is the initial state.
   struct Snapshot
   {
     const Step &step;           ///< with the time of this state, which may be within the step
     bool is_step_end;           ///< an accepted state
-    bool is_in_lost_step;       ///< seen before an inversion, but later than the answer's last state
-    PictureKinds pictures;      ///< what it was asked for
-    const Assembler &assembler; ///< mesh and formulation; may be another one in the next snapshot ...
-    unsigned int mesh_number;   ///< ... and then this number is another one
+    bool is_in_lost_step;       ///< before an inversion, but later than the answer's last state
+    PictureKinds pictures;      ///< pictures for which it was requested
+    const Assembler &assembler; ///< mesh and formulation; may change from one snapshot to the next ...
+    unsigned int mesh_number;   ///< ... together with this number
     const Units &units;
     double computed_time;
     std::span<const double> y;      ///< the unknowns (assembler.h), owned values of this rank
-    std::span<const double> v;      ///< velocity at the nodes; without an energy balance of pictures only
+    std::span<const double> v;      ///< velocity at the nodes; only for pictures if there is no energy balance
     const CellIntegrals &integrals; ///< those with v are as old as v
     const StretchRange &stretch;
     const EnergyBalance &energy_balance;
   };
 
-  /// Looks at the accepted states of a run and at those that were asked for. Called on all ranks together.
+  /// Sees the accepted states of a run and the requested ones. Called on all ranks together.
   class Observer
   {
   public:
@@ -38,13 +37,13 @@ namespace crawler
     virtual void
     observe(const Snapshot &snapshot) = 0;
 
-    /// What it has seen so far, for one that goes on with the same files. Throws FileError if these are not there.
+    /// Exchanges the data collected so far, to continue the same files. Throws FileError if these are missing.
     virtual void
     exchange(Archive &)
     {
     }
 
-    /// After the last state, however the run ended.
+    /// Called after the last state, however the run ended.
     virtual void
     end()
     {

@@ -23,7 +23,7 @@ namespace crawler
     static constexpr const char *list[] = {"vtu", "xdmf"};
   };
 
-  /// Section "Output": what is computed and written besides the displacement.
+  /// Section "Output": results and files besides the displacement.
   struct OutputParameters
   {
     std::optional<unsigned int> n_snapshots;
@@ -37,7 +37,7 @@ namespace crawler
     std::string sensitivities  = "";         ///< entries, or "all" (studies/core/sensitivity_entries.h)
     std::string uncertainty    = "";         ///< entries and their standard deviations (the same)
 
-    /// Are derivatives by entries wanted?
+    /// True if derivatives by entries are wanted.
     bool
     differentiates() const
     {

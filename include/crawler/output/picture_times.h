@@ -9,14 +9,14 @@ namespace crawler
   struct OutputParameters;
   struct Scene;
 
-  /// What a state is wanted for.
+  /// Pictures for which a state is needed.
   struct PictureKinds
   {
     bool is_snapshot = false; ///< a frame for ParaView
     bool is_row      = false; ///< a row of the kymograph
   };
 
-  /// When pictures of a run are wanted, as a list to be gone through once. Steps need not end at these times.
+  /// Times of the pictures of a run, traversed once. Steps need not end at these times.
   class PictureTimes
   {
   public:
@@ -26,11 +26,11 @@ namespace crawler
       PictureKinds kinds;
     };
 
-    /// None.
+    /// Makes an empty list.
     PictureTimes() = default;
 
-    /// The initial state, and @p snapshots and @p rows of the kymograph in [0, @p end_time] [time]. Times that differ
-    /// by round-off are one.
+    /// Lists the initial state, and @p snapshots and @p rows of the kymograph in [0, @p end_time] [time]. Times that
+    /// differ by round-off are merged.
     PictureTimes(const std::vector<double> &snapshots, const std::vector<double> &rows, double end_time);
 
     bool
@@ -43,11 +43,11 @@ namespace crawler
     {
       return times_;
     }
-    /// Besides the initial state.
+    /// Number of snapshots besides the initial state.
     std::size_t
     n_snapshots() const;
 
-    /// The time of number @p i in units of the duration; 1 is the end, exactly.
+    /// Time number @p i in units of the duration; 1 is the end, exactly.
     double
     natural(std::size_t i) const;
 
@@ -57,10 +57,10 @@ namespace crawler
   };
 
   /**
-   * The pictures that @p output wants of @p scene. Automatic snapshots are at equal intervals: 64 a stride, at least 64
-   * and at most 640 in all; 256 if the stride is not declared. Automatic rows of the kymograph: 64 a stride and at
-   * least 128 of the whole run, or of its last 20 strides if there are more; and before and after each jump of the
-   * active stress, if these are not too many.
+   * Times of the pictures of @p scene that @p output requests. Automatic snapshots are at equal intervals: 64 per
+   * stride, at least 64 and at most 640 in all; 256 if the stride is not declared. Automatic rows of the kymograph: 64
+   * per stride and at least 128 of the whole run, or of its last 20 strides if there are more; and before and after
+   * each jump of the active stress, if these are not too many.
    */
   PictureTimes
   picture_times(const OutputParameters &output, const Scene &scene);

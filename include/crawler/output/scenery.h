@@ -17,25 +17,25 @@ namespace crawler
     double time;
     unsigned int step;
     unsigned int points_per_cell;
-    std::vector<double> s; ///< of the points of all cells, ends included: two at each border of cells [length]
+    std::vector<double> s; ///< of the points of all cells, ends included: two at each cell boundary [length]
     Fields fields;
   };
 
-  /// Points of triangles or quadrilaterals one after another, each with x, y and z.
+  /// Vertices of triangles or quadrilaterals, one after another, each with x, y and z.
   using Corners = std::vector<double>;
 
-  /// Thickness of the drawn body: its area is kept, so L/10 over the stretch, but at most L.
+  /// Thickness of the drawn body: L/10 over the stretch, which keeps its area, but at most L.
   double
   thickness(double stretch, double length);
 
   /**
-   * The drawn body of a rest length @p length [length]: it lies on the ground, y = 0, at its present place. For each
-   * point of the frame there is one at the ground and one at the upper edge.
+   * The drawn body of rest length @p length [length] on the ground, y = 0, at its present place. Each point of the
+   * frame gives one at the ground and one at the upper edge.
    */
   Corners
   ribbon(const Frame &frame, double length);
 
-  /// Values at the points of the frame for those of the ribbon.
+  /// Values at the points of the ribbon from those at the points of the frame.
   std::vector<double>
   on_both_edges(const std::vector<double> &values);
 
@@ -46,22 +46,22 @@ namespace crawler
   };
   constexpr unsigned int n_grips = 24;
 
-  /// At equidistant s.
+  /// Places of arrows, at equidistant s.
   std::vector<Grip>
   grips(const Frame &frame, double length);
 
-  /// What is seen besides the body: the ground below its path, the size of the arrows, and scales of the fields.
+  /// Surroundings of the body: the ground below its path, the size of the arrows, and scales of the fields.
   class Scenery
   {
   public:
     explicit Scenery(double length);
 
-    /// Takes account of one more frame. True if ground or scales have changed: they change rarely, since they grow by
-    /// more than is needed at once.
+    /// Includes one more frame. Returns true if ground or scales have changed, which is rare, since they grow by more
+    /// than is needed at once.
     bool
     include(const Frame &frame);
 
-    /// Ground and scales become exactly what all frames need.
+    /// Sets ground and scales to exactly what all frames need.
     void
     finish();
 
@@ -74,16 +74,16 @@ namespace crawler
     double
     tick_distance() const;
 
-    /// Triangles, an arrow for each place: forces of the ground on the body. 0.15 L long is the usual size of the
-    /// frames so far; no arrow is longer.
+    /// Triangles, an arrow for each place: forces of the ground on the body. An arrow 0.15 L long is the usual size in
+    /// the frames so far; none is longer.
     Corners
     arrows(const std::vector<Grip> &grips) const;
 
-    /// A quadrilateral below the left end of the ground; the fields go from their smallest value on its left to their
-    /// largest one, those with peaks within their usual size.
+    /// A quadrilateral below the left end of the ground, whose fields go from their smallest value on the left to their
+    /// largest on the right, those with peaks within their usual size.
     Corners
     scale() const;
-    /// In the order of field_names.
+    /// Ranges in the order of field_names.
     const std::array<FieldRange, std::size(field_names)> &
     ranges() const
     {
@@ -99,10 +99,11 @@ namespace crawler
   private:
     double length_;
     std::array<UsualSize, std::size(field_names)> sizes_;         ///< of the fields with peaks
-    std::array<FieldRange, std::size(field_names)> seen_, drawn_; ///< of the fields; the path is that of the position
+    std::array<FieldRange, std::size(field_names)> seen_, drawn_; ///< of the fields; the path is the range of the
+                                                                  ///< position
     FieldRange seen_path_, path_;
 
-    /// What is drawn of a field.
+    /// Range drawn of a field.
     FieldRange
     shown(std::size_t field) const;
   };

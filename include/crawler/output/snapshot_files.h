@@ -5,21 +5,21 @@
 
 namespace crawler
 {
-  /// Files of a format for all snapshots of a run, a complete animation after each of them.
+  /// Files of one format for all snapshots of a run, a complete animation after each snapshot.
   class SnapshotFiles
   {
   public:
     virtual ~SnapshotFiles() = default;
 
-    /// Adds a frame; @p scenery_changed is what Scenery::include() said of it. Throws FileError.
+    /// Adds a frame; @p scenery_changed is the result of Scenery::include(). Throws FileError.
     virtual void
     add(const Frame &frame, const Scenery &scenery, bool scenery_changed) = 0;
 
-    /// After the last frame, with the final scenery. Throws FileError.
+    /// Ends the files after the last frame, with the final scenery. Throws FileError.
     virtual void
     end(const Scenery &scenery) = 0;
 
-    /// What has been written, as for Observer::exchange().
+    /// Exchanges the record of what has been written, as Observer::exchange() does.
     virtual void
     exchange(Archive &archive) = 0;
   };

@@ -13,8 +13,8 @@
 namespace crawler
 {
   /**
-   * solution.h5: datasets with a row for each frame and room for as many points as the largest mesh has. Its layout is
-   * made with the file and later only numbers are written, so that a file whose writer was killed is a valid file.
+   * The file solution.h5: datasets with a row for each frame and room for the points of the largest mesh. Its layout is
+   * made with the file; later only numbers are written, so a file whose writer was killed is valid.
    */
   class SnapshotHdf5
   {
@@ -25,28 +25,28 @@ namespace crawler
     {
       std::string unit, description;
       bool has_rows;         ///< one for each frame
-      Shape shape;           ///< of a row, or of all; n_points stands for the number of points
-      bool is_whole = false; ///< whole numbers
+      Shape shape;           ///< of a row, or of the whole dataset; n_points stands for the number of points
+      bool is_whole = false; ///< integers
     };
     static constexpr hsize_t n_points = 0;
 
-    /// All datasets by their names.
+    /// All datasets by name.
     static const std::map<std::string, Layout> &
     layouts();
 
-    /// The shape of @p n_rows rows (of all, if there are no rows) with @p n points.
+    /// The shape of @p n_rows rows (of the dataset, if it has no rows) with @p n points.
     static Shape
     shape(const Layout &layout, std::size_t n_rows, std::size_t n);
 
-    /// Makes a file in which numbers are NaN. Throws FileError.
+    /// Creates a file whose numbers are NaN. Throws FileError.
     static void
     create(const std::filesystem::path &path, std::size_t n_frames, std::size_t n);
 
-    /// Opens what create() has made. Throws FileError.
+    /// Opens a file made by create(). Throws FileError.
     explicit SnapshotHdf5(const std::filesystem::path &path);
 
     /// Writes @p values, @p n_rows rows from @p row on with @p n points each, or a dataset without rows. They are in
-    /// the file when this returns. Throws FileError.
+    /// the file on return. Throws FileError.
     void
     write(const std::string &name,
           const std::vector<double> &values,
@@ -54,15 +54,15 @@ namespace crawler
           std::size_t n_rows = 1,
           std::size_t n      = 1) const;
 
-    /// Throws FileError.
+    /// Reads rows. Throws FileError.
     std::vector<double>
     read(const std::string &name, std::size_t row, std::size_t n_rows, std::size_t n) const;
 
-    /// Frames, and points of each of them, for which there is room.
+    /// Capacity: number of frames, and of points in each.
     std::pair<std::size_t, std::size_t>
     size() const;
 
-    /// Where the numbers of a row begin in the file, in bytes.
+    /// Offset of the numbers of a row in the file [bytes].
     std::size_t
     place(const std::string &name, std::size_t row) const;
 

@@ -11,18 +11,18 @@
 
 namespace crawler
 {
-  /// The file of a format that one opens in ParaView.
+  /// The file of a format to be opened in ParaView.
   std::string
   animation_file(SnapshotFormat format);
 
   /**
-   * Writes the snapshots of a run, or frames that it is given. The fields are sampled at q + 1 equidistant points of
-   * each cell of degree q; the stretch is not averaged between cells. Rank 0 writes.
+   * Writes the snapshots of a run, or given frames. The fields are sampled at q + 1 equidistant points of each cell of
+   * degree q; the stretch is not averaged between cells. Rank 0 writes.
    */
   class SnapshotWriter : public Observer
   {
   public:
-    /// @p length L [length]; @p n_frames are expected.
+    /// Takes the length L [length] and the expected number of frames @p n_frames.
     SnapshotWriter(SnapshotFormat format, const std::filesystem::path &folder, double length, std::size_t n_frames);
 
     void
@@ -37,7 +37,7 @@ namespace crawler
     write(const Frame &frame);
 
   private:
-    std::unique_ptr<FieldSampler> sampler_; ///< for the mesh of this number
+    std::unique_ptr<FieldSampler> sampler_; ///< for the mesh mesh_number_
     unsigned int mesh_number_ = 0;
     MPI_Comm communicator_    = MPI_COMM_SELF; ///< of the ranks that share the cells
     Scenery scenery_;

@@ -15,7 +15,7 @@ namespace crawler
   class Statistics : public Observer
   {
   public:
-    /// @p length of the body.
+    /// Takes the @p length of the body.
     Statistics(double length, bool with_energy_balance);
 
     void
@@ -35,10 +35,10 @@ namespace crawler
     virtual void
     write(const Row &row);
 
-    /// With their units, "time [time]".
+    /// Names with units, "time [time]".
     std::vector<std::string>
     column_names() const;
-    /// [row][column]; what is not known is not a number.
+    /// Values [row][column]; unknown ones are NaN.
     const std::vector<double> &
     values() const
     {
@@ -53,11 +53,11 @@ namespace crawler
     const std::size_t n_columns_;
   };
 
-  /// Writes them to statistics.csv instead. Rank 0 writes.
+  /// Writes the table to statistics.csv instead of keeping it. Rank 0 writes.
   class StatisticsWriter : public Statistics
   {
   public:
-    /// The file is made with the first row.
+    /// Takes the file's path; the file is made with the first row.
     StatisticsWriter(double length,
                      bool is_first_rank,
                      const std::filesystem::path &folder,

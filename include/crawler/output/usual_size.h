@@ -14,22 +14,22 @@ namespace crawler
   using FieldRange = std::pair<double, double>;
 
   /**
-   * The size that a field keeps to (to a tenth) but for 2 % of body and time. Colours and arrows of all pictures show
-   * it in full and what is larger as if it were no larger, so that an instant of large values, as at a sudden start,
-   * leaves the rest to be seen.
+   * The size that a field exceeds only on 2 % of body and time (to a tenth). Colours and arrows of all pictures are cut
+   * off there, so that an instant of large values, as at a sudden start, does not hide the rest.
    */
   class UsualSize
   {
   public:
-    /// The values at @p time, at equidistant places. Times ascend; a row counts for the time since the one before.
+    /// Adds the values at @p time, at equidistant places. Times ascend; a row counts for the time since the previous
+    /// one.
     void
     add(double time, std::span<const double> row);
 
-    /// What no value exceeds, if the rows so far last no time.
+    /// The usual size; the largest size if the rows so far last no time.
     double
     value() const;
 
-    /// The part of the range of all values in which none is larger.
+    /// Part of the range @p all that is within the usual size.
     FieldRange
     within(const FieldRange &all) const;
 

@@ -6,8 +6,8 @@
 
 namespace crawler
 {
-  /// solution.pvd: body, ground, grip and scale of each frame. line.pvd: the body as a line with s on the x axis. Both
-  /// name files in solution/.
+  /// Files solution.pvd (body, ground, grip and scale of each frame) and line.pvd (the body as a line with s on the x
+  /// axis). Both name files in solution/.
   class VtuFiles : public SnapshotFiles
   {
   public:

@@ -14,8 +14,8 @@ namespace crawler
   /**
    * All frames in solution.h5, described by solution.xdmf (body, grip, ground and scale) and line.xdmf (the body as a
    * line with s on the x axis). The datasets have a row for each frame and as many columns as the largest mesh has
-   * points; what a frame does not need is NaN, and n_points says how many it has. For more frames or points than there
-   * is room for a larger file takes its place.
+   * points; unused ones are NaN, and n_points is the number of used ones. When frames or points exceed the capacity, a
+   * larger file replaces it.
    */
   class XdmfFiles : public SnapshotFiles
   {
@@ -37,13 +37,13 @@ namespace crawler
       std::size_t n_points;
     };
 
-    /// Makes a file of this size with all frames so far.
+    /// Makes a file of the new size with all frames so far.
     void
     resize(std::size_t n_frames, std::size_t n_points);
     void
     write_scenery(const Scenery &scenery) const;
 
-    /// The frame @p row as a grid of XDMF.
+    /// Frame @p row as a grid of XDMF.
     std::string
     body_grid(std::size_t row) const;
     std::string
@@ -54,7 +54,7 @@ namespace crawler
     const std::filesystem::path path_; ///< of the HDF5 file
     const double length_;
     const std::size_t expected_;                ///< frames
-    std::size_t most_frames_, most_points_ = 0; ///< for which there is room
+    std::size_t most_frames_, most_points_ = 0; ///< capacity of the file
     std::unique_ptr<SnapshotHdf5> file_;
     std::vector<FrameSize> frames_;
     GrowingText body_, line_; ///< the descriptions

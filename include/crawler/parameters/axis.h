@@ -13,27 +13,27 @@ namespace crawler
   /// The values that one entry of the parameter file takes in turn: an axis of a study.
   struct Axis
   {
-    std::string entry;               ///< "Section/Entry"
+    std::string entry;               ///< values as in a parameter file, no two alike
     std::vector<std::string> values; ///< as they stand in a parameter file, no two alike
   };
 
-  /// The parts of a text between separators, trimmed. Separators within double quotes do not count, nor do those within
-  /// parentheses, unless these are semicolons.
+  /// Splits a text at separators and trims the parts. Separators within double quotes are skipped, as are those within
+  /// parentheses, except semicolons.
   std::vector<std::string>
   split_parts(const std::string &text, char separator);
 
-  /// What stands between the double quotes around @p text; a text without them as it is.
+  /// The text between the double quotes around @p text; a text without them unchanged.
   std::string
   without_quotes(const std::string &text);
 
-  /// "function(a, b)"
+  /// A call "function(a, b)".
   struct Call
   {
     std::string function;
     std::vector<std::string> arguments; ///< without quotes
   };
 
-  /// Nothing unless the whole text is one call.
+  /// Reads a call; nothing unless the whole text is one.
   std::optional<Call>
   read_call(const std::string &text);
 
@@ -41,7 +41,8 @@ namespace crawler
    * Reads VALUES of an axis: linspace(first, last, count), logspace(first exponent, last exponent, count) (powers of
    * ten), or a list of values separated by commas, no two alike if they must be @p distinct. Commas within parentheses,
    * as in max(1, x), do not separate; a value in double quotes may have any characters but those. Throws InputError in
-   * the name of the entry @p name in which the text stands; it offers @p other_functions, too, which the caller reads.
+   * the name of the entry @p name that has the text; its message also offers @p other_functions, which the caller
+   * reads.
    */
   std::vector<std::string>
   parse_values(const std::string &text,
@@ -49,13 +50,13 @@ namespace crawler
                bool distinct                                   = true,
                const std::vector<std::string> &other_functions = {});
 
-  /// Throws InputError in the name of the entry @p name if two values are alike (as numbers, if they are); @p where,
-  /// say " in column p", follows the value in the sentence.
+  /// Throws InputError in the name of the entry @p name if two values are alike (compared as numbers where they are
+  /// numbers); @p where, say " in column p", follows the value in the sentence.
   void
   require_distinct(const std::vector<std::string> &values, const std::string &name, const std::string &where = "");
 
   /// Throws InputError, in the name of the entry @p name, unless the axis is that of an entry in @p declarations and
-  /// all its values are admissible there; names of files count from @p folder. Leaves the entry at the last value.
+  /// all its values are admissible there; file names are relative to @p folder. Leaves the entry at the last value.
   void
   require_valid(const Axis &axis,
                 const std::string &name,

@@ -18,8 +18,8 @@ namespace crawler
   class EntryStore;
 
   /**
-   * The list of all entries of the parameter file. A parameter struct declares its members here, each
-   * with its default, range, unit and a sentence; from then on the member follows the entry:
+   * The list of all entries of the parameter file. A parameter struct declares its members here, each with its default,
+   * range, unit and a sentence; from then on the member has the value of the entry:
    *
    *   declarations.number("Length", length, positive(), "length").means("Rest length L of the body.");
    *
@@ -28,7 +28,7 @@ namespace crawler
   class Declarations
   {
   public:
-    /// With @p only, the name of a section or an entry, all others are passed over.
+    /// Restricts the list to @p only, the name of a section or an entry; other declarations are skipped.
     explicit Declarations(std::string only = "");
     ~Declarations();
 
@@ -37,7 +37,7 @@ namespace crawler
     void
     leave();
 
-    /// An entry that is declared once it says what it means, in a sentence or several.
+    /// A declared entry, which requires its explanation in one or more sentences.
     class [[nodiscard]] Entry
     {
     public:
@@ -60,7 +60,7 @@ namespace crawler
       }
     };
 
-    // Where a value is optional, the word "automatic" (an empty optional) is admissible as well.
+    // Optional values also admit the word "automatic" (an empty optional).
     Entry
     number(const std::string &name, double &value, const Range &range, const std::string &unit);
     Entry
@@ -69,12 +69,12 @@ namespace crawler
     whole_number(const std::string &name, unsigned int &value, unsigned int lower, unsigned int upper);
     Entry
     whole_number(const std::string &name, std::optional<unsigned int> &value, unsigned int lower, unsigned int upper);
-    /// A list; it may be empty if the default is.
+    /// A list of numbers; it may be empty if the default is.
     Entry
     numbers(const std::string &name, std::vector<double> &value, const std::string &unit);
     Entry
     choice(const std::string &name, std::string &value, const std::vector<std::string> &words);
-    /// The words of an enum (base/words.h).
+    /// A choice among the words of an enum (base/words.h).
     template <HasWords Enum>
     Entry
     choice(const std::string &name, Enum &value)
@@ -93,25 +93,25 @@ namespace crawler
     /// A factor along the body: a formula of s, its values at equally spaced places, or the name of a CSV file.
     Entry
     profile(const std::string &name, std::string &value);
-    /// A text that is the name of a file, or may be one if its ending is @p ending.
+    /// A text that names a file; with @p ending, only if it ends so.
     Entry
     file(const std::string &name,
          std::string &value,
          const std::string &expected,
          const std::string &unit   = "",
          const std::string &ending = "");
-    /// The names of files, separated by semicolons.
+    /// File names, separated by semicolons.
     Entry
     files(const std::string &name, std::string &value, const std::string &expected);
 
-    /// Sets the entry with the full name @p path, or one of the numbers that it is made of (listed_numbers.h), as
-    /// "Section/Entry[2]". Throws InputError (naming the entry, what was found and what was expected, with
-    /// the nearest names) if there is no such entry or the value does not fit. The name of a file counts from @p
-    /// folder; it is kept, and printed, as an absolute one.
+    /// Sets the entry with the full name @p path, or one number of it (listed_numbers.h), as "Section/Entry[2]". Throws
+    /// InputError (naming the entry, the value found and the values expected, with the nearest names) if there is no
+    /// such entry or the value does not fit. File names are relative to @p folder, and are kept and printed as absolute
+    /// ones.
     void
     set(const std::string &path, const std::string &value, const std::filesystem::path &folder = "");
 
-    /// The value that set() would keep: the name of a file, if the entry names one, as an absolute one.
+    /// The value that set() would keep: a file name as an absolute one.
     std::string
     with_absolute_name(const std::string &path, const std::string &value, const std::filesystem::path &folder) const;
 
@@ -119,7 +119,7 @@ namespace crawler
     std::string
     value(const std::string &path) const;
 
-    /// The entry itself; of one of its numbers, that of all.
+    /// The entry @p path; for one of its numbers, the whole entry.
     const EntryInfo &
     info(const std::string &path) const;
 
@@ -156,7 +156,7 @@ namespace crawler
           EntryValues values,
           const Read &read);
 
-    /// Throws InputError with the nearest names if there is no such entry.
+    /// Finds a declared entry. Throws InputError with the nearest names if there is none.
     const EntryInfo &
     find(const std::vector<std::string> &path) const;
     [[noreturn]] void
@@ -167,16 +167,16 @@ namespace crawler
 
     const std::string only_;
     std::unique_ptr<EntryStore> store_;
-    std::vector<std::string> section_; ///< where declarations go at present
+    std::vector<std::string> section_; ///< section of the next declarations
     std::vector<EntryInfo> entries_;
     std::vector<std::string> sections_;
   };
 
-  /// The words of a path: "A/B/c" -> {"A", "B", "c"}, without blanks around them.
+  /// Splits a path into its words: "A/B/c" -> {"A", "B", "c"}, without blanks around them.
   std::vector<std::string>
   split_path(const std::string &path);
 
-  /// The one spelling of a path, by which entries are compared: without blanks around its words.
+  /// The normal spelling of a path, for comparing entries: without blanks around its words.
   std::string
   normal_path(const std::string &path);
 } // namespace crawler

@@ -40,17 +40,17 @@ namespace crawler
     flag
   };
 
-  /// What values an entry has, for other programs.
+  /// Admissible values of an entry, for other programs.
   struct EntryValues
   {
     EntryKind kind                 = EntryKind::text;
     Range range                    = {};    ///< of a number
     std::vector<std::string> words = {};    ///< of a choice; of constants, the entries with formulas that may use them
-    bool may_be_automatic          = false; ///< the word "automatic" as well
+    bool may_be_automatic          = false; ///< the word "automatic" is admissible
     bool may_be_empty              = false; ///< of a list
   };
 
-  /// What a user can read about one entry of the parameter file.
+  /// Description of one entry of the parameter file for the user.
   struct EntryInfo
   {
     std::string path; ///< "Section/Subsection/Entry"
@@ -58,9 +58,9 @@ namespace crawler
     std::string expected; ///< the admissible values in words
     std::string unit;     ///< empty for words and counts
     std::string documentation;
-    bool names_file         = false; ///< its value is, or may be, the name of a file that is read
+    bool names_file         = false; ///< the value names a file to be read, or may do so
     bool names_several      = false; ///< files, separated by semicolons
-    std::string file_ending = "";    ///< without it a value is not the name of a file
+    std::string file_ending = "";    ///< if not empty, only values with this ending name files
     EntryValues values      = {};
   };
 } // namespace crawler

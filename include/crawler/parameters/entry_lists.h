@@ -18,7 +18,7 @@ namespace crawler
   void
   print_schema(const Declarations &declarations, std::ostream &out);
 
-  /// A Markdown page.
+  /// A Markdown page of the entries.
   void
   print_markdown(const Declarations &declarations, std::ostream &out);
 } // namespace crawler

@@ -17,7 +17,7 @@ namespace crawler
   {
     std::vector<std::string> path; ///< the words of sections and entry
     EntryInfo info;
-    std::string explanation; ///< what a user reads about it
+    std::string explanation; ///< text for the user
     std::string value;
   };
 
@@ -27,15 +27,15 @@ namespace crawler
   public:
     using Path = std::vector<std::string>;
 
-    /// An entry with its default value. @p match says whether a text is admissible; @p assign sees each value from now
-    /// on, the default first.
+    /// Adds an entry with its default value. @p match decides whether a text is admissible; @p assign receives each
+    /// value from now on, the default first.
     void
     declare(const Path &path,
             const EntryInfo &info,
             const std::function<bool(const std::string &)> &match,
             const std::function<void(const std::string &)> &assign);
 
-    /// False, and nothing changes, if @p text is not admissible.
+    /// Sets the text of an entry; returns false and changes nothing if it is not admissible.
     bool
     set(const Path &path, const std::string &text);
 
@@ -53,7 +53,7 @@ namespace crawler
       std::function<void(const std::string &)> assign;
     };
 
-    std::vector<StoredEntry> entries_; ///< in the order in which they were declared
+    std::vector<StoredEntry> entries_; ///< in the order of their declaration
     std::vector<Actions> actions_;     ///< of the entries
     std::map<Path, std::size_t> places_;
   };

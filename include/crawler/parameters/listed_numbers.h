@@ -9,27 +9,27 @@
 
 namespace crawler
 {
-  /// One of the numbers that an entry is made of, "Section/Entry[key]".
+  /// One number of an entry that has several, "Section/Entry[key]".
   struct ListedNumber
   {
-    std::string key; ///< its place in a list, from 1 on, or the name of a constant
+    std::string key; ///< place in a list, from 1 on, or name of a constant
     double value;
   };
 
-  /// Those of an entry whose value is @p text; none of a single number or another kind of value, so also of a profile
-  /// that is a formula or a file.
+  /// The numbers of an entry whose value is @p text; none for a single number or another kind of value, including a
+  /// profile that is a formula or a file.
   std::vector<ListedNumber>
   listed_numbers(const EntryInfo &entry, const std::string &text);
 
-  /// The number that @p key names; 0 behind the end of a list of any length. Throws InputError if there can be none.
+  /// The number that @p key names; 0 beyond the end of a list of any length. Throws InputError if there can be none.
   double
   listed_number(const EntryInfo &entry, const std::string &text, const std::string &key);
 
-  /// The value @p text of the entry with another number there; a list is filled up by zeros. Throws InputError.
+  /// The value @p text of the entry with the number @p key replaced; a list is padded with zeros. Throws InputError.
   std::string
   with_listed_number(const EntryInfo &entry, const std::string &text, const std::string &key, double value);
 
-  /// What stands in brackets at the end of a path, which is taken away; nothing if nothing does.
+  /// Removes the key in brackets from the end of a path and returns it; nothing if there is none.
   std::optional<std::string>
   take_key(std::string &path);
 } // namespace crawler

@@ -18,16 +18,15 @@ namespace crawler
     std::string path;             ///< "Section/Entry", as normal_path() writes it
     std::string value;            ///< without blanks around it and without the comment
     std::string place;            ///< for messages: "fig_2.prm, line 12" or "--set ..."
-    bool is_override;             ///< of --set, which is stronger than all files
-    std::filesystem::path folder; ///< from which the name of a file in the value counts
-    unsigned int depth = 0;       ///< of the file: 0, or more if it is included
+    bool is_override;             ///< given by --set, which overrides all files
+    std::filesystem::path folder; ///< to which a file name in the value is relative
+    unsigned int depth = 0;       ///< nesting depth of the file: 0, or more if included
   };
 
   /**
-   * A parameter file in deal.II's .prm format (subsection ... end, set name = value, # comments, \ at a
-   * line's end continues it, include FILE) and the overrides that stand above it. What stands below an include
-   * replaces what the included file sets. All reading of input goes through here, so that every error names its
-   * file and line.
+   * A parameter file in deal.II's .prm format (subsection ... end, set name = value, # comments, \ at a line's end
+   * continues it, include FILE) and its overrides. Settings below an include replace those of the included file. All
+   * input is read here, so that every error names its file and line.
    */
   class ParameterFile
   {
@@ -37,7 +36,7 @@ namespace crawler
     static ParameterFile
     read(const std::string &file_name);
 
-    /// The same from a text; @p name stands for the file's name in messages.
+    /// Reads a text; @p name stands for the file's name in messages.
     static ParameterFile
     from_text(const std::string &text, const std::string &name);
 
@@ -49,20 +48,20 @@ namespace crawler
     void
     apply(Declarations &declarations) const;
 
-    /// The same error with the place of the entry that it names in front, if the entry was set at all. A foreign sign
-    /// there (slips.h) is named instead.
+    /// The error with the place of the entry that it names in front, if the entry was set at all. A foreign sign there
+    /// (slips.h) is named instead.
     InputError
     with_place(const InputError &error) const;
 
-    /// The sections within the section @p path that the file opens or that something is set in, sorted.
+    /// The sections within the section @p path that the file opens or sets entries of, sorted.
     std::set<std::string>
     subsections(const std::string &path) const;
 
-    /// The strongest assignment of an entry, the last one; null if it is not set.
+    /// The assignment of an entry that counts, the last one; null if it is not set.
     const Assignment *
     assignment_of(const std::string &path) const;
 
-    /// Everything that is set, in the order of file and command line.
+    /// All assignments, in the order of file and command line.
     const std::vector<Assignment> &
     assignments() const
     {

@@ -11,11 +11,11 @@ namespace crawler
   std::string
   trimmed(const std::string &text);
 
-  /// A finite number if the whole text is one (a decimal or scientific literal), else nothing.
+  /// Returns the finite number that is the whole text (a decimal or scientific literal), or nothing.
   std::optional<double>
   to_number(const std::string &text);
 
-  /// The numbers of a list that are separated by commas; nothing if one of them is none.
+  /// Reads a list of numbers separated by commas; nothing if one of them is not a number.
   std::optional<std::vector<double>>
   to_numbers(const std::string &text);
 

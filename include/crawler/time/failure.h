@@ -7,8 +7,8 @@
 
 namespace crawler
 {
-  /// How a computation ended that has thrown @p error: failed, with a reason of doc/user_guide.md and what was thrown
-  /// as message. What the user has to mend is no such end: InputError and FileError are thrown again.
+  /// Outcome of a computation that has thrown @p error: failed, with a reason of doc/user_guide.md and the error's
+  /// message. InputError and FileError, which the user has to mend, are thrown again.
   TimeOutcome
   failure_of(const std::exception_ptr &error);
 } // namespace crawler

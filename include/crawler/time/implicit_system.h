@@ -8,9 +8,9 @@
 namespace crawler
 {
   /**
-   * A system F(t, y, y') = 0 with y' implicit, as the integrators of PETSc see it: residual, the systems of Newton's
-   * method, and products with its matrices. Vectors are the owned values of each rank; all functions are collective. An
-   * exception that one of them throws ends the integration with it.
+   * A system F(t, y, y') = 0 with y' implicit, as the integrators of PETSc see it: residual, Newton's linear systems,
+   * and products with the Jacobian. Vectors are the owned values of each rank; all functions are collective. An
+   * exception that one of them throws ends the integration.
    */
   class ImplicitSystem
   {
@@ -25,8 +25,8 @@ namespace crawler
     virtual std::size_t
     n_owned() const = 0;
 
-    /// F = F(t, y, y_dot); false (on all ranks) refuses the state, which is outside of the domain of F: the step is
-    /// tried again smaller.
+    /// Computes F = F(t, y, y_dot); false (on all ranks) refuses a state outside of the domain of F: the step is
+    /// repeated smaller.
     virtual bool
     residual(double t, ConstVector y, ConstVector y_dot, Vector F) = 0;
 
@@ -38,21 +38,21 @@ namespace crawler
     virtual void
     jacobian_vmult(ConstVector x, Vector y) = 0;
 
-    /// Is solve_with_jacobian() the inverse of jacobian_vmult()? If not it preconditions a Krylov method.
+    /// True if solve_with_jacobian() is the inverse of jacobian_vmult(). If not, it preconditions a Krylov method.
     virtual bool
     solves_exactly() const
     {
       return true;
     }
 
-    /// For the Radau methods: the same for complex sigma_0, sigma_1, ...
+    /// Prepares dF/dy + sigma dF/dy_dot for complex sigma_0, sigma_1, ... of the Radau methods.
     virtual bool
     setup_complex_jacobians(double t, ConstVector y, ConstVector y_dot, std::span<const Complex> sigma) = 0;
     virtual void
     solve_with_complex_jacobian(unsigned int i, std::span<const Complex> b, std::span<Complex> x) = 0;
 
-    /// And if the linear solver is a Krylov method: keeps dF/dy and dF/dy_dot at the state of a stage; then
-    /// result = dF/dy x + dF/dy_dot x_dot.
+    /// Keeps dF/dy and dF/dy_dot at the state of a stage, for a Krylov method with the Radau methods; then result =
+    /// dF/dy x + dF/dy_dot x_dot.
     virtual void
     setup_stage(unsigned int stage, double t, ConstVector y, ConstVector y_dot) = 0;
     virtual void

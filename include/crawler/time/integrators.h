@@ -6,29 +6,29 @@
 
 namespace crawler
 {
-  /// A time integrator that users can name.
+  /// A time integrator that users can choose by name.
   struct Integrator
   {
     std::string name;       ///< the word in the parameter file
     std::string petsc_type; ///< TSType
-    unsigned int n_stages;  ///< implicit stages that are solved together
+    unsigned int n_stages;  ///< implicit stages solved together
   };
 
-  /// All integrators that are offered: each reaches its nominal order on M(u) u' = f (tests/convergence).
+  /// All offered integrators: each reaches its nominal order on M(u) u' = f (tests/convergence).
   const std::vector<Integrator> &
   integrators();
 
-  /// "automatic" is bdf unless one is chosen (accuracy/numerics_choice.h). Throws std::logic_error if there is none
-  /// of that name.
+  /// Integrator of this name. "automatic" is bdf unless another is chosen (accuracy/numerics_choice.h). Throws
+  /// std::logic_error if there is none.
   const Integrator &
   integrator(const std::string &name);
 
-  /// What is known against an integrator of PETSc (the word of `-ts_type`) for a mass matrix that depends on the state;
-  /// empty if nothing is.
+  /// Known objection to an integrator of PETSc (the word of `-ts_type`) for a mass matrix that depends on the state;
+  /// empty if there is none.
   std::string
   reason_against(const std::string &petsc_name);
 
-  /// Is it one of integrators()? Only those have been verified.
+  /// True for integrators(); only those have been verified.
   bool
   is_offered(const std::string &name);
 } // namespace crawler

@@ -8,7 +8,7 @@
 
 namespace crawler
 {
-  /// Runs callbacks of PETSc; an exception is kept for later, since it must not pass through PETSc.
+  /// Runs callbacks of PETSc and keeps their exceptions for later, since these must not pass through PETSc.
   class PetscGuard
   {
   public:

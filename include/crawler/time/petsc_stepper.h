@@ -17,9 +17,8 @@ namespace crawler
    * Integrates an implicit system with PETSc's TS, Newton's method by SNES, and KSP. An exception that the system
    * throws comes out of next().
    *
-   * Errors are controlled absolutely, with the root mean square of the estimated error of a step over all unknowns,
-   * so y should be a displacement from rest. Newton's method stops when the estimated
-   * remaining error is below 1% of that.
+   * Error control is absolute, by the root mean square of the estimated error of a step over all unknowns, so y should
+   * be a displacement from rest. Newton's method stops when its estimated remaining error is below 1% of the tolerance.
    */
   class PetscStepper : public Stepper
   {
@@ -39,7 +38,7 @@ namespace crawler
     outcome() override;
     void
     interpolate(double time, Vector y) override;
-    /// Only the radau methods can.
+    /// Exchanges the state; only the radau methods can.
     bool
     exchange(Archive &archive) override;
 

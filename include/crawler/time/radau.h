@@ -13,17 +13,17 @@ namespace crawler
   constexpr const char *radau_type = "radau";
 
   /**
-   * Registers the type: a one-step method for F(t, y, y') = 0 of order 2s-1 with s = 3 or 5 stages, an embedded error
-   * estimate of order s, and the collocation polynomial as dense output and as first guess of the next step. The
-   * stages are solved together by SNES; their system is preconditioned by one real and (s-1)/2 complex systems of the
-   * size of y, to which it reduces where K and M are the same in all stages (Hairer and Wanner @cite HairerWanner1996,
-   * section IV.8). `-ksp_type preonly` makes this the simplified Newton method, anything
-   * else a Newton-Krylov method with exact products.
+   * Registers the type: the one-step method for F(t, y, y') = 0 of order 2s-1 with s = 3 or 5 stages, an embedded error
+   * estimate of order s, and the collocation polynomial as dense output and as first guess of the next step. The stages
+   * are solved together by SNES; their system is preconditioned by one real and (s-1)/2 complex systems of the size of
+   * y, to which it reduces where K and M are the same in all stages (Hairer and Wanner @cite HairerWanner1996, section
+   * IV.8). `-ksp_type preonly` makes this the simplified Newton method, anything else a Newton-Krylov method with exact
+   * products.
    */
   PetscErrorCode
   register_radau();
 
-  /// Its residual is that of TSSetIFunction. @p system and @p guard must outlive the stepper.
+  /// Sets the system, whose residual is that of TSSetIFunction. @p system and @p guard must outlive the stepper.
   PetscErrorCode
   radau_set_system(TS ts, ImplicitSystem *system, PetscGuard *guard);
   PetscErrorCode
@@ -31,7 +31,7 @@ namespace crawler
   PetscErrorCode
   radau_get_stages(TS ts, unsigned int *n_stages);
 
-  /// What the type knows between two steps besides the solution, for Stepper::exchange().
+  /// Exchanges the data that the type keeps between two steps besides the solution, for Stepper::exchange().
   void
   radau_exchange(TS ts, Archive &archive);
 } // namespace crawler

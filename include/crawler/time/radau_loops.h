@@ -4,9 +4,9 @@
 #include <crawler/base/instruction_set.h>
 
 /**
- * The Radau IIA methods \cite HairerWanner1996 without the equation: stages, first guess, transformation to the
- * eigenbasis of A^-1, embedded error and dense output, as loops over the unknowns of one body (double) or of several
- * side by side (lanes/pack.h). Used by the PETSc type (time/radau.cc), the linear stepper and the lanes.
+ * The Radau IIA methods \cite HairerWanner1996 independently of the equation: stages, first guess, transformation to
+ * the eigenbasis of A^-1, embedded error and dense output, as loops over the unknowns of one body (double) or of
+ * several side by side (lanes/pack.h). Used by the PETSc type (time/radau.cc), the linear stepper and the lanes.
  *
  * Arrays of stages are [stage][unknown], increments z_i relative to the start of the step. The number of stages @p s is
  * an int, or `Stages<s>` where the compiler is to know it. Nothing here may come from the C++ library (base/
@@ -26,12 +26,14 @@ namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
 
   /// The polynomial of the last step is a good guess up to this multiple of the step.
   constexpr double longest_extrapolation = 3.;
-  /// The step that comes next is safety * (1/error)^(1/(s+1)) of the present one, within these factors.
+  /// Constants of the step control: the next step is safety * (1/error)^(1/(s+1)) of the present one, within these
+  /// factors.
   constexpr double safety = 0.9, least_change = 0.1, most_change = 5.;
-  /// A start, or a state that comes from another mesh, disturbs stiff components; traces are left after so many steps.
+  /// Number of steps after which the disturbance of stiff components by a start, or by a change of mesh, has faded to
+  /// traces.
   constexpr unsigned int settling_steps = 3;
 
-  /// The error of a step from which it does not grow.
+  /// Error of a step from which on the next step does not grow.
   template <typename Count>
   inline double
   error_without_growth(const Count s)
@@ -42,7 +44,7 @@ namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
     return error;
   }
 
-  /// The polynomial through (0, 0) and (c_j, z_j): its value at @p x is sum_j weights_j z_j.
+  /// Weights of the polynomial through (0, 0) and (c_j, z_j): its value at @p x is sum_j weights_j z_j.
   template <typename Count, typename Number>
   inline void
   collocation_weights(const Count s, const double *c, const Number &x, Number *weights)
@@ -56,7 +58,7 @@ namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
     }
   }
 
-  /// result = sum_j weights_j z_j of @p n unknowns.
+  /// Computes result = sum_j weights_j z_j for @p n unknowns.
   template <typename Count, typename Number, typename Weight>
   inline void
   combine(const Count s, const Weight *weights, const Number *z, const int n, Number *result)
@@ -105,9 +107,9 @@ namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
       rate[d] = sigma * rate[d];
   }
 
-  /// The increments of stage @p i of a step that is @p ratio times as long as the last one, from those of the last one,
-  /// as weights: its polynomial continued, and far from it its tangent. @p start: where the step starts on it, 1 at the
-  /// end of the last one, or 0 if that was a try of the same step.
+  /// Weights that give the increments of stage @p i of a step @p ratio times as long as the last one from those of the
+  /// last one: its polynomial continued, and far from it its tangent. @p start: place of the step's start on it, 1 at
+  /// the end of the last one, or 0 if that was an attempt at the same step.
   template <typename Count, typename Number>
   inline void
   guess_weights(const Count s,
@@ -120,7 +122,7 @@ namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
   {
     const auto is_near = ratio <= Number{} + longest_extrapolation;
     collocation_weights(s, c, Number(start + c[i] * ratio), weights);
-    weights[s - 1] -= start; // its value there
+    weights[s - 1] -= start; // value of the polynomial at @p start
     for (int j = 0; j < s; ++j)
     {
       const Number tangent = c[i] * ratio * inverse[(s - 1) * s + j];
@@ -147,8 +149,7 @@ namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
       return z.imag();
   }
 
-  /// Right-hand sides @p f of the stages in the eigenbasis of A^-1, where the stages do not depend on each other: one
-  /// @p real one, and (s-1)/2 complex ones [pair][unknown]. @p rows: [1 + pairs][s][real, imaginary] (Hairer and
+  /// Transforms the right-hand sides @p f of the stages to the eigenbasis of A^-1, where the stages are decoupled: one @p real one, and (s-1)/2 complex ones [pair][unknown]. @p rows: [1 + pairs][s][real, imaginary] (Hairer and
   /// Wanner, section IV.8).
   template <typename Count, typename Number, typename Complex>
   inline void
@@ -177,7 +178,7 @@ namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
     }
   }
 
-  /// The way back, for unknown @p d of stage @p i. @p vectors: [s][1 + pairs][real, imaginary].
+  /// Transforms back, for unknown @p d of stage @p i. @p vectors: [s][1 + pairs][real, imaginary].
   template <typename Count, typename Number, typename Complex>
   inline Number
   from_eigenbasis(const Count s,

@@ -15,20 +15,21 @@ namespace crawler
     explicit RadauTableau(unsigned int n_stages);
 
     const unsigned int n; ///< s
-    /// The error of Newton's method that is left in a step, relative to its admissible error. The end of a step is much
-    /// more accurate than that, so Newton's method has to be, too.
+    /// Remaining error of Newton's method in a step, relative to the admissible error of the step. The end of a step is
+    /// much more accurate than its error bound, so Newton's method must be, too.
     const double newton_fraction;
     std::vector<double> c;                         ///< [s] the nodes
     std::vector<double> b;                         ///< [s] the weights, exact for polynomials up to degree 2s-2
     std::vector<double> inverse;                   ///< [s][s] A^-1 of the Runge-Kutta matrix A
     double real_eigenvalue = 0.;                   ///< of A^-1
     std::vector<std::complex<double>> eigenvalues; ///< [(s-1)/2] of A^-1, with positive imaginary part
-    /// The eigenvectors of A^-1, the real one first, and the inverse of the matrix of all of them, as far as it is
-    /// needed: the rest is complex conjugate.
+    /// Eigenvectors of A^-1, the real one first, and the inverse of their matrix, without parts that are complex
+    /// conjugates of others.
     std::vector<std::complex<double>> vectors; ///< [s][1 + (s-1)/2]
     std::vector<std::complex<double>> rows;    ///< [1 + (s-1)/2][s]
-    /// [s] with the increments z_j: h (b^ - b) f = sum_j error_weights_j z_j for the embedded formula of order s, which
-    /// has the weight 1/real_eigenvalue at the start of the step (section IV.8, formula 8.18).
+    /// Weights [s] of the increments z_j in the error: h (b^ - b) f = sum_j error_weights_j z_j for the embedded
+    /// formula of order s, which has the weight 1/real_eigenvalue at the start of the step (section IV.8, formula
+    /// 8.18).
     std::vector<double> error_weights;
 
     unsigned int
@@ -38,14 +39,14 @@ namespace crawler
     }
   };
 
-  /// Real and imaginary parts one after the other, as the C++ standard lays them out.
+  /// Real and imaginary parts in alternation, as the C++ standard lays them out.
   inline const double *
   parts(const std::vector<std::complex<double>> &values)
   {
     return reinterpret_cast<const double *>(values.data());
   }
 
-  /// Throws std::logic_error unless @p n_stages is 3, 5 or 7; runs have the first two.
+  /// Tableau of a method. Throws std::logic_error unless @p n_stages is 3, 5 or 7; runs use the first two.
   const RadauTableau &
   radau_tableau(unsigned int n_stages);
 } // namespace crawler

@@ -18,7 +18,7 @@ namespace crawler
     double time;
     double size; ///< 0 for the initial state
     unsigned int number;
-    bool is_output_time;   ///< the time is one of the times that were asked for, exactly
+    bool is_output_time;   ///< exactly one of the requested times
     unsigned int rejected; ///< rejected steps so far
     unsigned long newton_iterations;
 
@@ -29,12 +29,12 @@ namespace crawler
     }
   };
 
-  /// How a computation ended.
+  /// Outcome of a computation.
   enum class Status
   {
     none, ///< it has not ended yet
     finished,
-    inverted, ///< the body did, where the model ends
+    inverted, ///< the body inverted, where the model ends
     failed,
     stopped ///< on request, or by a limit
   };
@@ -44,15 +44,15 @@ namespace crawler
     static constexpr const char *list[] = {"", "finished", "inverted", "failed", "stopped"};
   };
 
-  /// How a time integration ended.
+  /// Outcome of a time integration.
   struct TimeOutcome
   {
     Status status = Status::none;
-    std::string reason; ///< one of the names of doc/user_guide.md, empty if finished
+    std::string reason; ///< a name of doc/user_guide.md, empty if finished
     std::string message;
-    bool domain_error  = false; ///< failed because every state tried was refused
+    bool domain_error  = false; ///< failed because every attempted state was refused
     double time        = 0.;    ///< of the last accepted state
-    double step_size   = 0.;    ///< that was tried last; without a status: that would come next
+    double step_size   = 0.;    ///< last attempted; without a status: the next one
     unsigned int steps = 0, rejected_steps = 0;
     unsigned long newton_iterations = 0, linear_iterations = 0;
 
@@ -64,18 +64,18 @@ namespace crawler
     }
   };
 
-  /// An integration over time: where it starts and ends, and how exact it is.
+  /// An integration over time: its start, ends and tolerance.
   struct Course
   {
     double start;                      ///< [time]
-    std::vector<double> ends;          ///< ascending times behind it where steps end exactly; the last one is the end
+    std::vector<double> ends;          ///< ascending times after the start where steps end exactly; the last one is the
+                                       ///< end
     double tolerance;                  ///< of the error of a step [the unit of y]
     double initial_step;               ///< [time]
     std::span<const StepLimit> limits; ///< of adaptive steps; must outlive the integration
   };
 
-  /// Integrates a state over time, step by step: by PETSc (petsc_stepper.h) or by the fused engine
-  /// (lanes/lane_stepper.h).
+  /// Integrates a state over time, step by step: by PETSc (petsc_stepper.h) or the fused engine (lanes/lane_stepper.h).
   class Stepper
   {
   public:
@@ -84,34 +84,34 @@ namespace crawler
 
     virtual ~Stepper() = default;
 
-    /// If set: sees the rates y' in the stages of each step before next() returns it. PETSc shows those of every
-    /// residual; the last one of a time counts.
+    /// Called, if set, with the rates y' in the stages of each step before next() returns it. PETSc passes those of
+    /// every residual; the last one of a time counts.
     std::function<void(double time, ConstVector y_dot)> stage_rates;
 
-    /// Starts from the state @p y. The same object can begin again and again; that costs microseconds.
+    /// Starts from the state @p y. One object can begin repeatedly, which takes microseconds.
     virtual void
     begin(ConstVector y, const Course &course) = 0;
 
-    /// Makes the next step; null at the end of the course, or if there is none. Throws what the system throws.
+    /// Makes the next step; null at the end of the course, or if no step is possible. Throws what the system throws.
     virtual const Step *
     next() = 0;
 
-    /// Behind the last step that was made.
+    /// State after the last step.
     virtual ConstVector
     state() const = 0;
 
-    /// How the integration ended; without a status if it did not. The counts are those since begin().
+    /// Outcome of the integration; without a status if it has not ended. The counts are those since begin().
     virtual TimeOutcome
     outcome() = 0;
 
-    /// The state at a time of the last step, by the integrator's own interpolation.
+    /// Interpolates the state at a time within the last step by the integrator's own method.
     virtual void
     interpolate(double time, Vector y) = 0;
 
     /**
-     * All that is known between two steps besides the course. Read before begin() with the same course, but with the
-     * state of then as y, which goes on from there as if it had not been left. Returns false, and does nothing, if the
-     * integrator cannot tell: then a run has to start anew at that state.
+     * Exchanges all data kept between two steps besides the course. After reading, begin() with the same course, but
+     * with the state at the writing as y, continues as if never interrupted. Returns false, and does nothing, if the
+     * integrator cannot: then a run has to restart at that state.
      */
     virtual bool
     exchange(Archive &)
@@ -119,8 +119,8 @@ namespace crawler
       return false;
     }
 
-    /// The stages of a collocation method, as parts of the step in (0, 1], the last one 1: what is integrated by the
-    /// polynomial through them has the accuracy of the method. Empty if it is none.
+    /// Stages of a collocation method, as fractions of the step in (0, 1], the last one 1: integrals of the polynomial
+    /// through them have the accuracy of the method. Empty for other methods.
     const std::vector<double> &
     stage_places() const
     {

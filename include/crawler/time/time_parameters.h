@@ -10,7 +10,7 @@ namespace crawler
 {
   class Declarations;
 
-  /// What carries an integrator out.
+  /// Engine that carries out an integrator.
   enum class Engine
   {
     automatic,
@@ -33,7 +33,7 @@ namespace crawler
     static constexpr const char *list[] = {"adaptive", "fixed"};
   };
 
-  /// Whether a run ends when its cycles repeat.
+  /// Option to end a run when its cycles repeat.
   enum class CycleStopMode
   {
     automatic,
@@ -46,7 +46,7 @@ namespace crawler
     static constexpr const char *list[] = {"automatic", "on", "off"};
   };
 
-  /// Section "Time"; what is left empty is chosen from the wanted accuracy.
+  /// Section "Time"; empty entries are chosen from the wanted accuracy.
   struct TimeParameters
   {
     double end_time          = 1.;
@@ -61,7 +61,7 @@ namespace crawler
     double checkpoint_interval = 60.;      ///< [s]
     CycleStopMode cycle_stop   = CycleStopMode::automatic;
 
-    std::string petsc_prefix; ///< of PETSc's options; not an entry of the file
+    std::string petsc_prefix; ///< prefix of PETSc's options; not an entry of the file
 
     void
     add_parameters(Declarations &declarations);

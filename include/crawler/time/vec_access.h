@@ -7,7 +7,7 @@
 
 namespace crawler
 {
-  /// Read access to the own part of a Vec as long as this lives.
+  /// Read access to the own part of a Vec, during its lifetime.
   class ReadAccess
   {
   public:
@@ -30,7 +30,7 @@ namespace crawler
     const double *data_ = nullptr;
   };
 
-  /// The same for writing.
+  /// Write access to the own part of a Vec, during its lifetime.
   class WriteAccess
   {
   public:
