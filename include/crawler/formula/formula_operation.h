@@ -45,6 +45,6 @@ namespace crawler
     unsigned int result                 = 0;       ///< Value.
     bool branch                         = false;   ///< For a skip: value of the condition at points that need the
                                                    ///< skipped operations.
-    std::size_t target                  = 0;       ///< For a skip: number of the operation to go on with.
+    std::size_t target = 0;                        ///< For a skip: number of the operation to go on with.
   };
 } // namespace crawler

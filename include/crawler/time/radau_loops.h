@@ -149,7 +149,8 @@ namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
       return z.imag();
   }
 
-  /// Transforms the right-hand sides @p f of the stages to the eigenbasis of A^-1, where the stages are decoupled: one @p real one, and (s-1)/2 complex ones [pair][unknown]. @p rows: [1 + pairs][s][real, imaginary] (Hairer and
+  /// Transforms the right-hand sides @p f of the stages to the eigenbasis of A^-1, where the stages are decoupled: one
+  /// @p real one, and (s-1)/2 complex ones [pair][unknown]. @p rows: [1 + pairs][s][real, imaginary] (Hairer and
   /// Wanner, section IV.8).
   template <typename Count, typename Number, typename Complex>
   inline void
