@@ -24,7 +24,7 @@ namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
   };
   constexpr int most_stages = 7;
 
-  /// The polynomial of the last step is a good guess up to this multiple of the step.
+  /// Largest multiple of the last step up to which its polynomial is a good first guess.
   constexpr double longest_extrapolation = 3.;
   /// Constants of the step control: the next step is safety * (1/error)^(1/(s+1)) of the present one, within these
   /// factors.
