@@ -36,7 +36,7 @@ namespace crawler
                 Window(own.in_s, 's', entries, scene.body.length),
                 Window(own.in_t, 't', entries, scene.end_time)};
       }
-      catch (const InputError &error) // the generator takes itself to be alone
+      catch (const InputError &error) // names entries of a generator outside of a sum
       {
         const bool is_alone = error.entry.starts_with(section) && !error.entry.starts_with(entries);
         throw InputError(fmt::format("term {}: {}", number, error.what()),
@@ -96,7 +96,7 @@ namespace crawler
       std::unique_ptr<ActiveStress> (*create)(const ActiveStressParameters &, const Scene &);
     };
 
-    /// The one list of all generators.
+    /// The list of all generators, kept only here.
     const std::vector<Generator> &
     generators()
     {

@@ -125,7 +125,7 @@ namespace crawler
       }
     }
 
-    /// The one list of all friction laws.
+    /// The list of all friction laws, kept only here.
     const std::vector<Law> &
     laws()
     {

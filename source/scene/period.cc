@@ -84,7 +84,7 @@ namespace crawler
       }
 
       /// Tests at random times, at times where m is faster than in a period, and at many times in each period. Fails if
-      /// there are too many fast changes to check, and if m has nearly repeated after several other times already.
+      /// there are too many fast changes to check, and once most_misses times P have passed only the random test.
       bool
       holds(const double P)
       {
@@ -192,7 +192,7 @@ namespace crawler
       const double length_, begin_, end_;
       StressAtPlaces m_;
       double largest_                           = 0.; ///< |m|
-      unsigned int n_misses_                    = 0;  ///< times after which m nearly repeats
+      unsigned int n_misses_                    = 0;  ///< times P that passed only the random test
       static constexpr unsigned int most_misses = 2;
     };
 

@@ -10,7 +10,7 @@ namespace crawler
 {
   class Declarations;
 
-  /// The values that one entry of the parameter file takes in turn: an axis of a study.
+  /// An axis of a study: the values that one entry of the parameter file takes in turn.
   struct Axis
   {
     std::string entry;               ///< values as in a parameter file, no two alike
@@ -40,7 +40,7 @@ namespace crawler
   /**
    * Reads VALUES of an axis: linspace(first, last, count), logspace(first exponent, last exponent, count) (powers of
    * ten), or a list of values separated by commas, no two alike if they must be @p distinct. Commas within parentheses,
-   * as in max(1, x), do not separate; a value in double quotes may have any characters but those. Throws InputError in
+   * as in max(1, x), do not separate; a value in double quotes may have any characters but quotes. Throws InputError in
    * the name of the entry @p name that has the text; its message also offers @p other_functions, which the caller
    * reads.
    */

@@ -37,7 +37,7 @@ namespace crawler
   class TimeSegments
   {
   public:
-    /// One piece, without breaks: times are not moved.
+    /// Makes one piece, without breaks: times are not moved.
     TimeSegments() = default;
 
     /// Pieces of a duration, @p end_time T [time]. Breaks at 0 and T, or beyond, may be among those of the stress.

@@ -12,7 +12,7 @@ namespace crawler
   struct FastChange
   {
     double from, to; ///< [time]
-    double rate;     ///< about the largest |m_t| in it [force/time]
+    double rate;     ///< approximate largest |m_t| [force/time]
   };
 
   struct FastChanges

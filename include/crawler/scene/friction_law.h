@@ -16,20 +16,20 @@ namespace crawler
   public:
     virtual ~FrictionLaw() = default;
 
-    /// g [force time/length^2] at all stretches @p w (spans of one length).
+    /// Computes g [force time/length^2] at all stretches @p w (spans of one length).
     virtual void
     values(std::span<const double> w, std::span<double> g) const = 0;
 
-    /// g and its derivative with respect to the logarithm of the stretch, w dg/dw, at all stretches @p w (spans of one
-    /// length).
+    /// Computes g and its derivative with respect to the logarithm of the stretch, w dg/dw, at all stretches @p w
+    /// (spans of one length).
     virtual void
     values_and_log_derivatives(std::span<const double> w, std::span<double> g, std::span<double> w_dg) const = 0;
 
-    /// The same law with another coefficient: g times @p factor.
+    /// The law with another coefficient: g times @p factor.
     virtual std::unique_ptr<FrictionLaw>
     scaled(double factor) const = 0;
 
-    /// w g'/g [1] at the stretch @p w: the exponent of the power law that touches g there.
+    /// Exponent w g'/g [1] at the stretch @p w: the exponent of the tangent power law.
     virtual double
     exponent(double w) const;
   };

@@ -43,7 +43,7 @@ namespace crawler
     }
     double
     factor(double v) const;
-    /// d/dv (d(v) v)
+    /// Derivative d/dv (d(v) v).
     double
     force_slope(double v) const;
   };

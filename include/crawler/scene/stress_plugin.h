@@ -51,7 +51,7 @@ namespace crawler
       return found == values_.end() ? otherwise : found->second;
     }
 
-    /// All parameters that are set.
+    /// Parameters that are set.
     const std::map<std::string, std::string> &
     values() const
     {

@@ -9,7 +9,7 @@
  * several side by side (lanes/pack.h). Used by the PETSc type (time/radau.cc), the linear stepper and the lanes.
  *
  * Arrays of stages are [stage][unknown], increments z_i relative to the start of the step. The number of stages @p s is
- * an int, or `Stages<s>` where the compiler is to know it. Nothing here may come from the C++ library (base/
+ * an int, or `Stages<s>` where it is a compile-time constant. The C++ library must not be used here (base/
  * instruction_set.h).
  */
 namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
@@ -149,7 +149,8 @@ namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
       return z.imag();
   }
 
-  /// Transforms the right-hand sides @p f of the stages to the eigenbasis of A^-1, where the stages are decoupled: one @p real one, and (s-1)/2 complex ones [pair][unknown]. @p rows: [1 + pairs][s][real, imaginary] (Hairer and
+  /// Transforms the right-hand sides @p f of the stages to the eigenbasis of A^-1, where the stages are decoupled: one
+  /// @p real one, and (s-1)/2 complex ones [pair][unknown]. @p rows: [1 + pairs][s][real, imaginary] (Hairer and
   /// Wanner, section IV.8).
   template <typename Count, typename Number, typename Complex>
   inline void

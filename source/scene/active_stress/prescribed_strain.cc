@@ -207,7 +207,7 @@ namespace crawler
     choose_panels(scene.end_time);
   }
 
-  /// Throws InputError if the strain jumps at a break of the generator, among others.
+  /// Throws InputError if the strain jumps at a break of the generator.
   void
   PrescribedStrain::require_usable_generator(const double end_time) const
   {

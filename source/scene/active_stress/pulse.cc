@@ -74,7 +74,7 @@ namespace crawler
     facts_.breaks_in_space = envelope_.breaks_in_space();
   }
 
-  /// Throws InputError if pulses are too narrow, overlap too much, or never reach the body.
+  /// Throws InputError if pulses are too narrow, overlap too much, or a single one never reaches the body.
   void
   Pulse::require_reachable_body(const double end_time) const
   {

@@ -15,7 +15,7 @@ namespace crawler
   {
     constexpr unsigned int high_degree = 15, low_degree = 3;
     constexpr double smallest = 1e-10;              ///< panel, relative to the initial length
-    constexpr double tiny     = 1e-6;               ///< smallest panel, likewise, that is possible without a kink
+    constexpr double tiny     = 1e-6;               ///< largest panel, likewise, that only a kink causes
     constexpr double accuracy = 1e-13, jump = 1e-3; ///< of the largest |V|
     constexpr std::size_t most_panels = 1000000;
 

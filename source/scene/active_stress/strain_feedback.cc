@@ -123,7 +123,7 @@ namespace crawler
   std::vector<double>
   StrainFeedback::kinks_in_space(const double length) const
   {
-    constexpr int most    = 20; // more are not worth a cell each
+    constexpr int most    = 20; // more would not be worth their cells
     const double distance = feedback_->distance(), sensor = feedback_->sensor_length();
     std::vector<double> places;
     if (sensor * most >= length)

@@ -101,7 +101,7 @@ namespace crawler
       return p.outside == "hold" ? GridInterpolation::Outside::hold : GridInterpolation::Outside::go_on;
     }
 
-    /// The numbers between 0 and @p end, without both.
+    /// The numbers strictly between 0 and @p end.
     std::vector<double>
     inside(const std::vector<double> &values, const double end)
     {
@@ -231,7 +231,7 @@ namespace crawler
     auto knots                 = inside(s, length_);
     if (knots.size() <= (parameters_.interpolation == "linear" ? most : most_knots_of_splines))
       return knots;
-    return inside({s.front(), s.back()}, length_); // where it is held
+    return inside({s.front(), s.back()}, length_); // ends of a held table
   }
 
   std::vector<double>

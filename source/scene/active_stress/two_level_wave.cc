@@ -139,7 +139,7 @@ namespace crawler
     length_(scene.body.length), is_uniform_(scene.profiles.is_plain()), numbers_(numbers_of(parameters, scene))
   {
   }
-  catch (const InputError &error) // the wave takes itself to be alone
+  catch (const InputError &error) // names entries of the travelling wave
   {
     const std::string speed = parameters.given_by == "frequency"    ? "Frequency"
                               : parameters.given_by == "wave speed" ? "Wave speed"

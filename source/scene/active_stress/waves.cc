@@ -148,7 +148,7 @@ namespace crawler
       return {};
     if (phase_rate_ >= 0.)
       return times_of_jumps(profile_, phase_rate_, start_, end_time);
-    // Mirrored jumps are passed by a phase that runs backwards.
+    // Jumps are mirrored, since the phase runs backwards.
     std::vector<double> times;
     const double f = -phase_rate_;
     for (const double x : profile_.breaks(start_ - f * end_time, start_))

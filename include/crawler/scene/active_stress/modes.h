@@ -55,7 +55,7 @@ namespace crawler
 
     const ModesParameters parameters_;
     const double length_, end_time_;
-    std::size_t n_space_, n_time_ = 1; ///< modes
+    std::size_t n_space_, n_time_ = 1; ///< numbers of modes
     std::vector<double> c_, at_rest_;  ///< [time][space]; amplitudes to be subtracted
   };
 } // namespace crawler

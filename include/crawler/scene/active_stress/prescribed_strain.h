@@ -94,7 +94,7 @@ namespace crawler
   public:
     /**
      * Reads the file @p name, CSV with the header s,t,strain or HDF5 with the dataset strain (base/grid_table.h).
-     * Throws InputError for @p entry if that cannot be read, if there are less than four values of s or t, or if the
+     * Throws InputError for @p entry if that cannot be read, if there are fewer than four values of s or t, or if the
      * grid does not reach from 0 to @p length and from 0 to @p end_time.
      */
     StrainTable(const std::string &name, double length, double end_time, const std::string &entry);

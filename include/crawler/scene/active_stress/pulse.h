@@ -31,7 +31,7 @@ namespace crawler
    *
    *   m = window(s) ramp(t) A sum_j b( (s - x_j(t))/width ),   x_j(t) = x_0 + sigma v (t - j P),
    *
-   * with b(z) = exp(-z^2) (gaussian) or exp(1 - 1/(1-z^2)) for |z| < 1 (compact). The sum is over all whole numbers j:
+   * with b(z) = exp(-z^2) (gaussian) or exp(1 - 1/(1-z^2)) for |z| < 1 (compact). The sum is over all integers j:
    * pulses follow each other at the distance v P, and those ahead of the first are on the body at t = 0 if it is longer
    * than that. The period is P; with a ramp, or a single pulse, there is none.
    */
@@ -47,7 +47,7 @@ namespace crawler
     std::optional<Bounds>
     bounds(const Box &box) const override;
 
-    /// Reports the initial place of the pulse.
+    /// Reports the initial position of the pulse.
     void
     report(std::ostream &out) const override;
 
@@ -60,7 +60,7 @@ namespace crawler
 
     const bool compact_;
     const double amplitude_, width_;
-    const double reach_;             ///< beyond this distance from its centre a pulse is 0 [length]
+    const double reach_;             ///< distance from its centre beyond which a pulse is 0 [length]
     const double velocity_, period_; ///< sigma v, P
     const double start_;             ///< x_0
     const double length_;            ///< of the body

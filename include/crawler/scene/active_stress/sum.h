@@ -36,7 +36,7 @@ namespace crawler
   };
 
   /**
-   * Generators combined. Each term is f_i(s,t) = factor_i W_i(s) V_i(t) g_i(s,t), with windows W and V (envelope.h), and
+   * Generators combined. Each term is f_i(s,t) = factor_i W_i(s) V_i(t) g_i(s,t), windows W and V (envelope.h), and
    *
    *   m = ( sum of the terms that add ) * ( product of the terms that multiply ).
    *
@@ -77,8 +77,8 @@ namespace crawler
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
 
-    /// Finds a common period of all terms (period.h), or a whole part of it after which the sum repeats; if a term's is
-    /// unknown, searches that of the sum. Nothing if a window in time opens or closes.
+    /// Finds a common period of all terms (period.h), or a whole part of it after which the sum repeats, from the time
+    /// on at which no window in time changes any more; if a term's is unknown, searches that of the sum.
     std::optional<Repetition>
     search_repetition() const override;
 

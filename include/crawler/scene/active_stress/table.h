@@ -58,7 +58,8 @@ namespace crawler
     /// more, the places where a held table begins and ends.
     std::vector<double>
     kinks_in_space() const;
-    /// Times of kinks likewise, but at most 4096 samples.
+    /// Times of kinks: for linear interpolation the samples, at most 4096; otherwise the times at which a table that is
+    /// not periodic begins and ends.
     std::vector<double>
     kinks_in_time(double end_time) const;
 

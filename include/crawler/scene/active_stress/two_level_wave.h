@@ -14,8 +14,7 @@ namespace crawler
   struct TwoLevelWaveParameters
   {
     double smallest_strain = -0.3, largest_strain = 0.3; ///< [1]
-    std::optional<double> share;                         ///< fraction of a period at the largest strain [1]; unset: the
-                                                         ///< best
+    std::optional<double> share;                         ///< of a period at the largest strain [1]; unset: the best
     double front_width    = 0.05;                        ///< [1], a fraction of the period
     double wave_number    = 1.;                          ///< waves on the body [1]
     std::string direction = "from head to tail";

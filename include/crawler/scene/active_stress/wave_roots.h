@@ -26,7 +26,7 @@ namespace crawler
   /// A wave that spends the energy H, with its properties in the leading-order theory.
   struct WaveRoot
   {
-    double speed;        ///< c [length/time]; its sign is the one that moves the body to +s
+    double speed;        ///< c [length/time], with the sign that moves the body to +s
     double multiplier;   ///< alpha = a/(L gamma c)
     double displacement; ///< of the body at the end time, leading order in chi [length]
     double min_stretch;  ///< over the body and the duration, leading order in chi [1]
@@ -54,12 +54,12 @@ namespace crawler
   double
   wave_energy(const Body &body, const WaveShape &shape, double end_time, double c);
 
-  /// The entries of one WaveRoot for the wave with speed @p c (any sign).
+  /// Properties of the wave with speed @p c (any sign).
   WaveRoot
   describe_wave(const Body &body, const WaveShape &shape, double chi, double end_time, double c);
 
   /**
-   * All waves of the given shape whose energy is @p energy: the roots c of wave_energy(c) = H, with the sign of c that
+   * Waves of the given shape whose energy is @p energy: the roots c of wave_energy(c) = H, with the sign of c that
    * moves the body to +s (the mirrored wave -c spends the same energy). The list ends when there are at least @p
    * at_least roots and ten admissible ones if there are infinitely or very many. It is empty if H is not between
    * smallest_energy and largest_energy.

@@ -44,7 +44,7 @@ namespace crawler
     static constexpr const char *description = "a sine or square wave that runs along the body";
 
     /// Throws InputError if fronts or window do not fit, if a speed is given for wave number 0, or if there are more
-    /// than 1e8 periods (1e6 if all of the body is switched at once).
+    /// than 1e8 periods (1e6 if the whole body is switched at once).
     TravellingWave(const TravellingWaveParameters &parameters, double length, double end_time);
 
     /// Reports jumps that move.
@@ -96,7 +96,7 @@ namespace crawler
   };
 
   /**
-   * A wave whose nodes stay where they are:
+   * A wave with fixed nodes:
    *
    *   m = window(s) ramp(t) [ offset + A cos( 2 pi n s/L + phase in space ) p( f t + phase/(2 pi) ) ],
    *
