@@ -14,7 +14,7 @@ namespace crawler
   struct Axis
   {
     std::string entry;               ///< values as in a parameter file, no two alike
-    std::vector<std::string> values; ///< as they stand in a parameter file, no two alike
+    std::vector<std::string> values; ///< as in a parameter file, no two alike
   };
 
   /// Splits a text at separators and trims the parts. Separators within double quotes are skipped, as are those within

@@ -21,9 +21,9 @@ namespace crawler
 
     /**
      * Interpolates a function on @p from <= x <= @p to by polynomials of degree 15: panels, @p size long at first, are
-     * halved until the last coefficients are below 1e-13 of the largest |V|, where V' jumps to at least 1e-10 of that
-     * length. Throws InputError for @p entry if V is not a finite number somewhere, if it jumps by more than 1e-3 of
-     * its largest value, or if there are more than 1e6 panels.
+     * halved until the last coefficients are below 1e-13 of the largest |V|. Where V' jumps they are halved down to
+     * 1e-10 of that length. Throws InputError for @p entry if V is not a finite number somewhere, if it jumps by more
+     * than 1e-3 of its largest value, or if there are more than 1e6 panels.
      */
     ShapeFunction(const Function &function, double from, double to, double size, const std::string &entry);
 

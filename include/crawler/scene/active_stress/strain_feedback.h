@@ -49,8 +49,8 @@ namespace crawler
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
 
-    /// Places where the place of w_near, or the sensor, reaches the end of the body, and from which these are seen in
-    /// turn.
+    /// Kinks of w_near: places from which it, or the sensor, reaches an end of the body, and places from which these
+    /// are seen in turn.
     std::vector<double>
     kinks_in_space(double length) const;
 
