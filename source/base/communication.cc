@@ -159,8 +159,8 @@ namespace crawler
 
   QuickStart::QuickStart()
   {
-    // Open MPI's "rdma" takes seconds for each access to the counters of a WorkQueue between nodes connected by TCP
-    // (4.1.4); "pt2pt" takes 0.1 ms.
+    // Open MPI's "rdma" (4.1.4) takes seconds for each access to the counters of a WorkQueue between nodes connected
+    // by TCP; "pt2pt" takes 0.1 ms.
     setenv("OMPI_MCA_osc", "^rdma", /*overwrite=*/0);
     constexpr std::string_view launchers[] = {
       "OMPI_COMM_WORLD_", "PMIX_", "PMI_", "SLURM_PROCID=", "SLURM_STEP_ID=", "FLUX_", "JSM_", "PALS_", "ALPS_"};

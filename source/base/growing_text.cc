@@ -20,7 +20,7 @@ namespace crawler
   {
     if (!out_.is_open())
       return restart(text);
-    // One small write() replaces the end. Replacing the file each time is quadratic, and ext4 waits for the disk
+    // Replaces the end by one small write(). Replacing the file each time is quadratic, and ext4 waits for the disk
     // whenever a file replaces another one.
     out_.seekp(last_lines_);
     out_ << text + end_ << std::flush;

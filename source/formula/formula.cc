@@ -127,7 +127,7 @@ namespace crawler
   } // namespace
 
 
-  /// Turns muParser's byte code, a program for a machine with a stack, into operations between numbered values.
+  /// Translates muParser's byte code, a program for a stack machine, into operations between numbered values.
   class FormulaReader
   {
   public:
@@ -232,7 +232,7 @@ namespace crawler
       if (function._pUserData != nullptr || count == 0 || count > 2)
         throw mu::ParserError(mu::ecINTERNAL_ERROR);
       const auto loop = count < 0 ? function_of_many : count == 1 ? function_of_one : function_of_two;
-      // A function without a name is the sign: -x (muParser defines no other).
+      // Functions without a name are the sign: -x (muParser defines no other).
       const auto name         = names_.find(reinterpret_cast<Function>(function._pRawFun));
       const std::string known = name == names_.end() ? "-" : name->second;
       add({.loop = loop, .tangent = tangent_of(known), .bound = bound_of(known), .function = function._pRawFun},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// A formula that is read (formula.cc, by muParser) at the points of a mesh.
+// Evaluation of a compiled formula (formula.cc, by muParser) at the points of a mesh.
 #include <crawler/formula/formula.h>
 
 #include <algorithm>

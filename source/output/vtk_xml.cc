@@ -17,8 +17,7 @@ namespace crawler
     {
       constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
       const std::uint64_t size = values.size() * sizeof(Number);
-      std::vector<unsigned char> bytes(sizeof(size) + size + 2, 0); // up to two bytes more to fill the last group of
-                                                                    // three
+      std::vector<unsigned char> bytes(sizeof(size) + size + 2, 0); // up to two more to fill the last three
       std::memcpy(bytes.data(), &size, sizeof(size));
       if (size > 0)
         std::memcpy(bytes.data() + sizeof(size), values.data(), size);

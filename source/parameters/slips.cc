@@ -75,7 +75,7 @@ namespace crawler
   probable_slip(const std::string &value)
   {
     std::smatch found;
-    // One comma between digits; neither two arguments of a function nor a list of three or more.
+    // Decimal commas are single commas between digits; neither two arguments of a function nor a list of three or more.
     static const std::regex comma(R"((^|[^\w.,])(\d+),(\d+)(?![\d.,]))"), arguments(R"(\(\d+,\d+\))");
     if (const std::string rest = std::regex_replace(value, arguments, ""); std::regex_search(rest, found, comma))
       return fmt::format("; decimals are written with a point: {}.{}", found.str(2), found.str(3));

@@ -36,7 +36,7 @@ namespace crawler
                 Window(own.in_s, 's', entries, scene.body.length),
                 Window(own.in_t, 't', entries, scene.end_time)};
       }
-      catch (const InputError &error) // the generator believes that it stands alone
+      catch (const InputError &error) // names entries of a generator outside of a sum
       {
         const bool is_alone = error.entry.starts_with(section) && !error.entry.starts_with(entries);
         throw InputError(fmt::format("term {}: {}", number, error.what()),
@@ -53,7 +53,7 @@ namespace crawler
       return std::make_unique<Sum>(std::move(terms), scene.body.length, scene.end_time);
     }
 
-    /// By Fourier coefficients or of any shape.
+    /// Makes a wave by Fourier coefficients or of any shape.
     std::unique_ptr<ActiveStress>
     create_any_optimal_wave(const ActiveStressParameters &parameters, const Scene &scene)
     {
@@ -76,7 +76,7 @@ namespace crawler
       return std::make_unique<PrescribedStrain>(own, scene, std::move(generator));
     }
 
-    /// A generator with the parameters of its own section.
+    /// Makes a generator with the parameters of its own section.
     template <typename Stress, auto section>
     std::unique_ptr<ActiveStress>
     create(const ActiveStressParameters &parameters, const Scene &scene)
@@ -96,7 +96,7 @@ namespace crawler
       std::unique_ptr<ActiveStress> (*create)(const ActiveStressParameters &, const Scene &);
     };
 
-    /// The one list of all generators.
+    /// The list of all generators, kept only here.
     const std::vector<Generator> &
     generators()
     {

@@ -7,7 +7,7 @@ namespace crawler
 {
   namespace
   {
-    /// Those in (0, @p size), in units of @p size, ascending and at least @p gap apart.
+    /// Breaks in (0, @p size), in units of @p size, ascending and at least @p gap apart.
     std::vector<double>
     distinct(std::vector<double> breaks, const double size, const double gap)
     {
@@ -67,7 +67,7 @@ namespace crawler
     set_limits();
   }
 
-  /// Breaks that count as one with those kept are at most d later.
+  /// Sets the limits of the present piece; merged breaks are at most d later than the one kept.
   void
   TimeSegments::set_limits()
   {

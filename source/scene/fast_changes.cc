@@ -10,13 +10,13 @@ namespace crawler
 {
   namespace
   {
-    /// A bound of so many times the rate at a point of the box is explained by it.
+    /// Multiple of the rate at a point of the box up to which that rate explains a bound.
     constexpr double explained_by_point = 16.;
-    /// A change of less than this part of the largest |m| is none.
+    /// Changes below this fraction of the largest |m| are ignored.
     constexpr double negligible = 1e-4;
-    /// In a time that is put on the list m changes by at most so many times the largest |m|; longer ones are halved.
+    /// Largest change of m in a listed time, in units of the largest |m|; longer times are halved.
     constexpr double most_changes = 64.;
-    /// Relative to the whole time.
+    /// Shortest time of a box, relative to the duration.
     constexpr double shortest = 1e-9;
 
     class Search
@@ -59,7 +59,7 @@ namespace crawler
       {
         ActiveStress::Box box;
         double bound;
-        bool in_s; ///< it is a half in s
+        bool in_s; ///< the box is a half in s
       };
 
       void
@@ -86,7 +86,7 @@ namespace crawler
             list.push_back({box.t_from, box.t_to, change / time});
           return;
         }
-        // In the direction that makes the bounds smaller; if both are the same, not in that of the last time.
+        // Halving goes in the direction with the smaller bounds; if they are equal, not in that of the last time.
         ActiveStress::Box left = box, right = box, early = box, late = box;
         left.s_to = right.s_from = 0.5 * (box.s_from + box.s_to);
         early.t_to = late.t_from = 0.5 * (box.t_from + box.t_to);
@@ -106,7 +106,7 @@ namespace crawler
         return stress_.bounds(box)->rate;
       }
 
-      /// The largest |m_t| at some points of the box: there a bound has nothing to be too large for.
+      /// Largest |m_t| at some points of the box, where bounds are not too large.
       double
       rate_in(const ActiveStress::Box &box)
       {
@@ -125,7 +125,7 @@ namespace crawler
         return largest;
       }
 
-      /// Keeps the largest |m| in the box, and returns by how much it changes.
+      /// Updates the largest |m| by samples in the box, and returns the largest change of m.
       double
       see_values(const ActiveStress::Box &box)
       {

@@ -20,7 +20,7 @@ namespace crawler
       return result;
     }
 
-    /// Where to look for the extremes of g from one stretch to another: at both, where it is monotone.
+    /// Stretches at which to look for the extremes of g: both ends, where g is monotone.
     std::vector<double>
     stretches(const FrictionLaw &friction, const double from, const double to)
     {
@@ -80,7 +80,7 @@ namespace crawler
   double
   largest_merit(const FrictionLaw &friction, const double from, const double to)
   {
-    constexpr double smallest_range = 1e-8; // what is below it is round-off of the stretches
+    constexpr double smallest_range = 1e-8; // ranges below are round-off of the stretches
     const std::vector<double> w     = stretches(friction, from, to);
     std::vector<double> g(w.size());
     friction.values(w, g);

@@ -51,7 +51,7 @@ namespace crawler
     }
     g_mean                = g_sum / length;
     const double B_t_mean = B_t_sum / length;
-    double covariance     = 0.; // the mean of v without the difference of large numbers
+    double covariance     = 0.; // gives the mean of v without cancellation
     for (std::size_t i = 0; i < w.size(); ++i)
       covariance += weights[i] * (g[i] - g_mean) * (B_t[i] - B_t_mean);
     velocity = -covariance / g_sum;

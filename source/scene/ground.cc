@@ -15,8 +15,8 @@ namespace crawler
 {
   namespace
   {
-    /// A viscous film under the body: force per present length proportional to the velocity, g(w) = gamma w. The
-    /// simplest law.
+    /// A viscous film under the body, the simplest law: force per present length proportional to the velocity, g(w) =
+    /// gamma w.
     class NewtonianFriction : public FrictionLaw
     {
     public:
@@ -98,7 +98,7 @@ namespace crawler
     private:
       const double gamma_;
       const std::shared_ptr<const Formula> formula_;
-      mutable FormulaGradient gradient_; ///< has room for intermediate values
+      mutable FormulaGradient gradient_; ///< holds intermediate values
     };
 
     struct Law
@@ -107,7 +107,8 @@ namespace crawler
       std::function<std::unique_ptr<const FrictionLaw>(const GroundParameters &, const Body &, double)> create;
     };
 
-    /// Looked at where every body is: near the stretch 1. Others are looked at when a body gets there.
+    /// Throws InputError unless the law is positive near the stretch 1, where every body is; other stretches are
+    /// checked when a body gets there.
     void
     require_positive_law(const FrictionLaw &law, const std::string &formula)
     {
@@ -124,7 +125,7 @@ namespace crawler
       }
     }
 
-    /// The one list of all friction laws.
+    /// The list of all friction laws, kept only here.
     const std::vector<Law> &
     laws()
     {

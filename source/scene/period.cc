@@ -16,14 +16,15 @@ namespace crawler
   namespace
   {
     constexpr unsigned int few_times = 256, many_times = 1024, n_random = 64;
-    /// A change from one time to the next below this part of the largest |m| means that m is smooth on this grid.
+    /// Largest change of m between neighbouring times, relative to the largest |m|, with which m counts as smooth on
+    /// this grid.
     constexpr double smooth = 0.2;
-    /// Two values are the same if they differ by less than this part of the largest |m|.
+    /// Difference below which two values are equal, relative to the largest |m|.
     constexpr double same = 1e-10;
-    /// Parts of the duration behind which m may repeat. A start is often shorter than the first of them.
+    /// Fractions of the duration after which m may repeat. A start is often shorter than the first of them.
     constexpr double first_start = 0.25, starts[] = {0., first_start, 0.5, 0.75};
 
-    /// The active stress at both ends, and at places that no wave has its nodes at.
+    /// The active stress at both ends, and at places where no wave has its nodes.
     class StressAtPlaces
     {
     public:
@@ -62,7 +63,7 @@ namespace crawler
       const std::unique_ptr<ActiveStressAtPoints> stress_;
     };
 
-    /// Whether an active stress repeats after a time P, all the time from @p begin to @p end_time.
+    /// Tests whether an active stress repeats after a time P, throughout from @p begin to @p end_time.
     class PeriodTest
     {
     public:
@@ -75,16 +76,15 @@ namespace crawler
       {
       }
 
-      /// |m| is as large as that somewhere.
+      /// Notes that |m| reaches this value somewhere.
       void
       knows(const double largest)
       {
         largest_ = std::max(largest_, largest);
       }
 
-      /// At random times, where m is faster than it is in a period, and at many times in each period. Where there are
-      /// too many fast changes to look at them all it does not hold; and if m repeats but for something after some
-      /// times P, it does not repeat after others, either.
+      /// Tests at random times, at times where m is faster than in a period, and at many times in each period. Fails if
+      /// there are too many fast changes to check, and once most_misses times P have passed only the random test.
       bool
       holds(const double P)
       {
@@ -113,11 +113,11 @@ namespace crawler
       bool
       all_periods_are_the_same(const double P)
       {
-        constexpr double in_period = 16.18, most = 65536.; // not at the same times of each
+        constexpr double in_period = 16.18, most = 65536.; // irrational: different times of each
         const double last = end_ - begin_ - P;
         const auto n =
           static_cast<unsigned int>(std::clamp(in_period * last / P, static_cast<double>(many_times), most));
-        // Not where pulses may start and end: there round-off decides.
+        // Times at which pulses may start and end are avoided: there round-off decides.
         for (unsigned int i = 0; i < n; ++i)
           if (!is_same_after(begin_ + (i + 0.381966) / n * last, P))
             return false;
@@ -133,7 +133,7 @@ namespace crawler
         return largest;
       }
 
-      /// A bound of |m_t| in the period that begins at @p from, but for the parts of it where m jumps.
+      /// Bound of |m_t| in the period that begins at @p from, without the parts of it where m jumps.
       double
       rate_in_period(const double from, const double P) const
       {
@@ -150,7 +150,7 @@ namespace crawler
         return largest;
       }
 
-      /// The smallest such bound of the first period, one in the middle and the last: an event may be in one of them.
+      /// Smallest of these bounds for the first, a middle and the last period: an event may be in one of them.
       double
       rate_in_period(const double P) const
       {
@@ -172,7 +172,7 @@ namespace crawler
           stress_, length_, begin_, end_, [=](double, double) { return explained; }, largest, {most_bounds, same});
         for (const FastChange &change : changes.list)
         {
-          // And beside it: behind a jump m is another one.
+          // Times beside the change are included: m differs after a jump.
           const double time = 3. * (change.to - change.from), from = change.from - time / 3.;
           const auto n = static_cast<unsigned int>(
             std::ceil(std::clamp(times_in_change * time * change.rate / largest, least_times, most_times)));
@@ -192,15 +192,15 @@ namespace crawler
       const double length_, begin_, end_;
       StressAtPlaces m_;
       double largest_                           = 0.; ///< |m|
-      unsigned int n_misses_                    = 0;  ///< times after which m repeats but for something
+      unsigned int n_misses_                    = 0;  ///< times P that passed only the random test
       static constexpr unsigned int most_misses = 2;
     };
 
-    /// Looks where the samples of a grid repeat.
+    /// Searches a period by comparing the samples of a grid.
     class PeriodSearch
     {
     public:
-      /// From @p begin to @p end, in a run until @p end_time.
+      /// Samples from @p begin to @p end, in a run until @p end_time.
       PeriodSearch(const ActiveStress &stress,
                    const double length,
                    const double begin,
@@ -227,8 +227,8 @@ namespace crawler
         mean_step_ = mismatch(1);
       }
 
-      /// Multiples of a step of the grid that may be near a period: shifts by them change m as little as a shift by
-      /// one step could, and less than their neighbours.
+      /// Multiples of the grid step that may be near a period: shifts by them change m as little as a shift by one step
+      /// could, and less than their neighbours.
       std::vector<unsigned int>
       candidates(const double longest) const
       {
@@ -248,12 +248,12 @@ namespace crawler
       {
         return step_ <= same * largest_;
       }
-      /// A wave that nearly comes round from one time to the next looks smooth, too; what bounds of |m_t| admit does
-      /// not.
+      /// True if m is smooth on the grid. A wave of nearly one period per step looks smooth, too; bounds of |m_t|
+      /// exclude it.
       bool
       is_smooth() const
       {
-        constexpr double too_large = 4.; // bounds
+        constexpr double too_large = 4.; // factor by which bounds may be too large
         return step_ <= smooth * largest_ && rate_ * T_ / n_times_ <= too_large * smooth * largest_;
       }
 
@@ -271,8 +271,8 @@ namespace crawler
       }
 
     private:
-      /// The mean of |m(t + P) - m(t)| for P of j steps of the grid, which jumps spoil less than the largest value;
-      /// infinite if it is much larger than that for one step.
+      /// Mean of |m(t + P) - m(t)| for P of j grid steps, which jumps affect less than the maximum; infinite if it is
+      /// much larger than for one step.
       double
       mismatch(const unsigned int j) const
       {
@@ -284,12 +284,12 @@ namespace crawler
         return sum <= most ? sum / n : HUGE_VAL;
       }
 
-      /// What the period may be if it is near j steps of the grid.
+      /// Guesses of a period near j grid steps.
       std::vector<double>
       guesses(const unsigned int j)
       {
         const double near = T_ * j / n_times_, around = T_ / n_times_;
-        // A whole part of the duration, or the shortest decimal number; the only ways to find the period of pulses.
+        // A whole part of the duration, or the shortest decimal number: the only ways to find the period of pulses.
         std::vector<double> list = {end_time_ / std::round(end_time_ / near)};
         for (int digits = 1; digits < 8; ++digits)
         {
@@ -304,8 +304,8 @@ namespace crawler
         return list;
       }
 
-      /// The least squares of m(t + P) - m(t) by the Gauss-Newton method; where this does not converge, as if there is
-      /// no period, @p near.
+      /// Minimises the squares of m(t + P) - m(t) by the Gauss-Newton method; @p near if this does not converge, as
+      /// when there is no period.
       double
       refined(const double near)
       {
@@ -344,7 +344,7 @@ namespace crawler
       const unsigned int n_times_;
       std::vector<StressAtPlaces::Values> grid_;
       double largest_ = 0., step_ = 0., mean_step_ = 0.; ///< |m|; change over a step of the grid
-      double rate_ = 0.;                                 ///< a bound of |m_t|, if there is one
+      double rate_ = 0.;                                 ///< a bound of |m_t|, if known
     };
   } // namespace
 
@@ -355,7 +355,7 @@ namespace crawler
     {
       PeriodTest test(stress, length, begin, end_time);
       bool is_smooth = false;
-      // From begin on, in the time of a window; what a grid finds there has to hold in the time of the test.
+      // Search in a window of time from `begin` on; a period found by a grid there must pass the test.
       const auto look = [&](const double window, PeriodTest &repeats) -> std::optional<double> {
         const double end = begin + window, longest = window / 2.;
         const PeriodSearch coarse(stress, length, begin, end, few_times, end_time);
@@ -368,7 +368,7 @@ namespace crawler
       };
       double window = end_time - begin;
       auto found    = look(window, test);
-      // A grid that is not fine enough shows none of many periods, or several as one.
+      // Too coarse a grid shows none of many periods, or several as one.
       constexpr double shorter         = 0.25;
       constexpr unsigned int n_shorter = 6;
       for (unsigned int i = 0; i < n_shorter && !found && !is_smooth; ++i)
@@ -410,7 +410,7 @@ namespace crawler
     double common = periods.front();
     for (const double P : periods)
     {
-      // The convergents p/q of the ratio's continued fraction.
+      // Convergents p/q of the continued fraction of the ratio.
       const double ratio = common / P;
       double rest = ratio, p = std::floor(ratio), q = 1., p_before = 1., q_before = 0.;
       while (std::abs(ratio - p / q) > tolerance * ratio)

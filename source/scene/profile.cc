@@ -19,9 +19,9 @@ namespace crawler
 {
   namespace
   {
-    /// Where a function, of which @p values(places, results) gives the values, jumps in [0, @p length]: the difference
-    /// of neighbours of a sampling that does not become smaller when these come closer. Only the first jump between
-    /// two samples is found, and none that is less than 1e-3 of the largest value.
+    /// Finds jumps in [0, @p length] of a function with the values values(places, results): differences of neighbouring
+    /// samples that do not shrink with their distance. Finds only the first jump between two samples, and none below
+    /// 1e-3 of the largest value.
     template <typename Values>
     std::vector<double>
     jumps_of(const Values &values, const double length)
@@ -57,7 +57,7 @@ namespace crawler
     class FormulaProfile : public Profile
     {
     public:
-      /// Its jumps and kinks are looked for in [0, @p length], nowhere if this is 0.
+      /// Searches jumps and kinks in [0, @p length], nowhere if this is 0.
       FormulaProfile(std::shared_ptr<const Formula> formula, const double length)
         : gradient_(std::move(formula))
       {
@@ -90,7 +90,7 @@ namespace crawler
         gradient_.evaluate(places, f, slopes);
       }
 
-      mutable FormulaGradient gradient_; ///< has room for intermediate values
+      mutable FormulaGradient gradient_; ///< holds intermediate values
       std::vector<double> breaks_;
     };
 
@@ -197,7 +197,7 @@ namespace crawler
       mutable std::vector<double> scaled_;
     };
 
-    /// Of at least as many samples as the interpolation needs; @p what they are, for messages.
+    /// Makes a profile of at least as many samples as the interpolation needs; @p what names them in messages.
     std::shared_ptr<const Profile>
     table_profile(std::vector<double> x, std::vector<double> y, const char *what, const ProfileInput &input)
     {
@@ -244,7 +244,7 @@ namespace crawler
       return table_profile(std::move(x), std::move(y), "rows of numbers", input);
     }
 
-    /// Values at places that are equally spaced from tail to head.
+    /// Makes a profile of values at places equally spaced from tail to head.
     std::shared_ptr<const Profile>
     list_profile(const std::vector<double> &values, const double length, const ProfileInput &input)
     {

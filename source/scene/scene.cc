@@ -170,8 +170,8 @@ namespace crawler
                                      most));
     }
 
-    /// Looked for at some points and times; infinite if it is not a finite number at one of them. What a generator
-    /// itself calls a failure is left out: the run ends there, if it comes so far.
+    /// Largest |m| at some points and times; infinite if a value is not finite. Failures of the generator are skipped:
+    /// the run ends there, if it gets so far.
     double
     largest_active_stress(const Scene &scene, const unsigned int n_times)
     {
@@ -195,7 +195,7 @@ namespace crawler
       return largest;
     }
 
-    /// The names of what is there.
+    /// Names of the features that are present.
     std::string
     listed(const std::vector<std::pair<bool, std::string>> &features)
     {
@@ -207,13 +207,13 @@ namespace crawler
     }
   } // namespace
 
-  /// Asked for in every residual, and a comparison of types is faster than dynamic_cast.
   bool
   Scene::keeps_its_centre() const
   {
     return is_plain() && body.friction_exponent() == 0.;
   }
 
+  /// Compares types, which is faster than dynamic_cast: called in every residual.
   bool
   Scene::has_power_law() const
   {
@@ -284,8 +284,8 @@ namespace crawler
   Units
   natural_units(const Scene &scene)
   {
-    // Squares of these, and of what is made of them, must not leave the range of doubles. Stiffer bodies lose the
-    // digits of the energy balance, softer ones have layers that no mesh reaches.
+    // Limits that keep squares of the units, and of numbers made from them, in the range of doubles. Stiffer bodies
+    // lose the digits of the energy balance, softer ones have layers that no mesh resolves.
     constexpr double smallest = 1e-100, largest = 1e100;
     constexpr double softest = 1e-12, stiffest = 1e11;
 
@@ -305,10 +305,10 @@ namespace crawler
     constexpr double weakest = 1e-20, strongest = 1e20;
     const Units units = natural_units(scene);
     const double unit = std::max(scene.body.elastic_modulus, units.force);
-    double strain     = largest_active_stress(scene, 37) / unit; // no usual number of waves
-    if (strain < weakest)                                        // it may be a short event
+    double strain     = largest_active_stress(scene, 37) / unit; // an unusual number of waves
+    if (strain < weakest)                                        // may be a short event
       strain = largest_active_stress(scene, 8191) / unit;
-    // What is beside a shorter event may be as small as one likes; such are looked for later.
+    // Shorter events may have arbitrarily small values beside them; they are searched for later.
     if (strain < weakest)
       if (const auto bounds = scene.active_stress->bounds({0., scene.body.length, 0., scene.end_time});
           bounds && bounds->value > weakest * unit)

@@ -14,7 +14,7 @@ namespace crawler
 {
   namespace
   {
-    /// Goes to better neighbours on a grid of 3 x 3 points that shrinks when there are none.
+    /// Moves to better neighbours on a grid of 3 x 3 points that shrinks when there are none.
     StrainExtreme
     refined(const FieldHistory &history,
             const double length,
@@ -49,8 +49,8 @@ namespace crawler
       return best;
     }
 
-    /// Points of a grid, @p n_s in each row, that no neighbour is beyond, towards smaller values if @p sign > 0: some
-    /// of those that go furthest, by parabolas through them and their neighbours.
+    /// Extremal points of a grid, @p n_s in each row, minima if @p sign > 0: the largest few, by parabolas through them
+    /// and their neighbours.
     std::vector<std::size_t>
     peaks(const std::vector<double> &e, const std::size_t n_s, const double sign)
     {
@@ -100,7 +100,7 @@ namespace crawler
           return {here, here};
     }
     const double ds = length / (n_s - 1), dt = end_time / (n_t - 1);
-    // Which of several peaks is the highest shows between the points of the grid.
+    // Several peaks are refined: the highest shows only between the points of the grid.
     const auto extreme = [&](const double sign) {
       StrainExtreme best{sign * HUGE_VAL, 0., 0.};
       for (const std::size_t k : peaks(e, n_s, sign))

@@ -172,8 +172,7 @@ namespace crawler
     petsc(TSAdaptSetType(adapt, parameters.step_control == StepControl::fixed ? TSADAPTNONE : TSADAPTBASIC));
     if (method.petsc_type == radau_type)
       petsc(TSAdaptSetClip(adapt, radau::least_change, radau::most_change));
-    petsc(TSSetExactFinalTime(stepper, TS_EXACTFINALTIME_STEPOVER)); // choose_step() makes steps end at the required
-                                                                     // times
+    petsc(TSSetExactFinalTime(stepper, TS_EXACTFINALTIME_STEPOVER)); // choose_step() sets the ends of steps
     petsc(TSSetMaxSNESFailures(stepper, -1));
     petsc(TSSetMaxStepRejections(stepper, 30));
     petsc(TSSetErrorIfStepFails(stepper, PETSC_FALSE));

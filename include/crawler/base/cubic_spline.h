@@ -57,8 +57,7 @@ namespace crawler
     const Ends ends_;
     std::vector<double> h_;                      ///< knot i+1 - knot i
     std::vector<double> factor_, pivot_, upper_; ///< the triangular factors of the equations of the inner knots
-    std::vector<double> coupling_;               ///< periodic: derivative of the inner curvatures by that of the ends,
-                                                 ///< with the sign changed
+    std::vector<double> coupling_;               ///< periodic: -d(inner curvatures)/d(curvature of the ends)
     double end_pivot_ = 1.;                      ///< periodic
   };
 } // namespace crawler

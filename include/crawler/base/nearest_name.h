@@ -6,7 +6,7 @@
 
 namespace crawler
 {
-  /// Up to @p count names of @p candidates that are closest to @p name (edit distance, ignoring case),
+  /// The @p count names of @p candidates closest to @p name (edit distance, ignoring case),
   /// best first; names that have nothing in common with it are left out.
   std::vector<std::string>
   nearest_names(const std::string &name, const std::vector<std::string> &candidates, unsigned int count = 3);
@@ -16,7 +16,7 @@ namespace crawler
   std::vector<std::string>
   nearly_alike(const std::string &name, const std::vector<std::string> &candidates);
 
-  /// "a", "b" or "c": a list in quotation marks as it stands in a sentence.
+  /// "a", "b" or "c": a list in quotation marks for a sentence.
   std::string
   quoted_list(const std::vector<std::string> &names);
 } // namespace crawler

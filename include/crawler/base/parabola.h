@@ -5,7 +5,7 @@
 
 namespace crawler
 {
-  /// The vertex (x, y) of the parabola through three points with x0 < x1 < x2 whose middle one is an extreme of the
+  /// Vertex (x, y) of the parabola through three points with x0 < x1 < x2 whose middle one is an extreme of the
   /// three. Sharpens an extreme that was found by sampling from second to third order in the distance of the samples.
   inline std::pair<double, double>
   parabola_vertex(const double x0, const double y0, const double x1, const double y1, const double x2, const double y2)

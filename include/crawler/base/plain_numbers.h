@@ -16,11 +16,11 @@ namespace crawler
   std::string
   without_controls(const std::string &text, bool keep_lines = true);
 
-  /// The text with every part between double quotes that is longer than @p most bytes cut in its middle.
+  /// The text with quotations longer than @p most bytes cut in the middle.
   std::string
   with_short_quotes(const std::string &text, std::size_t most = 300);
 
-  /// "1 cell", "2 cells".
+  /// Number with its noun: "1 cell", "2 cells".
   std::string
   counted(unsigned long number, const std::string &noun);
 } // namespace crawler

@@ -17,11 +17,11 @@ namespace crawler
    *
    * | place | reached |
    * |---|---|
-   * | step | each time the program looks for a signal: at each time step of whatever it computes, and more often |
-   * | pilot | the same in the runs of `crawler run` that choose the numerics |
-   * | state | behind each state that is written for --resume |
-   * | row | behind each row that is written to the table of a study |
-   * | write:NAME | when a file of this name is complete, before it gets its name |
+   * | step | each check for a signal: at least once per time step of any computation |
+   * | pilot | as step, in the runs of `crawler run` that choose the numerics |
+   * | state | after each state written for --resume |
+   * | row | after each row written to the table of a study |
+   * | write:NAME | when a file is complete, before it gets this name |
    */
   enum class StopPlace
   {
@@ -40,7 +40,7 @@ namespace crawler
   void
   reach_write(const std::filesystem::path &path);
 
-  /// Throws InputError if CRAWLER_STOP_AT is set and none of the above.
+  /// Throws InputError if CRAWLER_STOP_AT is set but not as above.
   void
   check_stop_place();
 

@@ -9,7 +9,7 @@
 namespace crawler
 {
   /**
-   * Hands out the numbers 0, 1, ..., size-1 to all ranks, each number once, to whoever asks next. No rank manages: the
+   * Hands out the numbers 0, 1, ..., size-1 to all ranks, each number once, on request. No rank manages: the
    * counters are in the memory of rank 0, and the others change them by one-sided MPI (MPI_Fetch_and_op). Within a node
    * and over networks with atomic operations rank 0 takes no part. Elsewhere (TCP) requests wait until rank 0 calls
    * MPI: hence serve().
@@ -61,7 +61,7 @@ namespace crawler
     const unsigned long size_;
     const bool is_owner_, has_others_;
     const std::function<void()> besides_;
-    double served_           = 0.;      ///< when
+    double served_           = 0.;      ///< time of the last serve()
     unsigned long *counters_ = nullptr; ///< on rank 0
     MPI_Win window_          = MPI_WIN_NULL;
   };

@@ -87,7 +87,7 @@ namespace crawler
     const std::size_t n_points_;
     std::vector<double> scalars_;               ///< Values that do not depend on s.
     std::vector<std::vector<double>> of_place_; ///< Kept values of s only, at all points; others are empty.
-    std::vector<double> blocks_;                ///< All other values, for one block of points.
+    std::vector<double> blocks_;                ///< Other values, for one block of points.
     std::vector<Formula::Operand> arguments_;   ///< Arguments of one operation.
   };
 } // namespace crawler

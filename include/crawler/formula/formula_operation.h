@@ -22,7 +22,7 @@ namespace crawler
     }
   };
 
-  /// One operation. A skip (without a loop) jumps to `target` if no point of the block needs the operations between.
+  /// An operation. A skip (without a loop) jumps to `target` if no point of the block needs the operations between.
   struct FormulaOperation
   {
     using Function = void (*)();
@@ -43,8 +43,7 @@ namespace crawler
     Function function                   = nullptr; ///< Of any type, for loops that call a function.
     std::vector<unsigned int> arguments = {};      ///< Values; for a skip the condition.
     unsigned int result                 = 0;       ///< Value.
-    bool branch                         = false;   ///< For a skip: value of the condition at points that need the
-                                                   ///< skipped operations.
-    std::size_t target = 0;                        ///< For a skip: number of the operation to go on with.
+    bool branch                         = false;   ///< For a skip: condition of points that need what is skipped.
+    std::size_t target                  = 0;       ///< For a skip: number of the operation to go on with.
   };
 } // namespace crawler

@@ -4,10 +4,12 @@
 #include <crawler/base/instruction_set.h>
 
 /**
- * The elimination of the inner nodes 1 ... q-1 of one cell from its dense block, [n][n] with n = q+1. Number is real,
+ * Elimination of the inner nodes 1 ... q-1 of one cell from its dense block, [n][n] with n = q+1. Number is real,
  * complex, or a pack of either. Included where it is compiled; users include block_tridiagonal_kernels.h. After
- * condense_cell() a block holds [1..q-1][1..q-1] L (unit diagonal not stored) and U of A_ii, with 1/U_ii on the
- * diagonal [1..q-1][0 and q] X = A_ii^-1 A_ib [0 and q][1..q-1] A_bi
+ * condense_cell() a block holds
+ *  - [1..q-1][1..q-1]: L (unit diagonal not stored) and U of A_ii, with 1/U_ii on the diagonal;
+ *  - [1..q-1][0 and q]: X = A_ii^-1 A_ib;
+ *  - [0 and q][1..q-1]: A_bi.
  */
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {

@@ -23,7 +23,7 @@ namespace crawler
     double computed_time;
     std::span<const double> y;      ///< the unknowns (assembler.h), owned values of this rank
     std::span<const double> v;      ///< velocity at the nodes; only for pictures if there is no energy balance
-    const CellIntegrals &integrals; ///< those with v are as old as v
+    const CellIntegrals &integrals; ///< those that contain v belong to the same time as `v`
     const StretchRange &stretch;
     const EnergyBalance &energy_balance;
   };

@@ -99,8 +99,7 @@ namespace crawler
   private:
     double length_;
     std::array<UsualSize, std::size(field_names)> sizes_;         ///< of the fields with peaks
-    std::array<FieldRange, std::size(field_names)> seen_, drawn_; ///< of the fields; the path is the range of the
-                                                                  ///< position
+    std::array<FieldRange, std::size(field_names)> seen_, drawn_; ///< of the fields; the path is that of the position
     FieldRange seen_path_, path_;
 
     /// Range drawn of a field.

@@ -30,7 +30,7 @@ namespace crawler
     };
     static constexpr hsize_t n_points = 0;
 
-    /// All datasets by name.
+    /// Datasets by name.
     static const std::map<std::string, Layout> &
     layouts();
 

@@ -57,7 +57,7 @@ namespace crawler
   class StatisticsWriter : public Statistics
   {
   public:
-    /// Takes the file's path; the file is made with the first row.
+    /// Takes the folder of the file, which is made with the first row.
     StatisticsWriter(double length,
                      bool is_first_rank,
                      const std::filesystem::path &folder,

@@ -12,7 +12,7 @@ namespace crawler
   class SnapshotHdf5;
 
   /**
-   * All frames in solution.h5, described by solution.xdmf (body, grip, ground and scale) and line.xdmf (the body as a
+   * Frames in solution.h5, described by solution.xdmf (body, grip, ground and scale) and line.xdmf (the body as a
    * line with s on the x axis). The datasets have a row for each frame and as many columns as the largest mesh has
    * points; unused ones are NaN, and n_points is the number of used ones. When frames or points exceed the capacity, a
    * larger file replaces it.

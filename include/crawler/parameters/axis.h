@@ -10,11 +10,11 @@ namespace crawler
 {
   class Declarations;
 
-  /// The values that one entry of the parameter file takes in turn: an axis of a study.
+  /// An axis of a study: the values that one entry of the parameter file takes in turn.
   struct Axis
   {
     std::string entry;               ///< values as in a parameter file, no two alike
-    std::vector<std::string> values; ///< as they stand in a parameter file, no two alike
+    std::vector<std::string> values; ///< as in a parameter file, no two alike
   };
 
   /// Splits a text at separators and trims the parts. Separators within double quotes are skipped, as are those within
@@ -40,7 +40,7 @@ namespace crawler
   /**
    * Reads VALUES of an axis: linspace(first, last, count), logspace(first exponent, last exponent, count) (powers of
    * ten), or a list of values separated by commas, no two alike if they must be @p distinct. Commas within parentheses,
-   * as in max(1, x), do not separate; a value in double quotes may have any characters but those. Throws InputError in
+   * as in max(1, x), do not separate; a value in double quotes may have any characters but quotes. Throws InputError in
    * the name of the entry @p name that has the text; its message also offers @p other_functions, which the caller
    * reads.
    */

@@ -137,7 +137,7 @@ namespace crawler
     std::string
     value(unsigned int index) const;
 
-    /// The present values as a .prm file with every entry explained.
+    /// Prints the present values as a .prm file with every entry explained.
     void
     print_prm(std::ostream &out) const;
 

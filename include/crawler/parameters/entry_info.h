@@ -7,7 +7,7 @@
 
 namespace crawler
 {
-  /// The admissible values of a number: an interval whose ends may be left out.
+  /// The admissible values of a number: an interval possibly without ends.
   struct Range
   {
     double lower        = -std::numeric_limits<double>::infinity();

@@ -42,7 +42,7 @@ namespace crawler
     std::string
     get(const Path &path) const;
 
-    /// The present values as a .prm file with every entry explained, in the form of dealii::ParameterHandler.
+    /// Prints the present values as a .prm file with every entry explained, in the form of dealii::ParameterHandler.
     void
     print_prm(std::ostream &out) const;
 

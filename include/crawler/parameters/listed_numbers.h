@@ -9,7 +9,7 @@
 
 namespace crawler
 {
-  /// One number of an entry that has several, "Section/Entry[key]".
+  /// A number of an entry that has several, "Section/Entry[key]".
   struct ListedNumber
   {
     std::string key; ///< place in a list, from 1 on, or name of a constant

@@ -12,7 +12,7 @@ namespace crawler
   class Declarations;
   class InputError;
 
-  /// One line "set Entry = value" of a file or one --set of the command line, with its place.
+  /// A line "set Entry = value" of a file or one --set of the command line, with its place.
   struct Assignment
   {
     std::string path;             ///< "Section/Entry", as normal_path() writes it

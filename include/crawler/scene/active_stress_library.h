@@ -20,7 +20,7 @@ namespace crawler
   struct Scene;
   struct TermParameters;
 
-  /// Section "Active stress/Sum": a subsection for each term, "Term 1", "Term 2", ... There are as many as the file has
+  /// Section "Active stress/Sum": a subsection for each term, "Term 1", "Term 2", ..., as many as the file has
   /// (Parameters::count_terms).
   struct SumParameters
   {
@@ -48,25 +48,24 @@ namespace crawler
     void
     add_parameters(Declarations &declarations);
 
-    /// All but the sum, in the present section: also for a term of one.
+    /// Declares all generators but the sum in the present section: also for a term of a sum.
     void
     add_generators(Declarations &declarations, bool is_term);
   };
 
-  /// Section "Active stress/Sum/Term N": what a section "Active stress" has, but for the sum, and how the term is
-  /// combined.
+  /// Section "Active stress/Sum/Term N": a section "Active stress" without the sum, and how the term is combined.
   struct TermParameters
   {
     SumTermParameters combination;
     ActiveStressParameters stress;
   };
 
-  /// The names of all generators. The section of each has the same name, with a capital letter.
+  /// Names of all generators. The section of each has the same name, with a capital letter.
   std::vector<std::string>
   generator_names();
 
-  /// The generator that the parameters name, for the body, the ground and the duration of @p scene, which has no active
-  /// stress yet. Throws InputError if its own parameters do not make sense.
+  /// Creates the generator that the parameters name, for the body, the ground and the duration of @p scene, which has
+  /// no active stress yet. Throws InputError if the generator's parameters do not make sense.
   std::unique_ptr<ActiveStress>
   create_active_stress(const ActiveStressParameters &parameters, const Scene &scene);
 } // namespace crawler

@@ -9,7 +9,7 @@ namespace crawler
 {
   class Declarations;
 
-  /// The passive body (section "Body" of the parameter file). Any consistent set of units.
+  /// The passive body (section "Body" of the parameter file), in any consistent units.
   struct Body
   {
     double length               = 1.; ///< L, rest length [length]
@@ -17,14 +17,14 @@ namespace crawler
     double friction_coefficient = 1.; ///< gamma [force time/length^2]
     double anchoring_exponent   = 2.; ///< p [1]
 
-    // What a body that is not plain has besides: formulas of s, lists or CSV files (profile.h).
+    // Additions of a body that is not plain: formulas of s, lists or CSV files (profile.h).
     std::string elastic_modulus_profile = "1";
     std::string friction_profile        = "1";
     std::string initial_stretch         = "1";
     std::string constants               = ""; ///< of the formulas
     std::string profile_interpolation   = "cubic";
 
-    /// a = 1 - p, the exponent of the stretch in the friction per reference length [1].
+    /// Exponent of the stretch in the friction per reference length, a = 1 - p [1].
     double
     friction_exponent() const
     {
@@ -35,7 +35,7 @@ namespace crawler
     add_parameters(Declarations &declarations);
   };
 
-  /// What varies along the body; null where it is 1 everywhere.
+  /// Quantities that vary along the body; null where the factor is 1 everywhere.
   struct BodyProfiles
   {
     std::shared_ptr<const Profile> elastic_modulus; ///< k(s)/k
@@ -49,7 +49,7 @@ namespace crawler
     }
   };
 
-  /// Reads them. Throws InputError if one has an error or is not positive.
+  /// Reads the profiles of a body. Throws InputError if one has an error or is not positive.
   BodyProfiles
   read_profiles(const Body &body, double end_time);
 } // namespace crawler

@@ -11,39 +11,39 @@ namespace crawler
 {
   class ActiveStress;
 
-  /// Breaks closer than this part of the duration, or of the length, are one.
+  /// Breaks closer than this fraction of the duration, or of the length, are one.
   constexpr double least_time_between_breaks = 1e-12, least_space_between_breaks = 1e-9;
 
-  /// Those of the @p places that are in (0, @p end).
+  /// The @p places that are in (0, @p end).
   std::vector<double>
   within(std::vector<double> places, double end);
 
-  /// At the knots of a cubic spline the third derivative jumps. So few are breaks: where more of them are, cells are
+  /// Largest number of spline knots that count as breaks: the third derivative jumps there. Where more are, cells are
   /// small anyway.
   constexpr std::size_t most_knots_of_splines = 24;
 
-  /// The breaks of an active stress in (0, @p length), ascending, each once [length]; an end of the body is none.
+  /// Breaks of an active stress in (0, @p length), ascending, each once [length]; the ends of the body are none.
   std::vector<double>
   breaks_in_space(const ActiveStress &stress, double length);
-  /// The same for any list of places.
+  /// Breaks in any list of places, treated likewise.
   std::vector<double>
   distinct_breaks_in_space(std::vector<double> places, double length);
 
   /**
    * The pieces of [0, T] between the times when the active stress, or a derivative of it, jumps. Within a piece from
-   * t_b to t_c it is evaluated at times in [t_b + 2 d, t_c - d], d = 1e-12 T: what a generator answers at the very time
-   * of a break does not matter. Time here is in units of T.
+   * t_b to t_c it is evaluated at times in [t_b + 2 d, t_c - d], d = 1e-12 T: the values of a generator at the very
+   * time of a break do not matter. Times are in units of T.
    */
   class TimeSegments
   {
   public:
-    /// One piece, without breaks: any time is as good as another.
+    /// Makes one piece, without breaks: times are not moved.
     TimeSegments() = default;
 
-    /// @p end_time is T [time]. Breaks at 0 and T, or beyond, may be among those of the stress.
+    /// Pieces of a duration, @p end_time T [time]. Breaks at 0 and T, or beyond, may be among those of the stress.
     TimeSegments(const ActiveStress &stress, double end_time);
 
-    /// The times in (0, 1) where pieces meet.
+    /// Times in (0, 1) where pieces meet.
     const std::vector<double> &
     breaks() const
     {
@@ -54,7 +54,7 @@ namespace crawler
     void
     restart();
 
-    /// Goes to the next piece, which must be there.
+    /// Goes to the next piece, which must exist.
     void
     go_on();
 
@@ -71,7 +71,7 @@ namespace crawler
       return is_last() ? 1. : breaks_[piece_];
     }
 
-    /// The time of the present piece, away from its ends, that stands for @p t.
+    /// Time within the present piece, away from its ends, that replaces @p t.
     double
     inside(const double t) const
     {

@@ -8,9 +8,10 @@
 
 namespace crawler
 {
-  // Active stresses, strains and feedback at points, made of functions that keep what does not depend on time.
+  // Evaluators of active stresses, strains and feedback at points, made of functions that keep whatever does not depend
+  // on time.
 
-  /// By a function of t [time] and of the list that it writes m into.
+  /// Makes an evaluator from a function of t [time] and of the list that receives m.
   template <typename Function>
   std::unique_ptr<ActiveStressAtPoints>
   stress_at_points(Function function)
@@ -31,7 +32,7 @@ namespace crawler
     return std::make_unique<AtPoints>(std::move(function));
   }
 
-  /// By a function of t, of what is seen and of what is asked for.
+  /// Makes an evaluator from a function of t, the stretch seen and the stress wanted.
   template <typename Function>
   std::unique_ptr<FeedbackAtPoints>
   feedback_at_points(Function function)
@@ -52,11 +53,11 @@ namespace crawler
     return std::make_unique<AtPoints>(std::move(function));
   }
 
-  /// A feedback whose properties are known from the beginning.
+  /// A feedback whose properties are known at construction.
   class KnownFeedback : public StretchFeedback
   {
   public:
-    /// As the functions of these names say.
+    /// Results of the member functions of the same names.
     struct Facts
     {
       bool uses_rate  = false;
@@ -101,11 +102,11 @@ namespace crawler
     const Make make_;
   };
 
-  /// A strain by evaluators that write it as if it were an active stress.
+  /// A strain by evaluators that write it as they would an active stress.
   class StrainByEvaluators : public StrainHistory
   {
   public:
-    /// Of the strain [1] and of its rate [1/time].
+    /// Evaluators of the strain [1] and of its rate [1/time].
     using Evaluators = std::pair<std::unique_ptr<ActiveStressAtPoints>, std::unique_ptr<ActiveStressAtPoints>>;
     using Make       = std::function<Evaluators(const std::vector<double> &points)>;
     using Bound      = std::function<std::optional<FieldBounds>(const SpaceTimeBox &box)>;

@@ -8,32 +8,32 @@ namespace crawler
 {
   class ActiveStress;
 
-  /// A time during which an active stress changes faster than was known.
+  /// A time interval in which an active stress changes faster than was known.
   struct FastChange
   {
     double from, to; ///< [time]
-    double rate;     ///< about the largest |m_t| in it [force/time]
+    double rate;     ///< approximate largest |m_t| [force/time]
   };
 
   struct FastChanges
   {
     std::vector<FastChange> list; ///< in the order of their times; they may overlap
-    /// Everything faster is in the list. Otherwise the generator cannot say, or there are too many.
+    /// True if everything faster is in the list. Otherwise the generator cannot tell, or there are too many.
     bool is_complete = false;
   };
 
-  /// What the search for them leaves out.
+  /// Limits of the search.
   struct FastChangeLimits
   {
-    unsigned int most_bounds = 20000; ///< that are asked for
-    double least_jump        = 0.05;  ///< smaller jumps are none, relative to the largest |m|
+    unsigned int most_bounds = 20000; ///< bounds evaluated at most
+    double least_jump        = 0.05;  ///< smaller jumps are ignored, relative to the largest |m|
   };
 
   /**
-   * Looks for them in [from, to] by bounds of |m_t| in boxes (ActiveStress::bounds), which are halved in s or t
-   * until the bound is explained: by what is known of that time, @p explained [force/time], or by a change of less than
-   * 1e-4 of the largest |m|; or until a point of the box has a rate near the bound. So nothing is missed because it is
-   * short. @p largest is the largest |m| known [force]; it is raised to what is found.
+   * Finds fast changes in [from, to] by bounds of |m_t| in boxes (ActiveStress::bounds), which are halved in s or t
+   * until the bound is explained: by the known rate at that time, @p explained [force/time], or by a change of less
+   * than 1e-4 of the largest |m|; or until a point of the box has a rate near the bound. So no change is missed for
+   * being short. @p largest is the largest |m| known [force]; it is raised to the largest found.
    */
   FastChanges
   find_fast_changes(const ActiveStress &stress,
@@ -44,6 +44,6 @@ namespace crawler
                     double &largest,
                     const FastChangeLimits &limits = {});
 
-  /// So many times a rate that was seen explains a bound: bounds are too large.
+  /// Multiple of a known rate up to which it explains a bound: bounds are too large.
   inline constexpr double rates_explain = 4.;
 } // namespace crawler

@@ -16,20 +16,20 @@ namespace crawler
   public:
     virtual ~FrictionLaw() = default;
 
-    /// g [force time/length^2] at all stretches @p w (spans of one length).
+    /// Computes g [force time/length^2] at all stretches @p w (spans of one length).
     virtual void
     values(std::span<const double> w, std::span<double> g) const = 0;
 
-    /// g and its derivative with respect to the logarithm of the stretch, w dg/dw, at all stretches @p w (spans of one
-    /// length).
+    /// Computes g and its derivative with respect to the logarithm of the stretch, w dg/dw, at all stretches @p w
+    /// (spans of one length).
     virtual void
     values_and_log_derivatives(std::span<const double> w, std::span<double> g, std::span<double> w_dg) const = 0;
 
-    /// The same law with another coefficient: g times @p factor.
+    /// The law with another coefficient: g times @p factor.
     virtual std::unique_ptr<FrictionLaw>
     scaled(double factor) const = 0;
 
-    /// w g'/g [1] at the stretch @p w: the exponent of the power law that touches g there.
+    /// Exponent w g'/g [1] at the stretch @p w: the exponent of the tangent power law.
     virtual double
     exponent(double w) const;
   };
@@ -56,15 +56,15 @@ namespace crawler
   private:
     const double gamma_;
     const double a_;
-    const bool a_is_small_integer_; ///< then powers are products, which are much cheaper than pow()
+    const bool a_is_small_integer_; ///< powers are then products, much cheaper than pow()
   };
 
-  /// What no gait with stretches between two positive numbers exceeds: F of D <= F sqrt(W T/L), where F is the largest
+  /// Bound of the merit of gaits with stretches between two positive numbers: F of D <= F sqrt(W T/L), the largest
   /// 1/sqrt(g) less the smallest (doc/theory.md, "Gait efficiency"). 0 if they differ by round-off only.
   double
   largest_merit(const FrictionLaw &friction, double from, double to);
 
-  /// A stretch between two positive numbers where g is not positive and finite; nothing if there seems to be none.
+  /// A stretch between two positive numbers where g is not positive and finite; nothing if none is found.
   std::optional<double>
   stretch_without_friction(const FrictionLaw &friction, double from, double to);
 } // namespace crawler

@@ -9,11 +9,11 @@
 
 namespace crawler
 {
-  /// What decides, besides its strain, how a body moves and what that takes: friction g(s,w) = b(s) g(w) and stiffness
-  /// k(s), at points.
+  /// Body data that, with its strain, determine its motion and the stress for it: friction g(s,w) = b(s) g(w) and
+  /// stiffness k(s), at points.
   struct BodyAtPoints
   {
-    /// Of a scene without features_beyond_strain(); it must outlive this.
+    /// Takes a scene without features_beyond_strain(), which must outlive this.
     BodyAtPoints(const Scene &scene, const std::vector<double> &points);
 
     const FrictionLaw &friction;
@@ -22,15 +22,15 @@ namespace crawler
   };
 
   /**
-   * How a body of given strain e(s,t) moves at one time: v = B_t + drift with B_t = int_0^s e_t ds, and the drift that
-   * lets the friction balance, int g v ds = 0 (doc/theory.md, "Prescribed strain"). Lists are over the points of the
-   * quadrature.
+   * Motion of a body of given strain e(s,t) at one time: v = B_t + drift with B_t = int_0^s e_t ds, and the drift for
+   * which the friction balances, int g v ds = 0 (doc/theory.md, "Prescribed strain"). Lists are over the quadrature
+   * points.
    */
   struct GivenMotion
   {
     explicit GivenMotion(std::size_t n_points);
 
-    /// From the strain and its rate at the points of the panels, with which the points of @p body begin;
+    /// Finds the motion from the strain and its rate at the points of the panels, the first of the points of @p body;
     /// @p with_slopes: w_dg, too. Strains above -1 are expected.
     void
     find(const GaussPanels &panels,

@@ -29,8 +29,8 @@ namespace crawler
     add_parameters(Declarations &declarations);
   };
 
-  /// d(v) = (1+r)/2 + (1-r)/2 tanh(v/v_s): the resistance of a ground that holds more in one direction. The force d(v)
-  /// v increases with v for 0.1 <= r <= 10, so that a body has one velocity.
+  /// Direction-dependent resistance of a ground, d(v) = (1+r)/2 + (1-r)/2 tanh(v/v_s). The force d(v) v increases with
+  /// v for 0.1 <= r <= 10, so the velocity of a body is unique.
   struct Direction
   {
     double ratio              = 1.; ///< r, resistance for v < 0 over that for v > 0
@@ -43,12 +43,12 @@ namespace crawler
     }
     double
     factor(double v) const;
-    /// d/dv (d(v) v)
+    /// Derivative d/dv (d(v) v).
     double
     force_slope(double v) const;
   };
 
-  /// What the ground is besides the friction law.
+  /// Properties of the ground besides the friction law.
   struct Ground
   {
     std::shared_ptr<const Profile> profile; ///< c(x), null where it is 1 everywhere
@@ -61,12 +61,12 @@ namespace crawler
     }
   };
 
-  /// The friction law that the parameters name. Throws InputError if the expression has an error, or is not positive
-  /// for stretches near 1.
+  /// Creates the friction law that the parameters name. Throws InputError if the expression has an error, or is not
+  /// positive for stretches near 1.
   std::unique_ptr<const FrictionLaw>
   create_friction_law(const GroundParameters &parameters, const Body &body, double end_time);
 
-  /// Throws InputError if the entries do not make sense.
+  /// Creates the ground. Throws InputError if the entries do not make sense.
   Ground
   create_ground(const GroundParameters &parameters, const Body &body, double end_time);
 } // namespace crawler

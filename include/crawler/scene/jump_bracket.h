@@ -5,7 +5,7 @@
 
 namespace crawler
 {
-  /// Two places, and the values of a function there, between which it may jump.
+  /// Two places between which a function may jump, and its values there.
   struct JumpBracket
   {
     double left = 0., right = 0., f_left = 0., f_right = 0.;
@@ -21,8 +21,8 @@ namespace crawler
       return 0.5 * (left + right);
     }
 
-    /// Halves it @p n times, towards the larger change of @p function, as long as it changes by more than @p least:
-    /// that of a function without a jump becomes smaller.
+    /// Bisects the bracket @p n times, towards the larger change of @p function, as long as it changes by more than @p
+    /// least: without a jump the change shrinks.
     template <typename Function>
     void
     narrow(const Function &function, const unsigned int n, const double least)

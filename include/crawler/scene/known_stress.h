@@ -6,8 +6,8 @@
 namespace crawler
 {
   /**
-   * A generator that knows from the beginning when and where it repeats and jumps, and that has one evaluator for
-   * values and rates: what most generators have in common. The constructor fills `facts_`.
+   * Common base of most generators: repetition and jumps are known at construction, and one evaluator gives values and
+   * rates. The constructor fills `facts_`.
    */
   class KnownStress : public ActiveStress
   {
@@ -47,7 +47,7 @@ namespace crawler
     }
 
   protected:
-    /// As the functions of these names say.
+    /// Results of the member functions of the same names.
     struct Facts
     {
       std::optional<Repetition> repetition;
@@ -57,17 +57,17 @@ namespace crawler
     Facts facts_;
 
   private:
-    /// Of m, or of m_t if @p rate.
+    /// Makes an evaluator of m, or of m_t if @p rate.
     virtual std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const = 0;
 
-    /// For a repetition that it takes long to find (period.h): called once, and only if it is asked for.
+    /// Searches a repetition that takes long to find (period.h): called once, and only if needed.
     virtual std::optional<Repetition>
     search_repetition() const
     {
       return facts_.repetition;
     }
 
-    mutable std::optional<std::optional<Repetition>> repetition_; ///< once it was asked for
+    mutable std::optional<std::optional<Repetition>> repetition_; ///< set by the first request
   };
 } // namespace crawler

@@ -9,19 +9,19 @@ namespace crawler
   class ActiveStress;
   struct Scene;
 
-  /// An active stress that may jump at places that move along the body, and knows how.
+  /// An active stress that may have jumps which move along the body, and knows them.
   class MovingJumps
   {
   public:
     virtual ~MovingJumps() = default;
 
-    /// The same stress with smooth fronts in the place of these jumps, @p part (above 0, at most 1) as wide as the
-    /// widest that fit; null if there are no such jumps.
+    /// The stress with smooth fronts in place of these jumps, @p part (above 0, at most 1) as wide as the widest that
+    /// fit; null if there are no such jumps.
     virtual std::unique_ptr<const ActiveStress>
     with_fronts(double part) const = 0;
   };
 
-  /// The same problem with such fronts; nothing if the active stress does not know of moving jumps.
+  /// The scene with these fronts; nothing if the active stress knows no moving jumps.
   std::optional<Scene>
   with_fronts(const Scene &scene, double part);
 } // namespace crawler

@@ -9,13 +9,13 @@
 
 namespace crawler
 {
-  /// A factor that depends on a place: along the body (s) or on the ground (x). Not a number where it is not known.
+  /// A factor that depends on a place: along the body (s) or on the ground (x). NaN where it is unknown.
   class Profile
   {
   public:
     virtual ~Profile() = default;
 
-    /// The factor [1] at the places @p x [length]; and in the second function its derivative [1/length].
+    /// Writes the factor [1] at the places @p x [length]; the second function also its derivative [1/length].
     void
     values(const std::span<const double> x, const std::span<double> f) const
     {
@@ -27,7 +27,7 @@ namespace crawler
       evaluate(x, f, slope);
     }
 
-    /// Where the factor is known to have a jump or a kink [length].
+    /// Places where the factor is known to have a jump or a kink [length].
     virtual std::vector<double>
     breaks() const
     {
@@ -38,7 +38,7 @@ namespace crawler
     value(double x) const;
 
   private:
-    /// @p slope is empty where it is not wanted.
+    /// Evaluates; @p slope is empty if it is not wanted.
     virtual void
     evaluate(std::span<const double> x, std::span<double> f, std::span<double> slope) const = 0;
   };
@@ -47,27 +47,27 @@ namespace crawler
   std::vector<double>
   profile_at(const std::shared_ptr<const Profile> &profile, const std::vector<double> &places);
 
-  /// A profile as the user writes it: a formula, the name of a CSV file with two columns, or, along the body, a list of
-  /// its values at equally spaced places.
+  /// A profile as written by the user: a formula, the name of a CSV file with two columns, or, along the body, a list
+  /// of its values at equally spaced places.
   struct ProfileInput
   {
-    std::string quantity;                ///< what it gives, for messages
+    std::string quantity;                ///< the quantity, for messages
     std::string variable;                ///< s or x; also the first word of the file's header, "value" being the second
     std::string text;                    ///< ends in .csv: a file
-    std::string interpolation = "cubic"; ///< or linear, of a list or a file
-    std::string outside       = "hold";  ///< or error, of a file
+    std::string interpolation = "cubic"; ///< of a list or a file; or linear
+    std::string outside       = "hold";  ///< of a file; or error
     std::string entry;                   ///< full name of the entry
     std::string constants = "", constants_entry = ""; ///< of a formula
   };
 
   /**
-   * Null if the profile is the number 1. Throws InputError if the formula, the list or the file has an error, with its
-   * position or the number of its row.
+   * Reads a profile; null if it is the number 1. Throws InputError if the formula, the list or the file has an error,
+   * with its position or row number.
    */
   std::shared_ptr<const Profile>
   read_profile(const ProfileInput &input, double length, double end_time);
 
-  /// The same profile in other units: @p unit is that of its places.
+  /// The profile in other units; @p unit is that of its places.
   std::shared_ptr<const Profile>
   in_units(std::shared_ptr<const Profile> profile, double unit);
 

@@ -15,7 +15,7 @@
 
 namespace crawler
 {
-  /// The physical problem: a body on the ground, what drives it, and for how long. No numerics.
+  /// The physical problem: a body on the ground, its active stress, and the duration. No numerics.
   struct Scene
   {
     Body body;
@@ -25,33 +25,33 @@ namespace crawler
     BodyProfiles profiles = {};
     Ground ground         = {};
 
-    /// Nothing but the numbers of the body, the power law and an active stress m(s,t)? Other scenes are general: they
-    /// have the equation of doc/theory.md, "General bodies and grounds".
+    /// True if the scene is only the numbers of the body, the power law and an active stress m(s,t). Other scenes are
+    /// general: they have the equation of doc/theory.md, "General bodies and grounds".
     bool
     is_plain() const;
 
-    /// Does the centre of mass stay where it is, whatever the active stress does? At a = 0, where friction does not
-    /// depend on the stretch.
+    /// True if the centre of mass stays in place, whatever the active stress: at a = 0, where friction does not depend
+    /// on the stretch.
     bool
     keeps_its_centre() const;
 
-    /// Is the friction law the power law?
+    /// True if the friction law is the power law.
     bool
     has_power_law() const;
 
-    /// Does what a body does depend on its shape alone, not on its place or its past? Then strides may repeat.
+    /// True if the motion of a body depends on its shape alone, not on its place or its past; then strides may repeat.
     bool
     is_alike_everywhere() const;
 
-    /// What is_plain() misses, in words; empty if nothing.
+    /// Features that is_plain() excludes, in words; empty if none.
     std::string
     general_features() const;
 
-    /// Of these, with what a given strain does not say how the body moves (given_motion.h).
+    /// General features with which a given strain does not determine the motion (given_motion.h).
     std::string
     features_beyond_strain() const;
 
-    /// w g'/g of the friction law where the stretch is small, which decides what is lost there: a of the power law.
+    /// Exponent w g'/g of the friction law at small stretch, which decides what is lost there: a of the power law.
     double
     friction_exponent() const;
 
@@ -66,20 +66,20 @@ namespace crawler
   };
 
   /**
-   * The units in which L = T = gamma = 1: length L, time T, force gamma L^2/T. What is left of the body is one number,
-   * its stiffness k T/(gamma L^2) (doc/numerics.md, "Natural units"). Throws InputError if these are beyond what double
-   * precision can carry.
+   * The units in which L = T = gamma = 1: length L, time T, force gamma L^2/T. One number of the body remains, its
+   * stiffness k T/(gamma L^2) (doc/numerics.md, "Natural units"). Throws InputError if these exceed the range of double
+   * precision.
    */
   Units
   natural_units(const Scene &scene);
 
-  /// Throws InputError if the active stress is not finite, or would strain the body by more than 1e20 or, if it is not
-  /// 0, less than 1e-20.
+  /// Throws InputError if the active stress is not finite, or would strain the body by more than 1e20 or, unless it is
+  /// 0, by less than 1e-20.
   void
   require_computable_stress(const Scene &scene);
 
-  /// The same problem in other units. It refers to @p scene, which must outlive it. If @p pieces are given, which must
-  /// outlive it too, the active stress is that of the piece that is the present one when it is evaluated.
+  /// The problem in other units. It refers to @p scene, which must outlive it. If @p pieces are given, which must
+  /// outlive it too, the active stress is that of the piece that is present at its evaluation.
   Scene
   in_units(const Scene &scene, const Units &units, const TimeSegments *pieces = nullptr);
 } // namespace crawler

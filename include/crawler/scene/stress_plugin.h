@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// All that a plug-in for the generator "library" includes (doc/generators/library.md). It needs C++20 and nothing else.
+// Complete interface for a plug-in of the generator "library" (doc/generators/library.md). It needs only C++20.
 #pragma once
 
 #include <crawler/scene/active_stress.h>
@@ -26,7 +26,7 @@ namespace crawler
     {
     }
 
-    /// The parameter as a number, @p otherwise if it is not set. Throws std::invalid_argument if it is something else.
+    /// The parameter as a number, @p otherwise if it is not set. Throws std::invalid_argument if it is not a number.
     double
     number(const std::string &name, const double otherwise) const
     {
@@ -42,7 +42,7 @@ namespace crawler
       return value;
     }
 
-    /// The parameter as it is written, @p otherwise if it is not set.
+    /// The parameter as written, @p otherwise if it is not set.
     std::string
     text(const std::string &name, const std::string &otherwise) const
     {
@@ -51,14 +51,14 @@ namespace crawler
       return found == values_.end() ? otherwise : found->second;
     }
 
-    /// All that are set.
+    /// Parameters that are set.
     const std::map<std::string, std::string> &
     values() const
     {
       return values_;
     }
 
-    /// The names that were asked for: any other that is set is a slip of the user's.
+    /// Names that the plug-in has asked for: any other that is set is a slip of the user.
     const std::set<std::string> &
     known() const
     {
@@ -70,7 +70,7 @@ namespace crawler
     mutable std::set<std::string> known_;
   };
 
-  /// What a plug-in learns of the scene, in the units of the parameter file.
+  /// Scene data for a plug-in, in the units of the parameter file.
   struct PluginInput
   {
     double length;               ///< L [length]
@@ -81,7 +81,7 @@ namespace crawler
     PluginParameters parameters;
   };
 
-  /// What a plug-in says of itself. The first two members stay where they are in all versions.
+  /// Description of a plug-in. The first two members stay in place in all versions.
   struct Plugin
   {
     unsigned int interface;      ///< plugin_interface
@@ -90,10 +90,10 @@ namespace crawler
     std::unique_ptr<ActiveStress> (*create)(const PluginInput &);
   };
 
-  /// Grows by 1 whenever a header that a plug-in includes changes.
+  /// Interface version: grows by 1 whenever a header that a plug-in includes changes.
   inline constexpr unsigned int plugin_interface = 4;
 
-  /// The name of the function that CRAWLER_ACTIVE_STRESS_PLUGIN exports.
+  /// Name of the function that CRAWLER_ACTIVE_STRESS_PLUGIN exports.
   inline constexpr const char *plugin_function = "crawler_active_stress_plugin";
 } // namespace crawler
 

@@ -7,18 +7,18 @@
 
 namespace crawler
 {
-  /// What an active stress with feedback sees at the points: all spans are as long as the list of points, or empty
-  /// where the feedback does not use them.
+  /// Input of an active stress with feedback at the points: all spans are as long as the list of points, or empty where
+  /// unused.
   struct StretchSeen
   {
     std::span<const double> stretch; ///< w(s_i, t) [1]
     std::span<const double> rate;    ///< w_t(s_i, t) [1/time]
-    /// w(s_i + distance, t) [1], at the end of the body if that is beyond it; with a sensor its mean over the sensor
+    /// w(s_i + distance, t) [1], at the end of the body if that is beyond it; with a sensor, the mean over the sensor
     std::span<const double> near;
-    std::span<const double> delayed; ///< w(s_i, t - delay) [1]; that of the start before t = 0
+    std::span<const double> delayed; ///< w(s_i, t - delay) [1]; the initial stretch before t = 0
   };
 
-  /// What it answers: the active stress and its derivatives with respect to what it sees at the same time.
+  /// Output of the feedback: the active stress and its derivatives with respect to the present input.
   struct FeedbackStress
   {
     std::span<double> m;      ///< [force]
@@ -27,13 +27,13 @@ namespace crawler
     std::span<double> m_near; ///< dm/d(w near) [force]
   };
 
-  /// Evaluates an active stress with feedback at points that do not change.
+  /// Evaluates an active stress with feedback at fixed points.
   class FeedbackAtPoints
   {
   public:
     virtual ~FeedbackAtPoints() = default;
 
-    /// Writes all of @p m, including what does not depend on the stretch.
+    /// Writes all of @p m, including the part that does not depend on the stretch.
     virtual void
     values(double t, const StretchSeen &seen, const FeedbackStress &m) = 0;
   };
@@ -50,23 +50,23 @@ namespace crawler
     virtual bool
     uses_rate() const = 0;
 
-    /// [length], either sign; 0 if the stretch of no other place is used, or a sensor is at the place itself.
+    /// Offset of the near stretch [length], either sign; 0 if it is not used, or a sensor is at the place itself.
     virtual double
     distance() const = 0;
 
-    /// [time], positive; 0 if no delayed stretch is used.
+    /// Delay [time], positive; 0 if no delayed stretch is used.
     virtual double
     delay() const = 0;
 
-    /// [length], b; if positive, the near stretch is the mean stretch of the piece of this length with its middle at
-    /// s + distance, moved inside where it would reach beyond the body: (zeta(right) - zeta(left))/b. 0: at the place.
+    /// Sensor length b [length]; if positive, the near stretch is the mean over the piece of this length centred at s +
+    /// distance, moved inside where it would reach beyond the body: (zeta(right) - zeta(left))/b. 0: at the place.
     virtual double
     sensor_length() const
     {
       return 0.;
     }
 
-    /// Is the near stretch used?
+    /// True if the near stretch is used.
     bool
     sees_near() const
     {

@@ -8,8 +8,8 @@ namespace crawler
   class Declarations;
 
   /**
-   * Section "Units": what the user calls the units of length, time and force. They are names alone: nothing is
-   * converted. Units in the program are words, "force length" or "length/time^2"; here they become those of the user.
+   * Section "Units": the user's names for the units of length, time and force. Only names: nothing is converted. Units
+   * in the program are words, "force length" or "length/time^2", translated here.
    */
   struct UnitNames
   {
@@ -22,20 +22,20 @@ namespace crawler
     void
     require_plain() const;
 
-    /// "mN cm" for "force length".
+    /// Translates a unit: "mN cm" for "force length".
     std::string
     of(const std::string &unit) const;
 
-    /// A text with units in brackets, "t [time],u [length]", with those of the user.
+    /// Translates the units in brackets in a text, "t [time],u [length]".
     std::string
     in_brackets(const std::string &text) const;
 
-    /// What stands behind a number, with a blank before it: nothing if the user has named no unit.
+    /// The unit to follow a number, with a blank before it; empty if the user has named no unit.
     std::string
     behind(const std::string &unit) const;
 
   private:
-    /// Has the user named none?
+    /// True if the user has named no unit.
     bool
     is_general() const;
   };

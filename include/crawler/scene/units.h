@@ -3,7 +3,7 @@
 
 namespace crawler
 {
-  /// The units in which a scene is computed: a value in the user's units is the computed number times its unit.
+  /// Units in which a scene is computed: a value in the user's units is the computed number times its unit.
   struct Units
   {
     double length = 1., time = 1., force = 1.;

@@ -15,7 +15,7 @@ namespace crawler
 {
   /**
    * Integrates an implicit system with PETSc's TS, Newton's method by SNES, and KSP. An exception that the system
-   * throws comes out of next().
+   * throws leaves next().
    *
    * Error control is absolute, by the root mean square of the estimated error of a step over all unknowns, so y should
    * be a displacement from rest. Newton's method stops when its estimated remaining error is below 1% of the tolerance.
@@ -23,7 +23,7 @@ namespace crawler
   class PetscStepper : public Stepper
   {
   public:
-    /// @p system must outlive the stepper.
+    /// Makes a stepper; @p system must outlive it.
     PetscStepper(MPI_Comm communicator, ImplicitSystem &system, const TimeParameters &parameters);
     ~PetscStepper() override;
     PetscStepper(const PetscStepper &) = delete;

@@ -9,7 +9,7 @@
  * several side by side (lanes/pack.h). Used by the PETSc type (time/radau.cc), the linear stepper and the lanes.
  *
  * Arrays of stages are [stage][unknown], increments z_i relative to the start of the step. The number of stages @p s is
- * an int, or `Stages<s>` where the compiler is to know it. Nothing here may come from the C++ library (base/
+ * an int, or `Stages<s>` where it is a compile-time constant. The C++ library must not be used here (base/
  * instruction_set.h).
  */
 namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
@@ -24,7 +24,7 @@ namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
   };
   constexpr int most_stages = 7;
 
-  /// The polynomial of the last step is a good guess up to this multiple of the step.
+  /// Largest multiple of the last step up to which its polynomial is a good first guess.
   constexpr double longest_extrapolation = 3.;
   /// Constants of the step control: the next step is safety * (1/error)^(1/(s+1)) of the present one, within these
   /// factors.

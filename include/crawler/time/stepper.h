@@ -32,7 +32,7 @@ namespace crawler
   /// Outcome of a computation.
   enum class Status
   {
-    none, ///< it has not ended yet
+    none, ///< not ended yet
     finished,
     inverted, ///< the body inverted, where the model ends
     failed,
@@ -68,8 +68,7 @@ namespace crawler
   struct Course
   {
     double start;                      ///< [time]
-    std::vector<double> ends;          ///< ascending times after the start where steps end exactly; the last one is the
-                                       ///< end
+    std::vector<double> ends;          ///< ascending times where steps end exactly; the last is the end of the course
     double tolerance;                  ///< of the error of a step [the unit of y]
     double initial_step;               ///< [time]
     std::span<const StepLimit> limits; ///< of adaptive steps; must outlive the integration

@@ -129,7 +129,7 @@ namespace crawler
   {
     if (is_everywhere_)
       return 1.;
-    if (edge_ == 0.) // of two windows that meet only one has the place where they do
+    if (edge_ == 0.) // of two adjacent windows only one includes the common end
       return x >= from_ && (x < to_ || to_ >= end_) ? 1. : 0.;
     return smooth_step((x - from_) / edge_) * smooth_step((to_ - x) / edge_);
   }

@@ -19,7 +19,7 @@ namespace crawler
 {
   namespace
   {
-    /// What muParser has against a formula, as one sentence with a position that counts from 1.
+    /// muParser's objection to a formula, as one sentence with a position that counts from 1.
     std::string
     in_words(const mu::ParserError &error, const FormulaInput &input, const Formula::Constants &constants)
     {
@@ -27,7 +27,7 @@ namespace crawler
       std::string problem        = error.GetMsg();
       if (error.GetCode() == mu::ecINTERNAL_ERROR)
         problem = "the formula is not complete";
-      // muParser's own positions count from 0.
+      // Positions of muParser count from 0.
       for (const char *position : {" found at position", " at expression position", " at position"})
         problem = problem.substr(0, problem.find(position));
       while (!problem.empty() && (problem.back() == '.' || problem.back() == '!'))
@@ -57,7 +57,7 @@ namespace crawler
                          problem);
     }
 
-    /// muParser takes "s = 3" for an assignment and "s, t" for two formulas; both are slips here.
+    /// Refuses "s = 3", which muParser takes for an assignment, and "s, t", which it takes for two formulas.
     void
     require_one_value(const std::string &formula, const std::string &formula_entry)
     {

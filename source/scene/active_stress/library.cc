@@ -25,7 +25,7 @@ namespace crawler
     const std::string parameters_entry = "Active stress/Library/Parameters";
     constexpr double no_number         = std::numeric_limits<double>::quiet_NaN();
 
-    /// Runs code of the user's; nothing if all went well, else what it threw.
+    /// Runs code of the user; returns what it threw, or nothing.
     template <typename Function>
     std::optional<std::string>
     thrown_by(const Function &function)
@@ -52,15 +52,16 @@ namespace crawler
       failures.latest = fmt::format("the plug-in \"{}\" {}", failures.plugin, what);
     }
 
-    /// An evaluator of the plug-in that is guarded: what goes wrong is a failure.
+    /// A guarded evaluator of the plug-in: errors become failures.
     template <typename AtPoints>
     class Guarded
     {
     public:
-      /// Makes evaluators for some points, one of them or all.
+      /// Makes evaluators for some points, one or all.
       using Make = std::function<std::unique_ptr<AtPoints>(const std::vector<double> &)>;
 
-      /// @p maker is the name of the function of the plug-in that @p make calls. Null, and a failure, if that throws.
+      /// Makes the evaluator; null, and a failure, if that throws. @p maker is the name of the plug-in's function that
+      /// @p make calls.
       Guarded(std::shared_ptr<LibraryFailures> failures,
               Make make,
               const char *maker,
@@ -76,8 +77,8 @@ namespace crawler
           fail(*failures_, fmt::format("gave no evaluator in {}", maker));
       }
 
-      /// As an evaluator that calls @p call, whose name is @p name. If that throws, or writes something that is not a
-      /// finite number, all of its result is not a number.
+      /// Makes an evaluator that calls @p call, whose name is @p name. If that throws, or writes a value that is not
+      /// finite, the whole result is NaN.
       std::unique_ptr<ActiveStressAtPoints>
       evaluator(const char *name, void (AtPoints::*call)(double, std::span<double>)) const
       {
@@ -94,14 +95,14 @@ namespace crawler
               const double t,
               const std::span<double> result) const
       {
-        if (!at_points_) // that has been said already
+        if (!at_points_) // has been reported already
         {
           ++failures_->count;
           return false;
         }
         if (const auto thrown = thrown_by([&]() { (*at_points_.*call)(t, result); }))
         {
-          // Where? The first point that throws on its own.
+          // Place of the failure: the first point that throws on its own.
           const auto place = std::find_if(points_.begin(), points_.end(), [&](const double s) {
             double value = 0.;
             return thrown_by([&]() { (*make_({s}).*call)(t, {&value, 1}); }).has_value();
@@ -148,7 +149,7 @@ namespace crawler
         });
     }
 
-    /// The first of the numbers @p m that is not finite is a failure.
+    /// Notes a failure at the first of the numbers @p m that is not finite.
     void
     require_finite(LibraryFailures &failures,
                    const FeedbackStress &m,
@@ -196,7 +197,7 @@ namespace crawler
       });
     }
 
-    /// Loads it, for as long as the program lasts: what it has made may be anywhere.
+    /// Loads the plug-in for the lifetime of the program: objects it has made may be anywhere.
     const Plugin &
     load(const std::string &name)
     {
@@ -298,7 +299,7 @@ namespace crawler
     ask(body.length, end_time);
   }
 
-  /// What the plug-in says of itself, asked once.
+  /// Asks the plug-in once for its properties.
   void
   Library::ask(const double length, const double end_time)
   {

@@ -15,7 +15,7 @@ namespace crawler
   {
     using std::numbers::pi;
 
-    /// 1, sin x, cos x, sin 2x, ... at x = 2 pi @p turns.
+    /// Fourier modes 1, sin x, cos x, sin 2x, ... at x = 2 pi @p turns.
     void
     fourier(const double turns, std::vector<double> &phi)
     {
@@ -29,7 +29,7 @@ namespace crawler
       }
     }
 
-    /// Derivatives by x of a sum of Fourier modes: the modes @p phi become those of the derivative.
+    /// Replaces the Fourier modes @p phi by their derivatives by x.
     void
     differentiate_fourier(std::vector<double> &phi)
     {
@@ -42,7 +42,8 @@ namespace crawler
       }
     }
 
-    /// The cubic B-splines on @p n cells of [0, 1] that end there, n + 3 of them, or their derivatives (de Boor).
+    /// The n + 3 cubic B-splines on @p n cells of [0, 1], with all knots beyond the ends at the ends, or their
+    /// derivatives (de Boor).
     void
     splines(const double x, const unsigned int n, const bool rate, std::vector<double> &psi)
     {

@@ -18,7 +18,7 @@ namespace crawler
   {
     const std::string section = "Active stress/Optimal wave/";
 
-    /// One harmonic; the parts that depend on s are computed once.
+    /// A harmonic; the parts that depend on s are computed once.
     struct Harmonic
     {
       double q, a, b;
@@ -104,7 +104,7 @@ namespace crawler
   void
   OptimalWave::require_computable() const
   {
-    constexpr double most   = 1e8; // a stride takes ten steps at least, and a run cannot have more than 1e9
+    constexpr double most   = 1e8; // a stride takes at least ten steps, and a run has at most 1e9
     const std::string entry = section + (roots_ ? "Energy" : "Wave speed");
     const double strides    = std::abs(wave_.speed) / body_.length * end_time_;
     if (!(strides <= most))
@@ -188,7 +188,7 @@ namespace crawler
       std::fill(m.begin(), m.end(), 0.);
       for (const Harmonic &wave : harmonics)
       {
-        // The class formula with sin q(s+ct) and cos q(s+ct) expanded: constant + cosine cos qs + sine sin qs.
+        // Expansion of sin q(s+ct) and cos q(s+ct) in the formula of the class: constant + cosine cos qs + sine sin qs.
         const double theta = wave.q * c * t;
         const double st = std::sin(theta), ct = std::cos(theta);
         const double half = std::sin(0.5 * theta), ct_minus_1 = -2. * half * half;
@@ -223,7 +223,7 @@ namespace crawler
                        "    index         speed    multiplier  displacement  min stretch  max stretch\n",
                        roots_->double_roots ? " (double roots: this is the smallest energy)" : "",
                        roots_->complete ? "" : fmt::format("; the first {} of more", list.size()));
-    // Long lists: the slowest, those around the chosen one, and the last.
+    // Excerpt of long lists: the slowest, those around the chosen one, and the last.
     constexpr std::size_t around = 12;
     bool gap                     = false;
     for (std::size_t i = 0; i < list.size(); ++i)

@@ -72,7 +72,7 @@ namespace crawler
         });
     }
 
-    /// The stress from the balance of forces, see the class.
+    /// Active stress from the balance of forces, see the class.
     std::unique_ptr<ActiveStressAtPoints>
     balancing_stress(const StrainHistory &history,
                      const std::shared_ptr<const Scene> &scene,
@@ -86,7 +86,7 @@ namespace crawler
       const GaussPanels::Places places(*panels, points);
       GivenMotion motion(n);
       std::vector<double> e(n), e_t(n), elastic(points.size());
-      // The scene is kept, since the body refers to its friction law.
+      // A copy of the scene pointer is kept, since the body refers to its friction law.
       return stress_at_points([=, inside = history.at(panels->points()), at_points = history.at(points)](
                                 const double t, const std::span<double> m) mutable {
         inside->strain(t, e);
@@ -207,7 +207,7 @@ namespace crawler
     choose_panels(scene.end_time);
   }
 
-  /// No jumps where it says that there may be some.
+  /// Throws InputError if the strain jumps at a break of the generator.
   void
   PrescribedStrain::require_usable_generator(const double end_time) const
   {

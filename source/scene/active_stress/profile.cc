@@ -33,7 +33,7 @@ namespace crawler
   double
   largest_smooth_step_rate(const double from, const double to)
   {
-    return smooth_step_rate(std::clamp(0.5, from, to)); // it has one maximum, in the middle
+    return smooth_step_rate(std::clamp(0.5, from, to)); // its only maximum is in the middle
   }
 
   double
@@ -57,7 +57,7 @@ namespace crawler
     x -= std::floor(x);
     if (front_ == 0.)
       return x < duty_ ? 1. : 0.;
-    // The front about 0 stands at both ends of [0, 1).
+    // The front about 0 is split between both ends of [0, 1).
     if (x > 1. - 0.5 * front_)
       x -= 1.;
     return x < 0.5 * duty_ ? smooth_step(x / front_ + 0.5) : smooth_step((duty_ - x) / front_ + 0.5);

@@ -16,19 +16,19 @@ namespace crawler
   {
     const std::string pulse_section = "Active stress/Pulse/";
 
-    /// Beyond this multiple of its width a Gaussian is below round-off of its top, 2e-16.
+    /// Multiple of its width beyond which a Gaussian is below round-off of its top, 2e-16.
     constexpr double gaussian_reach = 6.;
-    /// Where the bumps are the steepest.
+    /// Arguments where the bumps are steepest.
     constexpr double gaussian_steepest = 0.70710678118654752, compact_steepest = 0.75983568565159254;
 
-    /// of_value b(z) + of_slope b'(z)
+    /// Returns of_value b(z) + of_slope b'(z).
     double
     bump(const bool compact, const double z, const double of_value, const double of_slope)
     {
       if (!compact)
         return std::exp(-z * z) * (of_value - 2. * z * of_slope);
       const double room = (1. - z) * (1. + z);
-      if (!(room > 1e-3)) // where it is below 1e-400
+      if (!(room > 1e-3)) // there the bump is below 1e-400
         return 0.;
       return std::exp(1. - 1. / room) * (of_value - 2. * z / (room * room) * of_slope);
     }
@@ -74,7 +74,7 @@ namespace crawler
     facts_.breaks_in_space = envelope_.breaks_in_space();
   }
 
-  /// And pulses that do not overlap too much.
+  /// Throws InputError if pulses are too narrow, overlap too much, or a single one never reaches the body.
   void
   Pulse::require_reachable_body(const double end_time) const
   {
@@ -122,7 +122,7 @@ namespace crawler
       double last = centre, distance = 1.;
       if (P > 0.)
       {
-        // From the first pulse that reaches the body to the last.
+        // Pulses from the first that reaches the body to the last.
         distance = std::abs(velocity_) * P;
         centre += distance * std::ceil((-reach_ - centre) / distance);
         last = length_ + reach_;
@@ -136,7 +136,7 @@ namespace crawler
     });
   }
 
-  /// Of all pulses that come to the box, each where it is the steepest.
+  /// Bounds from all pulses that reach the box, each where it is steepest.
   std::optional<ActiveStress::Bounds>
   Pulse::bounds(const Box &box) const
   {
@@ -148,7 +148,7 @@ namespace crawler
       const double from = box.s_from - std::max(a, b), to = box.s_to - std::min(a, b);
       if (from >= reach || to <= -reach)
         return;
-      // The largest |b'(z)| is at |z| = steepest, and falls on both sides of it.
+      // The largest |b'(z)| is at |z| = steepest, and falls off on both sides.
       const double steepest = compact_ ? compact_steepest : gaussian_steepest;
       const double least    = from <= 0. && to >= 0. ? 0. : std::min(std::abs(from), std::abs(to)) / width_;
       const double most     = std::max(std::abs(from), std::abs(to)) / width_;
@@ -160,7 +160,7 @@ namespace crawler
       add_pulse(start_);
     else
     {
-      // Pulse j has left or not come yet unless j is between these.
+      // Range of the pulses j in the box: others have left, or have not arrived.
       const double d = v * P, x[] = {start_ + v * box.t_from, start_ + v * box.t_to};
       double first = HUGE_VAL, last = -HUGE_VAL;
       for (const double place : x)
@@ -170,7 +170,7 @@ namespace crawler
           last  = std::max(last, (place - s) / d);
         }
       first = std::ceil(first);
-      // In a long time the same pulses come again and again.
+      // Over long times the same pulses recur.
       const double on_the_body = std::ceil((box.s_to - box.s_from + 2. * reach) / std::abs(d)) + 1.;
       last                     = std::min(std::floor(last), first + 2. * on_the_body);
       for (double j = first; j <= last; ++j)

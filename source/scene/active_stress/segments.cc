@@ -24,7 +24,7 @@ namespace crawler
       return x - std::floor(x);
     }
 
-    /// @p values sorted, those that differ by round-off only once.
+    /// Sorts @p values and removes those that differ by round-off only.
     std::vector<double>
     distinct(std::vector<double> values)
     {
@@ -132,8 +132,8 @@ namespace crawler
                 0.};
       if (p.rate_limit)
       {
-        // In the shorter one of the two parts of the period the actuator comes this far; and if that is not far enough,
-        // it stays at the value that it is sent to in the longer one.
+        // Amplitude that the actuator reaches in the shorter of the two parts of the period; if it falls short, it
+        // stays at the target of the longer part.
         const double per_period     = *p.rate_limit / p.frequency;
         const double way            = std::min(std::abs(high), per_period * std::min(D, 1. - D));
         (D <= 0.5 ? s.high : s.low) = D <= 0.5 ? std::copysign(way, high) : high - std::copysign(way, high);
@@ -210,7 +210,7 @@ namespace crawler
     double largest = 0.;
     for (const double A : parameters_.amplitude)
     {
-      // Where it is steepest: in the middle of the front, or where it is cut.
+      // Steepest place: the middle of the front, or the cut.
       const double cut = std::abs(parameters_.saturation.value_or(std::abs(A)) / A);
       const double x   = cut < 0.5 ? smooth_step_inverse(cut) : 0.5;
       largest          = std::max(largest, A == 0. ? 0. : std::abs(A) * smooth_step_rate(x));
@@ -274,7 +274,7 @@ namespace crawler
     return {cut, D - cut};
   }
 
-  /// One number for each segment, then the segment of each point.
+  /// Evaluates one number per segment, then maps points to segments.
   std::unique_ptr<ActiveStressAtPoints>
   Segments::evaluator(const std::vector<double> &points, const bool rate) const
   {
@@ -303,7 +303,7 @@ namespace crawler
     });
   }
 
-  /// Fronts begin at 0 and at D, or half their width before if they are smooth.
+  /// Bounds from the fronts, which begin at 0 and at D, or half their width before if they are smooth.
   std::optional<ActiveStress::Bounds>
   Segments::bounds(const Box &box) const
   {

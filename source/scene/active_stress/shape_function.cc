@@ -14,8 +14,8 @@ namespace crawler
   namespace
   {
     constexpr unsigned int high_degree = 15, low_degree = 3;
-    constexpr double smallest = 1e-10;              ///< panel, of the length of a panel in the beginning
-    constexpr double tiny     = 1e-6;               ///< the same, of panels that only a kink makes
+    constexpr double smallest = 1e-10;              ///< panel, relative to the initial length
+    constexpr double tiny     = 1e-6;               ///< largest panel, likewise, that only a kink causes
     constexpr double accuracy = 1e-13, jump = 1e-3; ///< of the largest |V|
     constexpr std::size_t most_panels = 1000000;
 
@@ -34,7 +34,7 @@ namespace crawler
     }
   } // namespace
 
-  /// Of the polynomial through the values at u_j = -cos( pi (j + 1/2)/n ), n = degree + 1.
+  /// Chebyshev coefficients of the polynomial through the values at u_j = -cos( pi (j + 1/2)/n ), n = degree + 1.
   std::vector<double>
   ShapeFunction::coefficients(const Function &function, const double left, const double right) const
   {
@@ -58,10 +58,10 @@ namespace crawler
   {
     const unsigned int n = degree_ + 1;
     const double half    = 0.5 * (right - left_.back());
-    double start         = 0.; // the integral up to this panel
+    double start         = 0.; // integral up to this panel
     if (!integral_.empty())
       start = series(integral_.data() + integral_.size() - (n + 1), n, 1.);
-    // The integral of T_k is ( T_(k+1)/(k+1) - T_(k-1)/(k-1) )/2, that of T_0 is T_1, that of T_1 is T_2/4.
+    // Integrals: that of T_k is ( T_(k+1)/(k+1) - T_(k-1)/(k-1) )/2, that of T_0 is T_1, that of T_1 is T_2/4.
     std::vector<double> integral(n + 1, 0.);
     for (unsigned int k = 1; k <= n; ++k)
       integral[k] =
@@ -83,7 +83,7 @@ namespace crawler
     const auto end_of = [&](const std::size_t i) {
       return i == n_panels ? to : from + (to - from) * static_cast<double>(i) / static_cast<double>(n_panels);
     };
-    // The largest |V|, and whether it is a number.
+    // Largest |V|, and a check that it is finite.
     double largest = 0.;
     std::vector<double> x(8), values(8);
     for (std::size_t i = 0; i < n_panels; ++i)
@@ -101,8 +101,8 @@ namespace crawler
         largest = std::max(largest, std::abs(values[j]));
       }
     }
-    double kink_panel = 0.;     // the smallest at the last kink
-    std::vector<double> rights; // of panels to do, the leftmost last
+    double kink_panel = 0.;     // the smallest panel at the last kink
+    std::vector<double> rights; // right ends of pending panels, the leftmost last
     for (std::size_t i = n_panels; i > 0; --i)
       rights.push_back(end_of(i));
     while (!rights.empty())
@@ -133,7 +133,7 @@ namespace crawler
       }
       if (is_smallest && variation > jump * largest)
         throw InputError(fmt::format("the shape jumps at x = {:g}; a continuous function is expected", left), entry);
-      if (right - left <= tiny * size) // as only those are that have a kink in them or near
+      if (right - left <= tiny * size) // only panels with a kink in or near them are so small
       {
         const bool is_next = !kinks_.empty() && left - kinks_.back() <= 10. * tiny * size;
         if (!is_next)
@@ -172,7 +172,7 @@ namespace crawler
       const auto above = std::upper_bound(left_.begin() + 1, left_.end() - 1, x);
       return static_cast<std::size_t>(above - left_.begin()) - 1;
     }
-    // A few steps are faster than a search.
+    // Stepping a few panels is faster than a search.
     for (unsigned int step = 0; step < 8; ++step, ++panel)
       if (panel + 2 == left_.size() || x < left_[panel + 1])
         return panel;
@@ -207,7 +207,7 @@ namespace crawler
                                       const std::span<double> values,
                                       const std::span<double> integrals) const
   {
-    // The recurrence of one place waits for each of its results; those of four do not wait for each other.
+    // Four places at a time: the recurrence of one waits for each of its results, those of four overlap.
     constexpr std::size_t n = 4;
     for (std::size_t first = 0; first < x.size(); first += n)
     {

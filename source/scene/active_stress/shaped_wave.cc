@@ -20,11 +20,11 @@ namespace crawler
   {
     const std::string shaped_wave_section = "Active stress/Optimal wave/";
 
-    /// Panels of the polynomials through a formula are at most this part of the body long.
+    /// Longest panel of the polynomials through a formula, relative to the body.
     constexpr double longest_panel = 1. / 16.;
-    /// More body lengths would take more memory than such a run is worth.
+    /// Largest number of body lengths; more would take too much memory.
     constexpr double most_lengths = 1e4;
-    /// The leading order is reported for so many strides at most.
+    /// Largest number of strides for which the leading order is reported.
     constexpr double most_reported = 100.;
 
     ShapeFunction
@@ -126,7 +126,7 @@ namespace crawler
     , speed_(parameters.wave_speed)
     , shape_(shape_of(parameters, body, end_time))
   {
-    facts_.breaks_in_space = within(shape_.kinks(), body.length); // at the start
+    facts_.breaks_in_space = within(shape_.kinks(), body.length); // kinks at the start, V(s)
   }
 
   std::unique_ptr<ActiveStressAtPoints>
@@ -153,7 +153,7 @@ namespace crawler
     });
   }
 
-  /// m_t = chi [ gamma c ( V(s+ct) - V(ct) - (s/L) ( V(L+ct) - V(ct) ) ) - k V'(s+ct) ]
+  /// Evaluator of m_t = chi [ gamma c ( V(s+ct) - V(ct) - (s/L) ( V(L+ct) - V(ct) ) ) - k V'(s+ct) ].
   std::unique_ptr<ActiveStressAtPoints>
   ShapedWave::rate_evaluator(const std::vector<double> &points) const
   {

@@ -103,8 +103,8 @@ namespace crawler
       facts, [formula](const std::vector<double> &points) { return formula_feedback(formula, points); });
     facts_.has_rate        = false;
     facts_.breaks_in_space = kinks_in_space(length);
-    // The past begins at t = 0: what follows from it has kinks at the first multiples of the delay.
-    constexpr int most = 6; // each is smoother than the one before
+    // The past begins at t = 0, which causes kinks at the first multiples of the delay.
+    constexpr int most = 6; // each is smoother than the previous one
     for (int i = 1; i <= most && facts.delay > 0. && i * facts.delay < end_time; ++i)
       facts_.breaks_in_time.push_back(i * facts.delay);
 
@@ -123,13 +123,13 @@ namespace crawler
   std::vector<double>
   StrainFeedback::kinks_in_space(const double length) const
   {
-    constexpr int most    = 20; // more are not worth a cell each
+    constexpr int most    = 20; // more would not be worth their cells
     const double distance = feedback_->distance(), sensor = feedback_->sensor_length();
     std::vector<double> places;
     if (sensor * most >= length)
     {
-      // The near stretch has kinks where the sensor comes to an end of the body, and smoother ones where an end of the
-      // sensor comes to those.
+      // Kinks of the near stretch are where the sensor reaches an end of the body, and smoother ones where an end of
+      // the sensor reaches those.
       for (const double kink : within({0.5 * sensor - distance, length - 0.5 * sensor - distance}, length))
         places.insert(places.end(), {kink, kink - distance - 0.5 * sensor, kink - distance + 0.5 * sensor});
       return within(std::move(places), length);

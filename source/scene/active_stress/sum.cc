@@ -15,7 +15,7 @@ namespace crawler
 {
   namespace
   {
-    /// The points where a term's window is open.
+    /// The points where the window of a term is open.
     struct OpenPoints
     {
       OpenPoints(const SumTerm &term, const std::vector<double> &points)
@@ -34,7 +34,7 @@ namespace crawler
       std::vector<double> factor;     ///< the term's factor times W(s)
     };
 
-    /// A sum and a product of terms, and their derivatives in some directions, point by point.
+    /// Sum and product of terms, and their derivatives in some directions, point by point.
     class Combination
     {
     public:
@@ -58,7 +58,7 @@ namespace crawler
             std::fill(d.begin(), d.end(), 0.);
       }
 
-      /// Before a term is written into f and f_d.
+      /// Clears f and f_d for the next term.
       void
       clear_term()
       {
@@ -110,7 +110,7 @@ namespace crawler
       std::vector<std::vector<double>> f_d; ///< [direction][point]
     };
 
-    /// Values, or rates.
+    /// Evaluates values, or rates.
     class SumAtPoints : public ActiveStressAtPoints
     {
     public:
@@ -160,7 +160,7 @@ namespace crawler
         std::vector<double> g, g_t;
       };
 
-      /// f = F W V g,   f_t = F W ( V_t g + V g_t )
+      /// Writes f = F W V g, or f_t = F W ( V_t g + V g_t ).
       void
       write(Part &part, const double t, const double V, const double V_t)
       {
@@ -278,7 +278,7 @@ namespace crawler
 
     const std::string sum_section = "Active stress/Sum/";
 
-    /// What the feedbacks of all terms use; one distance, delay and sensor for all.
+    /// Facts of the feedbacks of all terms, which have one distance, delay and sensor.
     KnownFeedback::Facts
     common_facts(const std::vector<SumTerm> &terms)
     {

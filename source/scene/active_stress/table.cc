@@ -25,7 +25,7 @@ namespace crawler
       return result;
     }
 
-    /// Samples that are held must say something about the scene.
+    /// Throws InputError unless held samples overlap with the scene.
     void
     require_overlap(const std::vector<double> &values, const double end, const char *name, const std::string &file)
     {
@@ -41,7 +41,7 @@ namespace crawler
                          table_file_entry);
     }
 
-    /// The last samples in time become the first ones, from which they may differ by round-off.
+    /// Replaces the last samples in time by the first ones, from which they may differ by round-off.
     void
     close_period(GridTable &grid, const std::string &file)
     {
@@ -101,7 +101,7 @@ namespace crawler
       return p.outside == "hold" ? GridInterpolation::Outside::hold : GridInterpolation::Outside::go_on;
     }
 
-    /// The numbers between 0 and @p end, without both.
+    /// The numbers strictly between 0 and @p end.
     std::vector<double>
     inside(const std::vector<double> &values, const double end)
     {
@@ -167,7 +167,7 @@ namespace crawler
     });
   }
 
-  /// Of the samples, and a spline may be steeper than the steepest of its neighbours.
+  /// Bounds from the samples; a spline may be steeper than the steepest of its neighbours.
   std::optional<ActiveStress::Bounds>
   ActiveStressTable::bounds(const Box &box) const
   {
@@ -217,7 +217,7 @@ namespace crawler
           return false;
       return true;
     };
-    for (std::size_t steps = 2; steps < n; ++steps) // one step would mean that m is steady
+    for (std::size_t steps = 2; steps < n; ++steps) // one step would mean a steady m
       if (n % steps == 0 && repeats_after(steps))
         return Repetition{whole * static_cast<double>(steps) / static_cast<double>(n), 0.};
     return Repetition{whole, 0.};
@@ -231,7 +231,7 @@ namespace crawler
     auto knots                 = inside(s, length_);
     if (knots.size() <= (parameters_.interpolation == "linear" ? most : most_knots_of_splines))
       return knots;
-    return inside({s.front(), s.back()}, length_); // where it is held
+    return inside({s.front(), s.back()}, length_); // ends of a held table
   }
 
   std::vector<double>

@@ -16,7 +16,7 @@ namespace crawler
   {
     const std::string two_level_wave_section = "Active stress/Two-level wave/";
 
-    /// The frequency of the wave that does the work W = gamma c^2 L T X [1/time].
+    /// Frequency of the wave that does the work W = gamma c^2 L T X [1/time].
     double
     frequency_by_work(const TwoLevelWaveParameters &p, const Scene &scene, const double X)
     {
@@ -39,8 +39,8 @@ namespace crawler
       return p.wave_number * c / L;
     }
 
-    /// For a wave of speed c, D = c T (<e> - <g e>/<g>) and W = gamma c^2 L T X, X = <g e^2> - <g e>^2/<g>, with the
-    /// means over a period; both are the same if a constant is added to the factor e. Here g is that of gamma = 1.
+    /// Numbers of a wave of speed c: D = c T (<e> - <g e>/<g>) and W = gamma c^2 L T X, X = <g e^2> - <g e>^2/<g>, with
+    /// the means over a period; a constant added to the factor e changes neither. Here g is that of gamma = 1.
     TwoLevelWave::Numbers
     numbers_of(const TwoLevelWaveParameters &p, const Scene &scene)
     {
@@ -62,7 +62,7 @@ namespace crawler
           two_level_wave_section + "Largest strain");
       const double share = p.share.value_or(1. / (1. + std::sqrt(friction(1. + high) / friction(1. + low))));
       double mean = 0., g_sum = 0., ge = 0., gee = 0.;
-      const auto add = [&](const double weight, const double level) { // from -1/2, emin, to 1/2, emax
+      const auto add = [&](const double weight, const double level) { // levels from -1/2, emin, to 1/2, emax
         const double e = (high - low) * level, g = weight * friction(1. + 0.5 * (low + high) + e);
         mean += weight * e;
         g_sum += g;
@@ -139,7 +139,7 @@ namespace crawler
     length_(scene.body.length), is_uniform_(scene.profiles.is_plain()), numbers_(numbers_of(parameters, scene))
   {
   }
-  catch (const InputError &error) // the wave believes that it stands alone
+  catch (const InputError &error) // names entries of the travelling wave
   {
     const std::string speed = parameters.given_by == "frequency"    ? "Frequency"
                               : parameters.given_by == "wave speed" ? "Wave speed"

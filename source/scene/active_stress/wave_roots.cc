@@ -16,9 +16,9 @@ namespace crawler
   {
     using std::numbers::pi;
 
-    /// Never list more waves than this, however many there are.
+    /// Largest number of waves that are ever listed.
     constexpr std::size_t most_roots = 100000;
-    /// Up to so many waves are listed whole.
+    /// Number of waves up to which the list is complete.
     constexpr double few_roots = 2000;
 
     /// S(x) = sum P_n sin^2(pi n x).
@@ -188,7 +188,7 @@ namespace crawler
       return result;
     }
 
-    // Between the critical points of f(x) = h x^2 - S(x) there is at most one root.
+    // At most one root lies between neighbouring critical points of f(x) = h x^2 - S(x).
     const auto f          = [&](const double x) { return h * x * x - sine_sum(shape, x); };
     const auto derivative = [&](const double x) { return 2. * h * x - sine_sum_derivative(shape, x); };
     const double total    = 4. * shape.delta_2();

@@ -15,7 +15,7 @@ namespace crawler
     const std::string travelling_section = "Active stress/Travelling wave/";
     using std::numbers::pi;
 
-    /// f [1/time]
+    /// Frequency f [1/time].
     double
     frequency_of(const TravellingWaveParameters &parameters, const double length)
     {
@@ -77,7 +77,8 @@ namespace crawler
     facts_.breaks_in_time  = times_of_own_jumps(end_time);
   }
 
-  /// Of the sine the parts of s and t are apart: p = sin x cos theta + cos x sin theta, theta = 2 pi phase_rate t.
+  /// Evaluates a sine with separate factors of s and t: p = sin x cos theta + cos x sin theta, theta = 2 pi phase_rate
+  /// t.
   std::unique_ptr<ActiveStressAtPoints>
   TravellingWave::sine_at(const std::vector<double> &points, const bool rate) const
   {
@@ -147,7 +148,7 @@ namespace crawler
       return {};
     if (phase_rate_ >= 0.)
       return times_of_jumps(profile_, phase_rate_, start_, end_time);
-    // A phase that runs backwards passes the mirrored jumps.
+    // Jumps are mirrored, since the phase runs backwards.
     std::vector<double> times;
     const double f = -phase_rate_;
     for (const double x : profile_.breaks(start_ - f * end_time, start_))

@@ -12,10 +12,10 @@ namespace crawler
 {
   class Declarations;
 
-  /// Entries that several generators share: where along the body, and from when on, they act.
+  /// Entries shared by several generators: where along the body, and from when on, they act.
   struct EnvelopeParameters
   {
-    std::optional<double> window_start, window_end; ///< [length]; nothing: the end of the body
+    std::optional<double> window_start, window_end; ///< [length]; unset: the end of the body
     double window_edge   = 0.;                      ///< [length]
     double ramp_duration = 0.;                      ///< [time]
 
@@ -26,8 +26,8 @@ namespace crawler
 
   /**
    * A factor window(s) ramp(t) of an active stress. The window is 1 from its start to its end and 0 outside; its edges
-   * are smooth steps (profile.h) of a given width that lie inside of it, or jumps if the width is 0; where its start or
-   * end is not given it has no edge. The ramp is a smooth step from 0 at t = 0 to 1 at the ramp's duration.
+   * are smooth steps (profile.h) of a given width inside it, or jumps if the width is 0; a start or end that is not
+   * given has no edge. The ramp is a smooth step from 0 at t = 0 to 1 at the ramp's duration.
    */
   class Envelope
   {
@@ -42,22 +42,22 @@ namespace crawler
     double
     ramp(double t) const;
 
-    /// Its derivative [1/time].
+    /// Derivative of the ramp [1/time].
     double
     ramp_rate(double t) const;
 
-    /// The bounds in [from, to] of the ramp times what has @p bounds.
+    /// Bounds in [from, to] of the product of the ramp and a factor with @p bounds.
     ActiveStress::Bounds
     ramped(ActiveStress::Bounds bounds, double from, double to) const;
 
-    /// When the ramp is over [time]; 0 without one.
+    /// Time when the ramp ends [time]; 0 without one.
     double
     ramp_end() const
     {
       return ramp_;
     }
 
-    /// Where the window jumps, in (0, L) [length].
+    /// Places in (0, L) where the window jumps [length].
     std::vector<double>
     breaks_in_space() const;
 
@@ -66,7 +66,7 @@ namespace crawler
     const double edge_, ramp_, length_;
   };
 
-  /// An interval of s or of t, as its entries say it; no numbers: everywhere.
+  /// An interval of s or of t as given by its entries; no numbers: everywhere.
   struct WindowEntries
   {
     std::vector<double> interval; ///< from, to
@@ -74,21 +74,22 @@ namespace crawler
   };
 
   /**
-   * The factor W(x) that is 1 in the window [from, to] and 0 outside: with smooth steps S (profile.h) of the edge width
-   * inside of both ends, W(x) = S((x - from)/width) S((to - x)/width), or jumps if the width is 0. A window that begins
-   * before 0 by the edge width, or ends as much after the end of the range, has no edge there.
+   * The factor W(x), 1 in the window [from, to] and 0 outside, with smooth steps S (profile.h) of the edge width inside
+   * both ends, W(x) = S((x - from)/width) S((to - x)/width), or jumps if the width is 0. A window that begins before 0
+   * by the edge width, or ends as much after the end of the range, has no edge there.
    */
   class Window
   {
   public:
-    /// For 0 <= x <= @p end. @p variable is "s" or "t"; @p section the path of the entries, with a slash at the end.
-    /// Throws InputError unless there are no or two numbers, increasing, that meet the range and leave room for edges.
+    /// Makes a window in 0 <= x <= @p end. @p variable is "s" or "t"; @p section the path of the entries, with a slash
+    /// at the end. Throws InputError unless there are no or two numbers, increasing, that meet the range and leave room
+    /// for edges.
     Window(const WindowEntries &entries, char variable, const std::string &section, double end);
 
     double
     value(double x) const;
 
-    /// Its derivative, without the jumps.
+    /// Derivative, without the jumps.
     double
     rate(double x) const;
 
@@ -96,23 +97,23 @@ namespace crawler
     std::pair<double, double>
     largest(double from, double to) const;
 
-    /// Where it jumps, in (0, end).
+    /// Places in (0, end) where it jumps.
     std::vector<double>
     breaks() const;
 
-    /// Where it begins and ends, in (0, end), with edges or without; between them nothing can be missed.
+    /// Places in (0, end) where it begins and ends, with or without edges; between them nothing can be missed.
     std::vector<double>
     ends() const;
 
-    /// From where on it does not change up to the end of the range.
+    /// Place from which on it is constant up to the end of the range.
     double
     constant_from() const;
 
-    /// Is it 1 on the whole range?
+    /// True if it is 1 on the whole range.
     bool
     is_whole() const;
 
-    /// In words, for the log; empty if it is whole.
+    /// Description for the log; empty if it is whole.
     std::string
     in_words() const;
 

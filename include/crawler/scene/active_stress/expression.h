@@ -22,8 +22,8 @@ namespace crawler
   };
 
   /**
-   * An active stress m(s,t) that the user writes as a formula (muParser), with variables s and t, the
-   * constants pi, L (the body length) and T (the end time) and the user's own.
+   * An active stress m(s,t) given as a formula (muParser) with the variables s and t, the constants pi, L (the body
+   * length) and T (the end time) and the user's own.
    */
   class Expression : public KnownStress
   {
@@ -31,8 +31,8 @@ namespace crawler
     static constexpr const char *description = "a formula of s and t";
 
     /**
-     * Throws InputError with the position if the formula or the list of constants has an error, or if the
-     * formula is not a finite number somewhere in 0 <= s <= length, 0 <= t <= end_time (looked at on a grid).
+     * Throws InputError with the position if the formula or the list of constants has an error, or if the formula is
+     * not a finite number somewhere in 0 <= s <= length, 0 <= t <= end_time (checked on a grid).
      */
     Expression(const ExpressionParameters &parameters, double length, double end_time);
 

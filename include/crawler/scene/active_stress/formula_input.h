@@ -11,10 +11,10 @@ namespace crawler
 {
   class ActiveStress;
 
-  /// A formula as the user writes it.
+  /// A formula as written by the user.
   struct FormulaInput
   {
-    std::string quantity; ///< what it gives, for messages
+    std::string quantity; ///< the quantity, for messages
     std::string formula, constants;
     std::string formula_entry, constants_entry; ///< full names of the entries
     std::vector<std::string> variables = {"s", "t"};
@@ -26,7 +26,7 @@ namespace crawler
   read_formula(const FormulaInput &input, double length, double end_time);
 
   /// Throws InputError if an active stress by a formula is not a finite number somewhere on a grid over the body and
-  /// the duration; @p where says in the message for which body, if it is not any.
+  /// the duration; @p where names the body in the message, unless it holds for any.
   void
   require_finite_values(
     const ActiveStress &stress, const FormulaInput &input, const std::string &where, double length, double end_time);

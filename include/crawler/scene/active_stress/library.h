@@ -20,16 +20,15 @@ namespace crawler
     add_parameters(Declarations &declarations);
   };
 
-  /// What has gone wrong, and a name for who did it.
+  /// Failures, and the name of the plug-in that caused them.
   struct LibraryFailures : StressFailures
   {
     std::string plugin;
   };
 
   /**
-   * An active stress from a shared object that the user has compiled (stress_plugin.h). Exceptions and values that are
-   * not finite numbers do not leave it: they are kept as failures, and the values are not a number there, which ends a
-   * run in order on all ranks.
+   * An active stress from a shared object compiled by the user (stress_plugin.h). Exceptions and values that are not
+   * finite are caught and kept as failures; the values are NaN there, which ends a run in order on all ranks.
    */
   class Library : public KnownStress
   {
@@ -38,7 +37,7 @@ namespace crawler
 
     /**
      * Throws InputError if there is no such file, if it is not a shared object for this machine or not a plug-in of
-     * this version, if it does not know one of the parameters, or if it throws, with its message.
+     * this version, if it does not know one of the parameters, or, with its message, if it throws.
      */
     Library(const LibraryParameters &parameters, const Body &body, double end_time);
 
@@ -70,7 +69,7 @@ namespace crawler
     std::string file_;
     std::shared_ptr<LibraryFailures> failures_; ///< evaluators write here
     std::unique_ptr<const ActiveStress> stress_;
-    // What it says of itself, asked once.
+    // Answers of the plug-in to calls that are made once.
     std::unique_ptr<const StretchFeedback> feedback_;
     std::unique_ptr<const StrainHistory> strain_;
     std::string report_;

@@ -26,28 +26,28 @@ namespace crawler
   };
 
   /**
-   * A sum of modes, linear in its coefficients c: what can be optimised without choosing a shape before. Along the body
-   * they are phi = 1, sin x, cos x, ..., sin Nx, cos Nx, x = 2 pi s/L. In time
+   * A sum of modes, linear in its coefficients c, for optimisation without choosing a shape first. Along the body they
+   * are phi = 1, sin x, cos x, ..., sin Nx, cos Nx, x = 2 pi s/L. In time
    *
    *   travelling: m = sum_k c_k phi_k(s + ct);
    *   harmonics:  m = sum_jk c_jk psi_j(t) phi_k(s), psi = 1, sin y, cos y, ..., y = 2 pi t/P;
-   *   splines:    the same with psi = the cubic B-splines on equal cells of [0, T].
+   *   splines:    likewise with psi = the cubic B-splines on equal cells of [0, T].
    *
-   * From rest: what m is at t = 0 is subtracted; of the splines the first, which alone is not 0 there, is left out.
+   * From rest: m at t = 0 is subtracted; of the splines the first, the only one that is not 0 there, is left out.
    */
   class Modes : public KnownStress
   {
   public:
     static constexpr const char *description = "a sum of Fourier modes, or of Fourier modes and splines in time";
 
-    /// Throws InputError if there are more coefficients than modes; those that are not there are 0.
+    /// Throws InputError if there are more coefficients than modes; missing ones are 0.
     Modes(const ModesParameters &parameters, double length, double end_time);
 
   private:
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
 
-    /// Of the modes along the body, at one time.
+    /// Computes the amplitudes of the modes along the body at one time.
     void
     amplitudes(double t, bool rate, std::vector<double> &amplitudes) const;
     void
@@ -55,7 +55,7 @@ namespace crawler
 
     const ModesParameters parameters_;
     const double length_, end_time_;
-    std::size_t n_space_, n_time_ = 1; ///< modes
-    std::vector<double> c_, at_rest_;  ///< [time][space]; amplitudes that are subtracted
+    std::size_t n_space_, n_time_ = 1; ///< numbers of modes
+    std::vector<double> c_, at_rest_;  ///< [time][space]; amplitudes to be subtracted
   };
 } // namespace crawler

@@ -38,9 +38,9 @@ namespace crawler
    *   m = chi sum_n [ gamma ( a_n (cos q c t - cos q(s+ct)) + b_n (sin q(s+ct) - sin q c t) )/q
    *                   - (k/c) ( a_n (sin q(s+ct) - sin q s) + b_n (cos q(s+ct) - cos q s) ) ],   q = 2 pi n/L,
    *
-   * with the wave speed given, or chosen among the waves that spend a given energy H (wave_roots.h). This is the wave
-   * whose shape is given by Fourier coefficients; for others see ShapedWave. Its period is L/(|c| n), n the greatest
-   * common divisor of its harmonics' numbers.
+   * with the wave speed given, or chosen among the waves that spend a given energy H (wave_roots.h). Its shape is given
+   * by Fourier coefficients; for other shapes see ShapedWave. Its period is L/(|c| n), n the greatest common divisor of
+   * its harmonics' numbers.
    */
   class OptimalWave : public KnownStress
   {
@@ -48,15 +48,15 @@ namespace crawler
     static constexpr const char *description =
       "the wave of largest displacement for a given energy, to leading order in chi";
 
-    /// Throws InputError if no wave spends the energy, if the root asked for does not exist, or if the lists of
+    /// Throws InputError if no wave spends the energy, if the requested root does not exist, or if the lists of
     /// coefficients do not fit together.
     OptimalWave(const OptimalWaveParameters &parameters, const Body &body, double end_time);
 
-    /// The wave, and all roots if it was chosen by its energy.
+    /// Reports the wave, and all roots if it was chosen by its energy.
     void
     report(std::ostream &out) const override;
 
-    /// The wave that was chosen.
+    /// The chosen wave.
     const WaveRoot &
     wave() const
     {

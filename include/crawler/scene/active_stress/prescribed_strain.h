@@ -25,32 +25,31 @@ namespace crawler
 
     std::string file = "strain.csv";
 
-    /// @p generators: the names of those whose values can be read as strain.
+    /// Declares the entries; @p generators are the names of those whose values can be read as strain.
     void
     add_parameters(Declarations &declarations, const std::vector<std::string> &generators);
 
-    /// Is the strain what another generator gives?
+    /// True if another generator gives the strain.
     bool
     is_generated() const;
   };
 
   /**
-   * A strain e(s,t) = zeta_s - 1 that the body is made to follow. As an active stress it is what the balance of forces
-   * asks for (doc/theory.md, "Prescribed strain"): with the friction g of each point and <.> the mean over the body,
+   * A strain e(s,t) = zeta_s - 1 imposed on the body. Its active stress follows from the balance of forces
+   * (doc/theory.md, "Prescribed strain"): with the friction g of each point and <.> the mean over the body,
    *
    *   v = B_t - <g B_t>/<g>,   B_t = int_0^s e_t ds,   m = int_0^s g v ds - k e.
    *
-   * The integrals over s are Gauss quadrature on panels, which are doubled until m does not change any more.
+   * Integrals over s use Gauss quadrature on panels, which are doubled until m no longer changes.
    */
   class PrescribedStrain : public KnownStress
   {
   public:
     static constexpr const char *description = "the stress that brings about a given strain";
 
-    /// @p scene has all but the active stress. @p generator, if the strain is generated: its values are read as strain
-    /// [1]. Throws InputError if formula, file
-    /// or numbers do not make sense, if 1 + e is not positive somewhere, if the strain jumps, or if the generator does
-    /// not know its rate or depends on the stretch.
+    /// Takes a @p scene complete but for the active stress, and a @p generator if the strain is generated: its values
+    /// are read as strain [1]. Throws InputError if formula, file or numbers do not make sense, if 1 + e is not
+    /// positive somewhere, if the strain jumps, or if the generator does not know its rate or depends on the stretch.
     PrescribedStrain(const PrescribedStrainParameters &parameters,
                      const Scene &scene,
                      std::unique_ptr<const ActiveStress> generator = nullptr);
@@ -61,7 +60,7 @@ namespace crawler
       return history_.get();
     }
 
-    /// What the generator knows, if the strain is generated.
+    /// Failures of the generator, if the strain is generated.
     const StressFailures *
     failures() const override;
 
@@ -95,7 +94,7 @@ namespace crawler
   public:
     /**
      * Reads the file @p name, CSV with the header s,t,strain or HDF5 with the dataset strain (base/grid_table.h).
-     * Throws InputError for @p entry if that cannot be read, if there are less than four values of s or t, or if the
+     * Throws InputError for @p entry if that cannot be read, if there are fewer than four values of s or t, or if the
      * grid does not reach from 0 to @p length and from 0 to @p end_time.
      */
     StrainTable(const std::string &name, double length, double end_time, const std::string &entry);

@@ -10,35 +10,35 @@ namespace crawler
   double
   smooth_step(double x);
 
-  /// Its derivative S'(x) = S (1-S) (1/x^2 + 1/(1-x)^2).
+  /// Derivative of the smooth step, S'(x) = S (1-S) (1/x^2 + 1/(1-x)^2).
   double
   smooth_step_rate(double x);
 
-  /// The largest of that in [from, to].
+  /// Largest derivative of the smooth step in [from, to].
   double
   largest_smooth_step_rate(double from, double to);
 
-  /// The x in (0, 1) at which S(x) = @p value, which is between 0 and 1.
+  /// Inverse of the smooth step: the x in (0, 1) with S(x) = @p value, which is between 0 and 1.
   double
   smooth_step_inverse(double value);
 
   /**
-   * What is switched on and off once a period. The argument x counts periods: on for the share `duty` of each, from
-   * x = 0 to x = duty, with fronts (smooth steps) of width `front` about both instants, so that the mean over a period
-   * is `duty` whatever the front. With front = 0 the switch jumps.
+   * Switching on and off once per period. The argument x counts periods: on for the fraction `duty` of each, from x = 0
+   * to x = duty, with fronts (smooth steps) of width `front` about both instants, so that the mean over a period is
+   * `duty` for any front. With front = 0 the switch jumps.
    */
   class Switching
   {
   public:
     /// @p duty [1] is between 0 and 1; @p front [1] is from 0 to the smaller of duty and 1 - duty (to round-off).
-    /// Throws std::logic_error otherwise: entries are to be looked at before.
+    /// Throws std::logic_error otherwise: entries must be checked before.
     Switching(double duty, double front);
 
-    /// How far it is on, from 0 to 1.
+    /// Degree to which it is on, from 0 to 1.
     double
     value(double x) const;
 
-    /// The derivative of value() [1/period]; without fronts 0, except for the jumps.
+    /// Derivative of value() [1/period]; 0 without fronts, except for the jumps.
     double
     rate(double x) const;
 
@@ -48,7 +48,7 @@ namespace crawler
       return front_ == 0.;
     }
 
-    /// The places in (from, to), increasing, where it jumps; none with a front.
+    /// Places in (from, to), increasing, where it jumps; none with fronts.
     std::vector<double>
     breaks(double from, double to) const;
 

@@ -16,7 +16,7 @@ namespace crawler
     std::string shape = "gaussian";
     double amplitude  = 0.3;              ///< [force]
     double width      = 0.1;              ///< [length]
-    std::optional<double> start_position; ///< [length]; nothing: just outside of the body
+    std::optional<double> start_position; ///< [length]; unset: just outside of the body
     std::string direction    = "from tail to head";
     double speed             = 1.; ///< [length/time]
     double repetition_period = 0.; ///< [time]; 0: a single pulse
@@ -27,13 +27,13 @@ namespace crawler
   };
 
   /**
-   * A bump of active stress that runs along the body, once or again and again:
+   * A bump of active stress that runs along the body, once or repeatedly:
    *
    *   m = window(s) ramp(t) A sum_j b( (s - x_j(t))/width ),   x_j(t) = x_0 + sigma v (t - j P),
    *
-   * with b(z) = exp(-z^2) (gaussian) or exp(1 - 1/(1-z^2)) for |z| < 1 (compact). The sum is over all whole numbers j:
-   * pulses follow each other at the distance v P, and those that are ahead of the first are on the body at t = 0 if it
-   * is longer than that. Its period is P; with a ramp, or a single pulse, it has none.
+   * with b(z) = exp(-z^2) (gaussian) or exp(1 - 1/(1-z^2)) for |z| < 1 (compact). The sum is over all integers j:
+   * pulses follow each other at the distance v P, and those ahead of the first are on the body at t = 0 if it is longer
+   * than that. The period is P; with a ramp, or a single pulse, there is none.
    */
   class Pulse : public KnownStress
   {
@@ -41,13 +41,13 @@ namespace crawler
     static constexpr const char *description = "a bump that runs along the body, once or repeatedly";
 
     /// Throws InputError if the window does not fit, if the pulses are closer than their width, or if the pulse does
-    /// not come to the body before the end time.
+    /// not reach the body before the end time.
     Pulse(const PulseParameters &parameters, double length, double end_time);
 
     std::optional<Bounds>
     bounds(const Box &box) const override;
 
-    /// Where the pulse is in the beginning.
+    /// Reports the initial position of the pulse.
     void
     report(std::ostream &out) const override;
 
@@ -60,7 +60,7 @@ namespace crawler
 
     const bool compact_;
     const double amplitude_, width_;
-    const double reach_;             ///< beyond this distance from its centre a pulse is 0 [length]
+    const double reach_;             ///< distance from its centre beyond which a pulse is 0 [length]
     const double velocity_, period_; ///< sigma v, P
     const double start_;             ///< x_0
     const double length_;            ///< of the body

@@ -15,17 +15,17 @@ namespace crawler
   struct SegmentsParameters
   {
     unsigned int number              = 8;     ///< N
-    std::vector<double> amplitude    = {0.3}; ///< [force], one for all segments or one for each
+    std::vector<double> amplitude    = {0.3}; ///< [force], one for all segments or one per segment
     double frequency                 = 1.;    ///< f [1/time]
-    double phase_lag                 = 0.125; ///< [1], a share of the period
+    double phase_lag                 = 0.125; ///< [1], a fraction of the period
     std::string direction            = "from head to tail";
     double duty_cycle                = 0.5; ///< D [1]
     std::string switching            = "square";
-    double front_width               = 0.1; ///< [1], a share of the period
-    double phase                     = 0.;  ///< [1], a share of the period
-    double gap                       = 0.;  ///< [1], a share of the length of a segment
-    std::optional<double> saturation = {};  ///< [force]; nothing: no limit
-    std::optional<double> rate_limit = {};  ///< r [force/time]; nothing: no limit
+    double front_width               = 0.1; ///< [1], a fraction of the period
+    double phase                     = 0.;  ///< [1], a fraction of the period
+    double gap                       = 0.;  ///< [1], a fraction of the length of a segment
+    std::optional<double> saturation = {};  ///< [force]; unset: no limit
+    std::optional<double> rate_limit = {};  ///< r [force/time]; unset: no limit
     double ramp_duration             = 0.;  ///< [time]
 
     void
@@ -33,13 +33,13 @@ namespace crawler
   };
 
   /**
-   * A robot of N actuated segments, each of which switches its active stress, the same everywhere in it, on and off:
+   * A robot of N actuated segments, each of which switches a uniform active stress on and off:
    *
    *   m(s,t) = ramp(t) y_i( f t + phase - n_i lag )  in segment i,  0 in the gaps between segments,
    *
    * where n_i counts the segments before it in the running direction, and y_i has the period 1, mean A_i D, and is
-   *  - square: A_i for the share D of the period, then 0, where A_i is cut to the saturation. With a rate limit it is
-   *    the periodic answer of an actuator that goes towards the square signal with the rate r: a trapezoid;
+   *  - square: A_i for the fraction D of the period, then 0, where A_i is cut to the saturation. With a rate limit it
+   *    is the periodic response of an actuator that follows the square signal at the rate r: a trapezoid;
    *  - smooth: A_i times a Switching with smooth fronts (profile.h), cut to the saturation.
    */
   class Segments : public KnownStress
@@ -48,29 +48,29 @@ namespace crawler
     static constexpr const char *description = "actuated segments of a robot that switch one after the other";
 
     /// Throws InputError if there are neither one nor N amplitudes, if smooth fronts do not fit into the period or are
-    /// faster than the rate limit, or if there is more switching until the end time than a run can have.
+    /// faster than the rate limit, or if there are more switchings until the end time than a run can have.
     Segments(const SegmentsParameters &parameters, double length, double end_time);
 
     std::optional<Bounds>
     bounds(const Box &box) const override;
 
-    /// The middles of the segments from s = 0 to s = L [length].
+    /// Centres of the segments from s = 0 to s = L [length].
     std::vector<double>
     middles() const;
 
-    /// A segment (0 is that at s = 0) is switched on or off.
+    /// Switching of a segment (0 is that at s = 0), on or off.
     struct SwitchingTime
     {
       double time;
       unsigned int segment;
       bool on;
     };
-    /// What a controller is to do until the end time, in the order of times: at t = 0 those begin that are on. With
-    /// smooth fronts these are the middles of the fronts.
+    /// Switching times for a controller until the end time, in order: at t = 0 segments begin that are on. With smooth
+    /// fronts these are the middles of the fronts.
     std::vector<SwitchingTime>
     switching_times(double end_time) const;
 
-    /// Lengths, and how far a rate limit lets the segments come.
+    /// Reports lengths, and the amplitudes that a rate limit lets the segments reach.
     void
     report(std::ostream &out) const override;
 
@@ -93,13 +93,13 @@ namespace crawler
     std::vector<double>
     times_of_switching(double end_time) const;
 
-    /// y_i(x), or its derivative [force/period].
+    /// Value of y_i(x), or its derivative [force/period].
     double
     value(const Segment &segment, double x) const;
     double
     rate(const Segment &segment, double x) const;
 
-    /// The places of a period at which y_i or its derivative jumps.
+    /// Places of a period at which y_i or its derivative jumps.
     std::vector<double>
     breaks(const Segment &segment) const;
 

@@ -10,9 +10,8 @@
 namespace crawler
 {
   /**
-   * A continuous function V(x) on an interval, as a polynomial on each of many panels, with its integral and its
-   * derivative, which are those of the polynomials. Polynomials are series of Chebyshev polynomials T_k(u), -1 <= u
-   * <= 1.
+   * A continuous function V(x) on an interval, as a polynomial on each of many panels, with the integral and the
+   * derivative of the polynomials. These are series of Chebyshev polynomials T_k(u), -1 <= u <= 1.
    */
   class ShapeFunction
   {
@@ -21,14 +20,14 @@ namespace crawler
     using Function = std::function<void(std::span<const double> x, std::span<double> values)>;
 
     /**
-     * Polynomials of degree 15 through a function on @p from <= x <= @p to: panels, @p size long in the beginning, are
+     * Interpolates a function on @p from <= x <= @p to by polynomials of degree 15: panels, @p size long at first, are
      * halved until the last coefficients are below 1e-13 of the largest |V|. Where V' jumps they are halved down to
      * 1e-10 of that length. Throws InputError for @p entry if V is not a finite number somewhere, if it jumps by more
      * than 1e-3 of its largest value, or if there are more than 1e6 panels.
      */
     ShapeFunction(const Function &function, double from, double to, double size, const std::string &entry);
 
-    /// The cubic spline (base/cubic_spline.h) through values @p f at increasing @p x, four at least.
+    /// Interpolates values @p f at increasing @p x, four at least, by a cubic spline (base/cubic_spline.h).
     ShapeFunction(const std::vector<double> &x, const std::vector<double> &f);
 
     double
@@ -42,8 +41,8 @@ namespace crawler
       return left_.back();
     }
 
-    /// V(x); the integral from from() to x; V'(x). @p panel is where the last place was (0 in the beginning), which
-    /// makes it fast for places in order. Beyond the ends the outermost polynomials go on.
+    /// Value V(x); below, the integral from from() to x, and V'(x). @p panel is that of the last place (0 at first),
+    /// which is fast for places in order. Beyond the ends the outermost polynomials continue.
     double
     value(double x, std::size_t &panel) const;
     double
@@ -51,14 +50,14 @@ namespace crawler
     double
     derivative(double x, std::size_t &panel) const;
 
-    /// V and its integral at many places at once, faster than one by one; all lists are of one length.
+    /// Writes V and its integral at many places, faster than one by one; all lists have one length.
     void
     values_and_integrals(std::span<const double> x,
                          std::size_t &panel,
                          std::span<double> values,
                          std::span<double> integrals) const;
 
-    /// Where V' jumps.
+    /// Places where V' jumps.
     const std::vector<double> &
     kinks() const
     {
@@ -76,7 +75,7 @@ namespace crawler
     local(double x, std::size_t panel) const;
 
     const unsigned int degree_;
-    std::vector<double> left_;     ///< ends of the panels, one more than there are panels
+    std::vector<double> left_;     ///< ends of the panels, one more than panels
     std::vector<double> value_;    ///< [panel][k] of V, k = 0 ... degree
     std::vector<double> integral_; ///< [panel][k] of the integral, k = 0 ... degree + 1
     std::vector<double> kinks_;

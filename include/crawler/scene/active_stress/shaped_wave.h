@@ -8,8 +8,8 @@
 namespace crawler
 {
   /**
-   * The optimal wave for a velocity wave V of any shape (Santhosh and Serra @cite SanthoshSerra2022; their
-   * f = alpha V, alpha = a/(L gamma c)), also one that does not repeat after the length of the body:
+   * The optimal wave for a velocity wave V of any shape (Santhosh and Serra @cite SanthoshSerra2022; their f = alpha V,
+   * alpha = a/(L gamma c)), also one without the period of the body length:
    *
    *   m = chi [ gamma ( int_0^s V(s'+ct) ds' - (s/L) int_0^L V(s'+ct) ds' ) - (k/c) ( V(s+ct) - V(s) ) ].
    *
@@ -19,17 +19,17 @@ namespace crawler
   class ShapedWave : public KnownStress
   {
   public:
-    /// For Shape = expression or table. Throws InputError if the wave is to be chosen by its energy, if the speed is 0
-    /// or so large that 1e4 body lengths of V are passed, if the formula or the file has an error, or if V is not given
-    /// or not continuous wherever the wave comes, min(0, cT) <= x <= L + max(0, cT).
+    /// Makes the wave for Shape = expression or table. Throws InputError if the wave is to be chosen by its energy, if
+    /// the speed is 0 or so large that 1e4 body lengths of V are passed, if the formula or the file has an error, or if
+    /// V is not given or not continuous wherever the wave comes, min(0, cT) <= x <= L + max(0, cT).
     ShapedWave(const OptimalWaveParameters &parameters, const Body &body, double end_time);
 
-    /// The wave, with what the leading order says of it.
+    /// Reports the wave, with the numbers of its leading order.
     void
     report(std::ostream &out) const override;
 
-    /// Of the leading order in chi, until the end time: D = -(a chi^2/(cL)) int int e' v' ds dt for e' = V(s+ct) - V(s)
-    /// and v' = V(s+ct) - its mean; Q = gamma chi^2 int int v'^2 ds dt; E = (k/2) (chi/c)^2 int e'^2 ds at the end.
+    /// Leading order in chi, until the end time: D = -(a chi^2/(cL)) int int e' v' ds dt for e' = V(s+ct) - V(s) and v'
+    /// = V(s+ct) - its mean; Q = gamma chi^2 int int v'^2 ds dt; E = (k/2) (chi/c)^2 int e'^2 ds at the end.
     struct LeadingOrder
     {
       double displacement; ///< D [length]

@@ -24,10 +24,10 @@ namespace crawler
   };
 
   /**
-   * An active stress that answers to the stretch (proprioception): a formula m(s, t, w, w_t, w_near, w_delayed) of the
+   * An active stress that responds to the stretch (proprioception): a formula m(s, t, w, w_t, w_near, w_delayed) of the
    * stretch w, its rate w_t, the stretch at the place s + distance (at the end of the body if that is beyond it), or
-   * its mean over a sensor around that place, and the stretch of the time t - delay (the initial stretch before
-   * t = 0). Derivatives are exact.
+   * its mean over a sensor around that place, and the stretch at the time t - delay (the initial stretch before t = 0).
+   * Derivatives are exact.
    */
   class StrainFeedback : public KnownStress
   {
@@ -45,11 +45,12 @@ namespace crawler
     }
 
   private:
-    /// Of a body with the stretch 1 at rest.
+    /// Makes an evaluator for a body with the stretch 1 at rest.
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
 
-    /// Where the place of w_near, or the sensor, reaches the end of the body, and where that is seen from in turn.
+    /// Kinks of w_near: places from which it, or the sensor, reaches an end of the body, and places from which these
+    /// are seen in turn.
     std::vector<double>
     kinks_in_space(double length) const;
 

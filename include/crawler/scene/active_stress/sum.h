@@ -14,7 +14,7 @@ namespace crawler
 {
   class Declarations;
 
-  /// The entries of a term of a sum but for its generator's.
+  /// Entries of a term of a sum besides those of its generator.
   struct SumTermParameters
   {
     std::string combine = "add"; ///< | multiply
@@ -25,7 +25,7 @@ namespace crawler
     add_parameters(Declarations &declarations);
   };
 
-  /// A term: a generator g, and what it is multiplied with.
+  /// A term: a generator g and its factors.
   struct SumTerm
   {
     std::string name; ///< of the generator
@@ -36,13 +36,13 @@ namespace crawler
   };
 
   /**
-   * Generators combined. Each term is f_i(s,t) = factor_i W_i(s) V_i(t) g_i(s,t), with windows W and V (window.h), and
+   * Generators combined. Each term is f_i(s,t) = factor_i W_i(s) V_i(t) g_i(s,t), windows W and V (envelope.h), and
    *
    *   m = ( sum of the terms that add ) * ( product of the terms that multiply ).
    *
-   * A term that multiplies is a number without unit, and 0 outside of its windows as all others. A generator is not
-   * evaluated where a window is closed. Rates and derivatives with respect to the stretch follow from the sum and the
-   * product rule.
+   * A term that multiplies is a number without unit, and like all others 0 outside of its windows. A generator is not
+   * evaluated where a window is closed. Rates and derivatives with respect to the stretch follow from the sum and
+   * product rules.
    */
   class Sum : public KnownStress, public MovingJumps
   {
@@ -52,13 +52,11 @@ namespace crawler
     /// Throws InputError if no term adds, or if terms use the stretch at different distances or with different delays.
     Sum(std::vector<SumTerm> terms, double length, double end_time);
 
-    /// Null if a term has none.
+    /// Makes an evaluator of the rate; null if a term has none.
     std::unique_ptr<ActiveStressAtPoints>
     rate_at(const std::vector<double> &points) const override;
 
-    /// Windows in t may open and close on the way: whoever uses it looks whether m repeats at the end.
-
-    /// Of terms that cannot tell by samples in the box: what they do is as fast as what others see of them.
+    /// Bounds; terms that have none are sampled in the box, with a margin of 2. Nothing if no term has any.
     std::optional<Bounds>
     bounds(const Box &box) const override;
 
@@ -79,8 +77,8 @@ namespace crawler
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
 
-    /// A period that all terms have in common (period.h), or a whole part of it after which the sum repeats; where not
-    /// all terms know theirs, the sum's is looked for. Nothing if a window in time opens or closes.
+    /// Finds a common period of all terms (period.h), or a whole part of it after which the sum repeats, from the time
+    /// on at which no window in time changes any more; if a term's is unknown, searches that of the sum.
     std::optional<Repetition>
     search_repetition() const override;
 

@@ -24,8 +24,8 @@ namespace crawler
   };
 
   /**
-   * An active stress through samples m(s_i, t_j), as measured (doc/generators/table.md): linear between them, or by
-   * cubic splines in s and t (tensor product).
+   * An active stress by samples m(s_i, t_j), as measured (doc/generators/table.md), with linear interpolation or cubic
+   * splines in s and t (tensor product).
    */
   class ActiveStressTable : public KnownStress
   {
@@ -34,9 +34,9 @@ namespace crawler
 
     /**
      * Reads the file (base/grid_table.h). Throws InputError if it cannot be read, if there are not enough values of s
-     * or t (cubic: 4, linear: 2), if the samples do not reach from 0 to @p length and from 0 to @p end_time and nothing
-     * else is declared, if they do not even overlap with that, or if they are declared periodic and the first and the
-     * last time have different values.
+     * or t (cubic: 4, linear: 2), if the samples do not reach from 0 to @p length and from 0 to @p end_time and no
+     * continuation is declared, if they do not even overlap with that, or if they are declared periodic but differ
+     * between the first and the last time.
      */
     ActiveStressTable(const TableParameters &parameters, double length, double end_time);
 
@@ -50,14 +50,16 @@ namespace crawler
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
 
-    /// If it is periodic, that of the table, or a whole part of it after which equally spaced samples repeat.
+    /// Finds the period of a periodic table, or a whole part of it after which equally spaced samples repeat.
     std::optional<Repetition>
     search_repetition() const override;
 
-    /// Linear: the samples, unless there are more than 256 in (0, L). Where a table that is held begins and ends.
+    /// Places of kinks: the samples in (0, L), at most 256 if linear and most_knots_of_splines if cubic; if there are
+    /// more, the places where a held table begins and ends.
     std::vector<double>
     kinks_in_space() const;
-    /// The same in time, but at most 4096 samples.
+    /// Times of kinks: for linear interpolation the samples, at most 4096; otherwise the times at which a table that is
+    /// not periodic begins and ends.
     std::vector<double>
     kinks_in_time(double end_time) const;
 

@@ -14,8 +14,8 @@ namespace crawler
   struct TwoLevelWaveParameters
   {
     double smallest_strain = -0.3, largest_strain = 0.3; ///< [1]
-    std::optional<double> share;                         ///< of a period at the largest strain [1]; nothing: the best
-    double front_width    = 0.05;                        ///< [1], a share of the period
+    std::optional<double> share;                         ///< of a period at the largest strain [1]; unset: the best
+    double front_width    = 0.05;                        ///< [1], a fraction of the period
     double wave_number    = 1.;                          ///< waves on the body [1]
     std::string direction = "from head to tail";
     std::string given_by  = "frequency";
@@ -30,10 +30,10 @@ namespace crawler
   };
 
   /**
-   * The gait that goes farthest of all with its work and its extreme strains (doc/theory.md, "Gait efficiency"): a wave
-   * of strain that runs at constant speed and has two levels, e = emax on the share p of each period and emin on the
-   * rest, with smooth fronts. It is a TravellingWave that is read as strain. The best share is
-   * p = 1/(1 + sqrt(g(1+emax)/g(1+emin))); the shorter its fronts, the closer the wave comes to the bound.
+   * The gait with the largest displacement for its work and its extreme strains (doc/theory.md, "Gait efficiency"): a
+   * wave of strain of constant speed with two levels, e = emax on the fraction p of each period and emin on the rest,
+   * with smooth fronts. It is a TravellingWave read as strain. The best fraction is p = 1/(1 +
+   * sqrt(g(1+emax)/g(1+emin))); the shorter its fronts, the closer the wave comes to the bound.
    */
   class TwoLevelWave : public PrescribedStrain
   {
@@ -45,17 +45,17 @@ namespace crawler
     /// if the work is given, but the wave number is not whole, there is a ramp, or the body varies.
     TwoLevelWave(const TwoLevelWaveParameters &parameters, const Scene &scene);
 
-    /// What was chosen and what it could reach.
+    /// Reports the choices and the attainable displacement.
     void
     report(std::ostream &out) const override;
 
-    /// What follows from the entries. The merit of a gait is D/sqrt(W T/(gamma L)) of displacement D and work W.
+    /// Results of the entries. The merit of a gait is D/sqrt(W T/(gamma L)) of displacement D and work W.
     struct Numbers
     {
       double share;     ///< p [1]
       double frequency; ///< [1/time]
       double merit;     ///< of whole waves with these fronts at full strain on a uniform body [1]
-      double bound;     ///< F, above which no gait with these strains has its merit [1]
+      double bound;     ///< F, bound of the merit of all gaits with these strains [1]
     };
     const Numbers &
     numbers() const

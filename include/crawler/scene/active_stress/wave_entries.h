@@ -11,19 +11,19 @@ namespace crawler
 {
   class Declarations;
 
-  /// Entries that the waves share: how the active stress changes within a period.
+  /// Entries shared by the waves: the change of the active stress within a period.
   struct WaveProfileParameters
   {
     std::string profile = "sine";
     double duty_cycle   = 0.5; ///< [1]
-    double front_width  = 0.1; ///< [1], a share of the period
+    double front_width  = 0.1; ///< [1], a fraction of the period
 
     void
     add_parameters(Declarations &declarations);
   };
 
-  /// The profile p(x) of a wave, x counting periods: sin 2 pi x, or +1 for the share "duty cycle" of each period and -1
-  /// for the rest, with or without smooth fronts (Switching).
+  /// The profile p(x) of a wave, x counting periods: sin 2 pi x, or +1 for the fraction "duty cycle" of each period and
+  /// -1 for the rest, with or without smooth fronts (Switching).
   class WaveProfile
   {
   public:
@@ -42,15 +42,15 @@ namespace crawler
       return switching_ && switching_->jumps();
     }
 
-    /// From -1 to 1.
+    /// Value of p, from -1 to 1.
     double
     value(double x) const;
 
-    /// p'(x) [1/period], without the jumps.
+    /// Derivative p'(x) [1/period], without the jumps.
     double
     rate(double x) const;
 
-    /// The places in (from, to) where p jumps.
+    /// Places in (from, to) where p jumps.
     std::vector<double>
     breaks(double from, double to) const
     {
@@ -58,7 +58,7 @@ namespace crawler
     }
 
   private:
-    std::optional<Switching> switching_; ///< nothing: the sine
+    std::optional<Switching> switching_; ///< unset: the sine
   };
 
   /// Declares the entry Direction.
@@ -69,12 +69,12 @@ namespace crawler
   double
   sign_of(const std::string &direction);
 
-  /// Throws InputError for @p entry if so many periods until the end time are more than a run can have, or if each of
-  /// them has @p jumps and they are more than the list of steps should hold.
+  /// Throws InputError for @p entry if there are more periods until the end time than a run can have, or if each has @p
+  /// jumps and they are more than the list of steps should hold.
   void
   require_countable_periods(double frequency, double end_time, bool jumps, const std::string &entry);
 
-  /// The times t in (0, end_time) at which the phase f t + @p start reaches one of the jumps of @p profile.
+  /// Times t in (0, end_time) at which the phase f t + @p start reaches one of the jumps of @p profile.
   std::vector<double>
   times_of_jumps(const WaveProfile &profile, double frequency, double start, double end_time);
 } // namespace crawler

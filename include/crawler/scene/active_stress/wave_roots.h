@@ -23,16 +23,16 @@ namespace crawler
     delta_2() const;
   };
 
-  /// One wave that spends the energy H, with what the leading-order theory says of it.
+  /// A wave that spends the energy H, with its properties in the leading-order theory.
   struct WaveRoot
   {
-    double speed;        ///< c [length/time]; its sign is the one that moves the body to +s
+    double speed;        ///< c [length/time], with the sign that moves the body to +s
     double multiplier;   ///< alpha = a/(L gamma c)
     double displacement; ///< of the body at the end time, leading order in chi [length]
     double min_stretch;  ///< over the body and the duration, leading order in chi [1]
     double max_stretch;
 
-    /// Does the body stay uninverted in the leading-order theory?
+    /// True if the body stays uninverted in the leading-order theory.
     bool
     admissible() const
     {
@@ -46,22 +46,23 @@ namespace crawler
     bool double_roots;           ///< H is the smallest admissible one: infinitely many
     bool complete;               ///< false if there are further, faster waves
     double smallest_energy = 0;  ///< 2 L gamma T Delta_2 [force length / chi^2]
-    double largest_energy  = 0;  ///< there are waves below this energy only
+    double largest_energy  = 0;  ///< waves exist below this energy only
   };
 
-  /// H of the wave with speed @p c: theory.md section 3, H = 2 L gamma T Delta_2 + (L k/c^2) sum P_n sin^2(pi n c T/L).
+  /// Energy H of the wave with speed @p c: theory.md section 3, H = 2 L gamma T Delta_2 + (L k/c^2) sum P_n sin^2(pi n
+  /// c T/L).
   double
   wave_energy(const Body &body, const WaveShape &shape, double end_time, double c);
 
-  /// The entries of one WaveRoot for the wave with speed @p c (any sign).
+  /// Properties of the wave with speed @p c (any sign).
   WaveRoot
   describe_wave(const Body &body, const WaveShape &shape, double chi, double end_time, double c);
 
   /**
-   * All waves of the given shape whose energy is @p energy: the roots c of wave_energy(c) = H, with the sign of c
-   * that moves the body to +s (the mirrored wave -c spends the same). The list ends when there are at least
-   * @p at_least roots and ten admissible ones if there are infinitely or very many. It is empty if H is not
-   * between smallest_energy and largest_energy.
+   * Waves of the given shape whose energy is @p energy: the roots c of wave_energy(c) = H, with the sign of c that
+   * moves the body to +s (the mirrored wave -c spends the same energy). The list ends when there are at least @p
+   * at_least roots and ten admissible ones if there are infinitely or very many. It is empty if H is not between
+   * smallest_energy and largest_energy.
    *
    * With x = c T/L and h = (H - 2 L gamma T Delta_2) L/(k T^2) the equation is h x^2 = sum P_n sin^2(pi n x). At
    * h = 0 (to 1e-12 of H) every root is a double one, where all sines vanish: no sign changes there.

@@ -30,13 +30,13 @@ namespace crawler
   };
 
   /**
-   * A wave of any number n of waves on the body, that runs to the tail (sigma = -1) or to the head (sigma = +1):
+   * A wave with any number n of waves on the body that runs to the tail (sigma = -1) or to the head (sigma = +1):
    *
    *   m = window(s) ramp(t) [ offset + A p( n s/L - sigma f t + phase/(2 pi) ) ],
    *
-   * with the profile p (wave_entries.h), and f = n |c|/L if the wave speed c is given. Its period is 1/f; with a ramp
-   * it has none. A square wave of frequency 0 jumps at some places, one of wave number 0 at some times; the jumps of
-   * others move, so that no list holds them. Those that change have no rate.
+   * with the profile p (wave_entries.h), and f = n |c|/L if the wave speed c is given. The period is 1/f; with a ramp
+   * there is none. A square wave of frequency 0 jumps at fixed places, one of wave number 0 at fixed times; the jumps
+   * of others move, so no list holds them. Square waves that change in time have no rate.
    */
   class TravellingWave : public KnownStress, public MovingJumps
   {
@@ -44,10 +44,10 @@ namespace crawler
     static constexpr const char *description = "a sine or square wave that runs along the body";
 
     /// Throws InputError if fronts or window do not fit, if a speed is given for wave number 0, or if there are more
-    /// than 1e8 periods (1e6 if all of the body is switched at once).
+    /// than 1e8 periods (1e6 if the whole body is switched at once).
     TravellingWave(const TravellingWaveParameters &parameters, double length, double end_time);
 
-    /// A word on jumps that move.
+    /// Reports jumps that move.
     void
     report(std::ostream &out) const override;
 
@@ -63,8 +63,8 @@ namespace crawler
     std::unique_ptr<ActiveStressAtPoints>
     sine_at(const std::vector<double> &points, bool rate) const;
 
-    /// Where a square wave that does not move jumps, in (0, @p length), and when one that is everywhere the same does,
-    /// in (0, @p end_time).
+    /// Places in (0, @p length) where a steady square wave jumps; below, times in (0, @p end_time) when a uniform one
+    /// does.
     std::vector<double>
     places_of_jumps(double length) const;
     std::vector<double>
@@ -96,12 +96,12 @@ namespace crawler
   };
 
   /**
-   * A wave whose nodes stay where they are:
+   * A wave with fixed nodes:
    *
    *   m = window(s) ramp(t) [ offset + A cos( 2 pi n s/L + phase in space ) p( f t + phase/(2 pi) ) ],
    *
-   * with the profile p (wave_entries.h). Its period is 1/f; with a ramp it has none. A square wave, which jumps, has no
-   * rate.
+   * with the profile p (wave_entries.h). The period is 1/f; with a ramp there is none. A square wave, which jumps, has
+   * no rate.
    */
   class StandingWave : public KnownStress
   {
