@@ -8,7 +8,7 @@
 
 namespace crawler
 {
-  /// crawler check: says what run would do; nothing is run but the pilots that choose the mesh, nothing is written.
+  /// crawler check: reports what run would do; computes only the pilot runs that choose the mesh, and writes nothing.
   ExitCode
   check(MPI_Comm communicator, const CommandOptions &options);
 } // namespace crawler

@@ -3,8 +3,8 @@
 
 namespace crawler
 {
-  /// The whole program behind main(): reads the command line, starts MPI and PETSc if the command needs them, runs it,
-  /// says what went wrong in one sentence, and returns the exit code.
+  /// Runs the whole program behind main(): reads the command line, starts MPI and PETSc if the command needs them, runs
+  /// it, reports errors in one sentence, and returns the exit code.
   int
   run_command_line(int argc, char **argv);
 } // namespace crawler

@@ -13,8 +13,8 @@
 namespace crawler
 {
   /**
-   * All that the command line can say. What is wrong with it is known, and what needs no MPI is done, before MPI and
-   * PETSc start: they take longer than most runs.
+   * Commands and options of the command line. Its errors are found, and work without MPI is done, before MPI and PETSc
+   * start: they take longer than most runs.
    */
   class Commands
   {
@@ -22,20 +22,20 @@ namespace crawler
     Commands();
     Commands(const Commands &) = delete;
 
-    /// Reads the @p arguments, and the @p petsc_options behind "--". Throws InputError. Returns false if there is
-    /// nothing else to do: help or version are printed, by the first rank.
+    /// Reads the @p arguments, and the @p petsc_options behind "--". Throws InputError. Returns false if nothing else
+    /// is to be done: help or version are printed, by the first rank.
     bool
     parse(const std::vector<std::string> &arguments, const std::vector<std::string> &petsc_options);
 
-    /// Whether the command computes.
+    /// True if the command computes.
     bool
     needs_mpi() const;
 
-    /// The command, if it needs no MPI; on one rank. Throws InputError and FileError.
+    /// Runs a command that needs no MPI, on one rank. Throws InputError and FileError.
     void
     run_alone();
 
-    /// The command, if it needs MPI (collective). Throws what it throws.
+    /// Runs a command that needs MPI (collective). Throws what the command throws.
     ExitCode
     run(MPI_Comm communicator) const;
 
@@ -57,8 +57,8 @@ namespace crawler
 
     CLI::App app_;
     CommandOptions options_;
-    std::vector<std::string> words_;           ///< of the command line
-    std::string format_ = "prm", name_, kind_; ///< name_: of a template, a shell or a section
+    std::vector<std::string> words_;           ///< words of the command line
+    std::string format_ = "prm", name_, kind_; ///< name_ of a template, a shell or a section
     bool plot_help_     = false;
   };
 } // namespace crawler

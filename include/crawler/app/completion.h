@@ -11,12 +11,12 @@ namespace CLI
 
 namespace crawler
 {
-  /// "bash", whose script zsh reads, too.
+  /// Shells with completion: "bash", whose script zsh reads, too.
   std::vector<std::string>
   completion_shells();
 
   /// crawler completion: prints a script by which @p shell completes commands, options, files and the names of entries.
-  /// Throws InputError if it is another shell.
+  /// Throws InputError for another shell.
   void
   print_completion(const CLI::App &app, const std::string &shell);
 } // namespace crawler

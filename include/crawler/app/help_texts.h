@@ -6,31 +6,31 @@
 
 namespace crawler
 {
-  /// A command line, and what it is for.
+  /// Command line with its purpose.
   struct Example
   {
     std::string command, meaning;
   };
 
-  /// Those of a command; without a name, first steps.
+  /// Examples of a command; without a name, first steps.
   std::vector<Example>
   examples_of(const std::string &command = "");
 
-  /// What a number that the program returns means.
+  /// Exit code with its meaning.
   struct ExitCodeMeaning
   {
     std::string code, meaning;
   };
 
-  /// The table of the user guide.
+  /// Exit codes as in the table of the user guide.
   std::vector<ExitCodeMeaning>
   exit_code_meanings();
 
-  /// What stands at the end of crawler --help.
+  /// Text at the end of crawler --help.
   std::string
   help_footer();
 
-  /// What stands at the end of crawler COMMAND --help.
+  /// Text at the end of crawler COMMAND --help.
   std::string
   help_footer(const std::string &command);
 } // namespace crawler

@@ -8,11 +8,11 @@
 
 namespace crawler
 {
-  /// All commands of the program, in the order of the help.
+  /// Commands of the program, in the order of the help.
   std::vector<const CLI::App *>
   all_commands(const CLI::App &app);
 
-  /// The names of an option as they are typed: "--set", "-h".
+  /// Names of an option as they are typed: "--set", "-h".
   std::vector<std::string>
   typed_names(const CLI::Option &option);
 } // namespace crawler

@@ -6,7 +6,7 @@
 
 namespace crawler
 {
-  /// What --format knows: "prm", "json", ...
+  /// Values of --format: "prm", "json", ...
   std::vector<std::string>
   parameter_formats();
 
@@ -15,7 +15,7 @@ namespace crawler
   void
   print_parameters(const std::string &format, const std::string &section);
 
-  /// The full names of all entries.
+  /// Full names of all entries.
   std::vector<std::string>
   entry_names();
 } // namespace crawler

@@ -16,7 +16,7 @@ namespace crawler
   void
   require_command(const CLI::App &app, const std::vector<std::string> &arguments);
 
-  /// What is wrong with the arguments, in a sentence; CLI11 knows less.
+  /// Describes the error in the arguments in a sentence, with more detail than CLI11.
   std::string
   usage_error(const CLI::ParseError &error, const CLI::App &app, const std::vector<std::string> &arguments);
 } // namespace crawler

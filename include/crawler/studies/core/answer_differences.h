@@ -9,14 +9,14 @@
 
 namespace crawler
 {
-  /// How far apart the values of an entry should be whose answers have this error, relative to the value [1].
+  /// Step between answers with this relative error from which an entry is differentiated, relative to its value [1].
   double
   step_of_differences(double relative_error);
 
-  /// Where the other answers are, in steps: two differences, one of them far coarser.
+  /// Places of the other answers, in steps: two differences, one of them far coarser.
   inline constexpr std::array<int, 4> around_answer = {{-4, -1, 1, 4}};
 
-  /// What `crawler run` answers if an entry is larger by @p step times each of @p places.
+  /// Parameters of answers with an entry increased by @p step times each of @p places.
   struct VariedAnswers
   {
     std::vector<Parameters> parameters;
@@ -26,10 +26,10 @@ namespace crawler
 
   /**
    * Derivatives of the displacement and of other numbers by an entry, as differences of fourth order of whole answers,
-   * for scenes and methods that have no adjoint (doc/numerics.md, "Sensitivities"). The bound is the difference to a
-   * coarse formula, what a kink would do, and what the bounds of the answers make of it. @p result is the answer in the
-   * middle. A reason is set instead where an answer is missing or has no bound. Returns false if the displacement seems
-   * to have a kink; then nothing is set.
+   * for scenes and methods that have no adjoint (doc/numerics.md, "Sensitivities"). The error bound is the sum of the
+   * difference to a coarse formula, the contribution of a kink, and the error bounds of the answers. @p result is the
+   * answer in the middle. A reason is set instead where an answer is missing or has no bound. Returns false, with
+   * nothing set, if the displacement seems to have a kink.
    */
   bool
   differentiate_answers(VariedAnswers varied,

@@ -6,7 +6,7 @@
 
 namespace crawler
 {
-  /// What the command line says besides the name of the command.
+  /// Command line without the name of the command.
   struct CommandOptions
   {
     std::string file;

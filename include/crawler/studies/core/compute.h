@@ -13,50 +13,51 @@
 
 namespace crawler
 {
-  /// One run without files.
+  /// Result and numerics of one run without files.
   struct Computed
   {
     SimulationResult result;
     NumericsChoice choice;
   };
 
-  /// One of many runs: a scene to compute, and what came of it.
+  /// Task among many: a scene to compute, and its outcome.
   struct Task
   {
     Parameters parameters;
-    /// Of interest is the last stride, too, if the active stress says how long it is; the same for all tasks of a call.
+    /// True if the last stride is wanted, too, provided that the active stress gives its length; equal for all tasks of
+    /// a call.
     bool gait = false;
     std::optional<Scene> scene;
     Computed computed;
-    std::exception_ptr error;    ///< what was thrown instead
-    double seconds      = 0.;    ///< that it took; runs of a batch share its time
+    std::exception_ptr error;    ///< exception thrown instead of a result
+    double seconds      = 0.;    ///< wall time [s]; runs of a batch share its time
     bool is_out_of_time = false; ///< stopped by the time limit
   };
 
   /**
-   * What `crawler run` computes for each of @p tasks, whose parameters alone are given, on this rank alone and without
-   * files: choice of the numerics, simulation, self-check. Runs that fit share the lanes of the fused engine
-   * (run/batch.h), where an answer does not depend on its neighbours and all cycles are computed; the others,
+   * Computes for each of @p tasks, of which only the parameters are given, what `crawler run` computes, on this rank
+   * alone and without files: choice of the numerics, simulation, self-check. Runs that fit share the lanes of the fused
+   * engine (run/batch.h), where an answer does not depend on its neighbours and all cycles are computed; the others,
    * those that the engine gives up, and long ones that may end when their cycles repeat, follow one by one. Nothing is
-   * thrown. No run takes longer than @p time_limit [s], and @p interrupted is asked after every step, those of pilot
-   * runs too; if a pilot is stopped, the status is "stopped" and nothing else is known.
+   * thrown. No run takes longer than @p time_limit [s]. @p interrupted is called after every step, also of pilot runs;
+   * if a pilot run is stopped, the status is "stopped" and nothing else is known.
    */
   void
   compute_all(std::span<Task> tasks, double time_limit, const std::function<bool()> &interrupted);
 
-  /// The numerics that similar scenes share (accuracy/shared_choice.h), as measured on some @p examples of them;
-  /// nothing if there are none.
+  /// Numerics that similar scenes share (accuracy/shared_choice.h), as measured on some @p examples of them; nothing if
+  /// there are none.
   std::optional<SharedChoice>
   shared_numerics(std::span<Task> examples, const std::function<bool()> &keep_going);
 
   /**
-   * Computes scenes with the numerics that they share. Runs and the finer runs that measure their errors share the
-   * lanes of the fused engine, so a point costs a hundredth of what it costs alone. Each answer has an error bound as
-   * always; what does not meet its Accuracy with these numerics, or does not fit the fused engine, is left alone.
-   * @p sizes: about what each displacement is [length].
+   * Computes scenes with the numerics that they share. Runs, and the finer runs that measure their errors, share the
+   * lanes of the fused engine, so a point costs a hundredth of a run alone. Each answer has an error bound as always;
+   * scenes that miss their Accuracy with these numerics, or do not fit the fused engine, are left out. @p sizes are
+   * estimates of the displacements [length].
    *
-   * Returns which have been computed. Nothing is thrown. Runs are given up when @p interrupted says so, and after
-   * @p time_limit [s] for all together, so that none takes longer.
+   * Returns true for each scene that has been computed. Nothing is thrown. All runs end when @p interrupted returns
+   * true or when @p time_limit [s] has passed for all together, so that none takes longer.
    */
   std::vector<bool>
   compute_similar(std::span<Task> tasks,

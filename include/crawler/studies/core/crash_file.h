@@ -9,13 +9,13 @@
 
 namespace crawler
 {
-  /// A file of the folder of a study in which a process says, when it dies of a fault of its own (SIGSEGV, SIGBUS,
-  /// SIGFPE, SIGILL, SIGABRT), on which of its points it was at work: rows of a table, settings or starts.
+  /// File in the folder of a study in which a process that dies of a fault of its own (SIGSEGV, SIGBUS, SIGFPE, SIGILL,
+  /// SIGABRT) notes the points it was computing: rows of a table, settings or starts.
   extern const std::string crash_file;
 
   /**
-   * Writes that file: from now on until this is gone, signals of faults write a line of points before they end the
-   * process as they always do. One object at a time.
+   * Writes that file: during the lifetime of the object, fault signals write a line of points before they end the
+   * process as usual. One object at a time.
    */
   class CrashNote
   {
@@ -26,22 +26,22 @@ namespace crawler
     CrashNote &
     operator=(const CrashNote &) = delete;
 
-    /// These points, none if there are none, are computed from now on.
+    /// Sets the points that are computed from now on; may be empty.
     void
     at_work_on(std::span<const unsigned long> points);
   };
 
-  /// How often a process died at work on each point; points at which none did are not there. Throws FileError.
+  /// Number of times a process died while computing each point; other points are absent. Throws FileError.
   using Crashes = std::map<unsigned long, unsigned int>;
   Crashes
   crashes_in(const std::filesystem::path &folder);
 
-  /// Did processes die at work on this point, so that it is not tried again?
+  /// Returns true if processes died at this point so often that it is not tried again.
   bool
   is_given_up(unsigned long point, const Crashes &crashes);
 
-  /// Points that are to be computed: where no process died, where one did, which are tried once more, each alone, and
-  /// where two did, which are given up.
+  /// Points to compute: those where no process died; those where one did, which are tried once more, each alone; and
+  /// those where two did, which are given up.
   struct PointsByCrashes
   {
     std::vector<unsigned long> usual, alone, given_up;
@@ -49,6 +49,6 @@ namespace crawler
   PointsByCrashes
   by_crashes(std::span<const unsigned long> points, const Crashes &crashes);
 
-  /// The message of a point that is given up, whose reason is "crashed".
+  /// Message of a point that is given up, whose reason is "crashed".
   extern const std::string crash_message;
 } // namespace crawler

@@ -8,14 +8,14 @@
 
 namespace crawler
 {
-  /// A number that is differentiated, by its key in the result table.
+  /// Number that is differentiated, by its key in the result table.
   struct DifferentiatedNumber
   {
     const char *key;
     double (*of)(const SimulationResult &);
   };
 
-  /// In the order of all_quantities; the displacement is the first.
+  /// Numbers in the order of all_quantities; the displacement is the first.
   inline constexpr std::array<DifferentiatedNumber, all_quantities.size()> differentiated_numbers = {{
     {"displacement", [](const SimulationResult &result) { return result.displacement; }},
     {"stress_power", [](const SimulationResult &result) { return result.energy_balance->stress_work; }},
@@ -26,7 +26,7 @@ namespace crawler
     {"gait.speed", [](const SimulationResult &result) { return result.gait->speed(); }},
   }};
 
-  /// Is the number in these results: is there an energy balance, a last stride?
+  /// Returns true if these results have the number: an energy balance, a last stride.
   inline bool
   has_number(const std::size_t number, const SimulationResult &result)
   {

@@ -9,22 +9,23 @@
 
 namespace crawler
 {
-  /// The entries that are not as @p base says, as the text of a parameter file that is to include it.
+  /// Entries that differ from those of @p base, as the text of a parameter file that includes it.
   std::string
   changes(const Declarations &declarations, const ParameterFile &base);
 
-  /// A parameter file as a form in which other values can be filled in.
+  /// Parameter file as a form in which other values can be filled in.
   struct Form
   {
-    /// @p scene: another file whose entries are stronger than those of @p file, but for overrides. Throws InputError.
+    /// @p scene: another file, whose entries override those of @p file except command-line overrides. Throws
+    /// InputError.
     explicit Form(const ParameterFile &file, const ParameterFile *scene = nullptr);
     Form(const Form &) = delete;
 
-    /// The parameters with another number; the form is as before. Throws InputError.
+    /// Returns the parameters with another number; the form is unchanged afterwards. Throws InputError.
     Parameters
     parameters_with(const std::string &path, double value);
 
     Parameters parameters;
-    Declarations declarations; ///< its entries are the members of parameters
+    Declarations declarations; ///< entries bound to the members of parameters
   };
 } // namespace crawler

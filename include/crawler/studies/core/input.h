@@ -12,22 +12,22 @@
 
 namespace crawler
 {
-  /// A parameter file, read and understood.
+  /// Parameter file, read and interpreted.
   struct Input
   {
     ParameterFile file;
     Parameters parameters;
-    std::string effective; ///< all entries as they are used, as a .prm file
+    std::string effective; ///< all entries as used, as a .prm file
     Scene scene;
     std::vector<SensitivityEntry> sensitivities;
-    std::vector<std::string> notes; ///< what is perhaps not meant: entries without effect, tables beyond the body
+    std::vector<std::string> notes; ///< possible mistakes: entries without effect, tables beyond the body
   };
 
-  /// Reads @p file_name on rank 0 and gives it to all (collective). Throws InputError or FileError, on all ranks.
+  /// Reads @p file_name on rank 0 and sends it to all (collective). Throws InputError or FileError, on all ranks.
   ParameterFile
   read_file(MPI_Comm communicator, const std::string &file_name, const std::vector<std::string> &overrides);
 
-  /// The same, understood: the scene is built too. Notes say what has no effect in @p command.
+  /// Interprets a parameter file and builds the scene. Notes name entries that have no effect in @p command.
   Input
   read_input(ParameterFile file, const std::string &command = "run");
 
@@ -35,7 +35,7 @@ namespace crawler
   std::vector<std::string>
   notes_on_choice(const Input &input, Model model, const Numerics *numerics = nullptr);
 
-  /// model_choice.h; messages say where in the file the entry at fault is.
+  /// Chooses the level (model_choice.h); messages say where in the file the entry at fault is.
   ModelChoice
   choose_model(const Input &input);
 } // namespace crawler

@@ -10,14 +10,14 @@ namespace crawler
 {
   struct CommandOptions;
 
-  /// What the user reads: lines on the screen (unless quiet) and in log.txt. Only rank 0 writes.
+  /// Lines for the user, on the screen (unless quiet) and in log.txt. Only rank 0 writes.
   class Log
   {
   public:
     Log(bool is_first_rank, bool quiet);
 
-    /// Of a command that computes: the first line names the program's version. PETSc may print, too, if there are
-    /// options for it.
+    /// Log of a command that computes: the first line names the program's version. No status is shown with PETSc
+    /// options, which may print, too.
     Log(bool is_first_rank, const CommandOptions &options);
 
     Log(const Log &) = delete;
@@ -26,32 +26,32 @@ namespace crawler
     void
     line(const std::string &text);
 
-    /// The same for what must not be missed: on standard error, also if quiet.
+    /// Writes a line that must not be missed: on standard error, also if quiet.
     void
     warn(const std::string &text);
 
-    /// The same for lines that say how far the work is: where a status is shown instead, only in the file.
+    /// Writes a line about the progress of the work: only in the file where a status is shown instead.
     void
     progress(const std::string &text);
 
-    /// Columns of the status; 0 if none is shown, because nobody sees it: standard output is no terminal, or is quiet.
+    /// Columns of the status; 0 if none is shown, because standard output is no terminal or is quiet.
     unsigned int
     status_width() const
     {
       return status_width_;
     }
 
-    /// Shows @p text below all lines, in the place of the status before; none if it is empty. It must not be wider than
-    /// status_width(). The next line takes its place.
+    /// Shows @p text below all lines, in place of the previous status; none if it is empty. The text must not be wider
+    /// than status_width(). The next line overwrites it.
     void
     show_status(const std::string &text);
 
-    /// Writes everything from now on, and all earlier lines, to @p file as well, behind what is in it if @p append.
-    /// Throws FileError.
+    /// Writes everything from now on, and all earlier lines, to @p file as well, after its content if @p append. Throws
+    /// FileError.
     void
     open(const std::filesystem::path &file, bool append = false);
 
-    /// To be called at the end. Throws FileError if a line did not get into the file; the work went on meanwhile.
+    /// Call at the end. Throws FileError if a line did not get into the file; the work went on meanwhile.
     void
     require_written() const;
 
@@ -70,6 +70,6 @@ namespace crawler
     std::string earlier_;
     std::ofstream file_;
     std::filesystem::path path_;
-    std::string problem_; ///< with the first line that was lost
+    std::string problem_; ///< error at the first line that was lost
   };
 } // namespace crawler

@@ -9,22 +9,22 @@
 
 namespace crawler
 {
-  /// The folder of a run: --output, or "output-NAME" for NAME.prm, in the present folder.
+  /// Folder of a run: --output, or "output-NAME" for NAME.prm, in the current folder.
   std::filesystem::path
   output_folder(const std::string &option, const std::string &parameter_file);
 
-  /// Throws InputError if the folder has something in it that must not be overwritten, FileError if it is not a folder
-  /// or has links where folders of the program's own are expected.
+  /// Throws InputError if the folder contains files that must not be overwritten, FileError if it is not a folder or
+  /// has links where folders of the program's own are expected.
   void
   require_usable(const std::filesystem::path &folder, bool overwrite);
 
-  /// Locked (base/file_lock.h) as long as a run or study writes to the folder.
+  /// Name of the file that is locked (base/file_lock.h) while a run or study writes to the folder.
   extern const std::string study_lock_name;
 
-  /// The page that `crawler report` makes.
+  /// Page that `crawler report` makes.
   extern const std::string report_name;
 
-  /// Keeps others from writing to a folder as long as it lives.
+  /// Keeps other processes from writing to a folder during its lifetime.
   class FolderLock
   {
   public:
@@ -33,7 +33,7 @@ namespace crawler
     ~FolderLock();
     FolderLock(const FolderLock &) = delete;
 
-    /// Throws FileError if the folder is not the one that was locked any more.
+    /// Throws FileError if the folder is no longer the one that was locked.
     void
     require_in_place() const
     {
@@ -48,7 +48,7 @@ namespace crawler
   void
   prepare(const std::filesystem::path &folder);
 
-  /// Removes what a run has written while it went on: the fields and the statistics.
+  /// Removes files that a run writes as it proceeds: the fields and the statistics.
   void
   remove_fields(const std::filesystem::path &folder);
 } // namespace crawler

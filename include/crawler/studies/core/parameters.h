@@ -9,10 +9,10 @@
 
 namespace crawler
 {
-  /// What Sweep/Axes reads, in words.
+  /// Syntax of Sweep/Axes, in words.
   extern const std::string sweep_syntax;
 
-  /// What Optimize/Variables and Fit/Variables read, in words.
+  /// Syntax of Optimize/Variables and Fit/Variables, in words.
   extern const std::string variables_syntax;
 
   /// Section "Sweep": which scenes `crawler sweep` computes (sweep_design.h reads the axes).
@@ -72,7 +72,7 @@ namespace crawler
     add_parameters(Declarations &declarations);
   };
 
-  /// Section "Fit": what `crawler fit` looks for in measured data (contrib/python/crawler/fit; variables.h reads the
+  /// Section "Fit": unknowns of `crawler fit` in measured data (contrib/python/crawler/fitting; variables.h reads the
   /// variables).
   struct FitParameters
   {
@@ -85,7 +85,7 @@ namespace crawler
     add_parameters(Declarations &declarations);
   };
 
-  /// All sections of the parameter file: those of one run, and those of each study of many runs.
+  /// Sections of the parameter file: those of one run, and those of each study of many runs.
   struct Parameters : RunParameters
   {
     SweepParameters sweep;

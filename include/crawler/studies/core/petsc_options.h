@@ -8,11 +8,11 @@
 
 namespace crawler
 {
-  /// What stands behind "--", into the log.
+  /// Logs the options behind "--".
   void
   announce_petsc_options(const CommandOptions &options, Log &log);
 
-  /// PETSc options that no rank has read by the end are most likely misspelt (collective).
+  /// Warns of PETSc options that no rank has read by the end: they are most likely misspelt (collective).
   void
   warn_of_unused_petsc_options(MPI_Comm communicator, const CommandOptions &options, Log &log);
 } // namespace crawler

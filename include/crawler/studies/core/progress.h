@@ -10,11 +10,11 @@
 
 namespace crawler
 {
-  /// "0.83 ms", "83 s", "12 min", "3.4 h", "2.1 days".
+  /// Duration in words: "0.83 ms", "83 s", "12 min", "3.4 h", "2.1 days".
   std::string
   duration_in_words(double seconds);
 
-  /// How far a piece of work is, as a bar in place on a terminal. Where there is none, its owners write lines.
+  /// Progress of a piece of work, as a bar redrawn in place on a terminal. Without a terminal, its owners write lines.
   class ProgressBar
   {
   public:
@@ -23,16 +23,16 @@ namespace crawler
     /// Takes the bar away.
     ~ProgressBar();
 
-    /// Whether there is a bar, and the last one is old enough to be drawn anew.
+    /// True if there is a bar, and it was drawn long enough ago to be redrawn.
     bool
     is_due() const;
 
-    /// @p done from 0 to 1, with the time left if that is known; without it, the time that went by. @p text stands
-    /// behind the bar.
+    /// Draws the bar at @p done from 0 to 1, with the time left if it is known; without @p done, with the elapsed time.
+    /// @p text stands behind the bar.
     void
     show(std::optional<double> done, const std::string &text);
 
-    /// Seconds since the beginning.
+    /// Elapsed time [s].
     double
     seconds() const
     {
@@ -45,15 +45,15 @@ namespace crawler
     double last_        = now();
   };
 
-  /// Of work whose length is not known, such as the pilot runs that choose the numerics: a bar that moves, or a line
-  /// every few seconds.
+  /// Progress of work of unknown length, e.g. the pilot runs that choose the numerics: a moving bar, or a line every
+  /// few seconds.
   class WaitProgress
   {
   public:
     /// @p what: "pilot runs choose mesh and time steps".
     WaitProgress(Log &log, std::string what);
 
-    /// To be called after every step of the work.
+    /// Call after every step of the work.
     void
     step();
 
@@ -66,7 +66,7 @@ namespace crawler
 
   inline constexpr const char *pilot_runs = "pilot runs choose mesh and time steps";
 
-  /// Of a run: a bar, or a line at every tenth of the duration.
+  /// Progress of a run: a bar, or a line at every tenth of the duration.
   class RunProgress : public Observer
   {
   public:
@@ -82,19 +82,19 @@ namespace crawler
     unsigned int next_tenth_ = 1;
   };
 
-  /// Of a study of many runs: a bar, or a line every few seconds, with parts done, speed, and time left.
+  /// Progress of a study of many runs: a bar, or a line every few seconds, with parts done, speed, and time left.
   class StudyProgress
   {
   public:
     /// @p parts names the @p n_parts parts, as "points".
     StudyProgress(Log &log, unsigned long n_parts, std::string parts);
 
-    /// Whether report() would show anything.
+    /// True if report() would show anything.
     bool
     is_due() const;
 
-    /// @p remark stands at the end of the line. @p state: of the part that is under way; of a single part that is all
-    /// there is to say.
+    /// @p remark stands at the end of the line. @p state describes the part in progress; if there is a single part, it
+    /// is the whole report.
     void
     report(unsigned long done, const std::string &remark = "", const std::string &state = "");
 

@@ -15,13 +15,13 @@ namespace crawler
   void
   report_scene(Log &log, const Input &input);
 
-  /// Makes the output folder with the files that a run begins with: parameters, log, and the tables of active stress
-  /// and segments if the input asks for them. Throws FileError.
+  /// Makes the output folder with the initial files of a run: parameters, log, and the tables of active stress and
+  /// segments if the input asks for them. Throws FileError.
   void
   begin_files(Log &log, const Input &input, const std::filesystem::path &folder, bool goes_on = false);
 
-  /// Says how a run ended, where its results are, and that @p animation among them opens in ParaView (empty: there is
-  /// none). What it returns to the shell.
+  /// Reports how a run ended, where its results are, and that @p animation among them opens in ParaView (empty: there
+  /// is none). Returns the exit code.
   ExitCode
   report_end(Log &log,
              const SimulationResult &result,

@@ -8,22 +8,22 @@
 
 namespace crawler
 {
-  /// The numbers of the scene that entries of other sections may name: of the body, the ground, the active stress, and
-  /// the end time; those of a list and constants of formulas one by one, "Section/Entry[2]", "Section/Entry[a]".
+  /// Numbers of the scene that entries of other sections may name: those of the body, the ground and the active stress,
+  /// and the end time; those of lists and constants of formulas one by one, "Section/Entry[2]", "Section/Entry[a]".
   class SceneNumbers
   {
   public:
     explicit SceneNumbers(const Form &form);
 
-    /// The paths of those that have an effect.
+    /// Paths of the numbers that have an effect.
     const std::vector<std::string> &
     effective() const
     {
       return effective_;
     }
 
-    /// The path of what the entry @p own names @p name. Throws InputError for @p own, with the nearest name, unless it
-    /// is a number of the scene that has an effect; @p or_else is what else is expected.
+    /// Returns the path of the number that the entry @p own calls @p name. Throws InputError for @p own, with the
+    /// nearest name, unless it is a number of the scene that has an effect; @p or_else is what else is expected.
     std::string
     find(const std::string &name, const std::string &own, const std::string &or_else = "") const;
 

@@ -12,11 +12,11 @@
 namespace crawler
 {
   /**
-   * The derivatives of displacement and works by @p entries, with the numerics of a finished run, into its @p result,
-   * in the same order; their errors from the same with the numerics of the finer run. Where there is no adjoint they
-   * are differences of answers (answer_differences.h). @p scene is the one of @p form.
-   * An entry whose derivatives cannot be found has a reason instead. Returns where and when it matters, empty if that
-   * is not known.
+   * Adds the derivatives of displacement and works by @p entries, with the numerics of a finished run, to its @p
+   * result, in the same order; their errors come from the derivatives with the numerics of the finer run. Where there
+   * is no adjoint they are differences of answers (answer_differences.h). @p scene is the one of @p form. An entry
+   * whose derivatives cannot be found has a reason instead. Returns where and when it matters, empty if that is not
+   * known.
    */
   LocalSensitivity
   find_sensitivities(Form &form,

@@ -9,11 +9,12 @@
 
 namespace crawler
 {
-  /// An entry by which the numbers of a run are differentiated.
+  /// Entry by which the numbers of a run are differentiated.
   struct SensitivityEntry
   {
     std::string path;
-    double deviation;     ///< standard deviation, in units of the entry or as a part of it; 0 if it is not uncertain
+    double deviation;     ///< standard deviation, in units of the entry or as a part of it; 0 if the entry is not
+                          ///< uncertain
     bool is_part = false; ///< of the value of the entry
 
     double
@@ -23,7 +24,8 @@ namespace crawler
     }
   };
 
-  /// Those that Output/Sensitivities and Output/Uncertainty name, all of them numbers of the scene. Throws InputError.
+  /// Entries that Output/Sensitivities and Output/Uncertainty name, all of them numbers of the scene. Throws
+  /// InputError.
   std::vector<SensitivityEntry>
   sensitivity_entries(const Form &form);
 } // namespace crawler

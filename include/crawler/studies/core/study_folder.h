@@ -13,42 +13,42 @@
 
 namespace crawler
 {
-  /// What the commands that compute many runs do not have in common.
+  /// Differences between the commands that compute many runs.
   struct StudyKind
   {
     std::string name;                      ///< "sweep", for sentences
-    std::vector<std::string> results;      ///< a folder that has one of these files has results to go on with
-    std::vector<std::string> free_entries; ///< say how much is computed and not what: they may change meanwhile
+    std::vector<std::string> results;      ///< files any of which makes a folder one with results, to be resumed
+    std::vector<std::string> free_entries; ///< entries for the amount of computation: they may change meanwhile
   };
 
   /**
-   * The folder of a study of many runs, as rank 0 sees it: a new study begins in it, or an old one goes on, and no
-   * other one writes to it meanwhile (study.lock).
+   * Folder of a study of many runs, as seen by rank 0: a new study begins in it, or an old one is resumed, and no other
+   * one writes to it meanwhile (study.lock).
    */
   class StudyFolder
   {
   public:
     StudyFolder(StudyKind kind, std::filesystem::path path, const CommandOptions &options, Log &log);
 
-    /// Whether there is a study that goes on (--resume). Otherwise the folder is made, with the parameter file, the
-    /// @p effective parameters and the log; one in which a study was killed before it had results is begun anew. Throws
-    /// InputError if the folder has something else in it, or a study that is going on; FileError.
+    /// Returns true if a study is to be resumed (--resume). Otherwise makes the folder, with the parameter file, the @p
+    /// effective parameters and the log; a study that was killed before it had results is begun anew. Throws InputError
+    /// if the folder contains anything else, or a study in progress; FileError.
     bool
     begin(const std::string &original, const std::string &effective);
 
-    /// Goes on with the study that is there. Throws InputError if it was made with other inputs: what @p changes finds,
-    /// in words. Whatever is thrown, by @p changes too, the folder is left as it was.
+    /// Resumes the study in the folder. Throws InputError if it was made with other inputs: the differences that @p
+    /// changes finds, in words. If anything is thrown, by @p changes too, the folder is left as it was.
     void
     resume(const std::function<std::vector<std::string>()> &changes);
 
-    /// Throws FileError if the folder is not the one in which the study began any more.
+    /// Throws FileError if the folder is no longer the one in which the study began.
     void
     require_in_place() const
     {
       lock_->require_in_place();
     }
 
-    /// Nothing is written any more. Throws FileError if the log is not whole.
+    /// Ends writing. Throws FileError if the log is not whole.
     void
     leave();
 
@@ -71,10 +71,10 @@ namespace crawler
   private:
     enum class State
     {
-      empty,    ///< or not there
-      begun,    ///< a study was killed before there were results
-      computed, ///< there are results
-      foreign   ///< something else
+      empty,    ///< or missing
+      begun,    ///< study killed before it had results
+      computed, ///< with results
+      foreign   ///< anything else
     };
     State
     state() const;
@@ -82,7 +82,7 @@ namespace crawler
     void
     lock();
 
-    /// MPI leaves a file beside a table, FILE-1-NUMBER.lock, where the only process of a study is killed.
+    /// Removes the file FILE-1-NUMBER.lock that MPI leaves beside a table where the only process of a study is killed.
     void
     remove_locks_of_mpi() const;
 

@@ -13,7 +13,7 @@ namespace crawler
   class ReducedModel;
   class Statistics;
 
-  /// Who sees the states of a level that needs no mesh; null: nobody.
+  /// Viewers of the states of a level that needs no mesh; null where there is none.
   struct PictureViewers
   {
     std::function<void(const Frame &)> snapshots;
@@ -21,13 +21,13 @@ namespace crawler
     Statistics *statistics;
   };
 
-  /// When: without snapshots the table of statistics alone has its rows as often as there would be snapshots by
+  /// Times of these states. Without snapshots, the table of statistics has as many rows as there would be snapshots by
   /// default.
   PictureTimes
   times_without_mesh(const Input &input);
 
-  /// Shows the states at @p times at equidistant points: one cell, the whole body. After compute(). Returns false if
-  /// @p keep_going said no.
+  /// Shows the states at @p times at equidistant points: one cell, the whole body. Call after compute(). Returns false
+  /// if @p keep_going returned false.
   bool
   show_pictures(const ReducedModel &level,
                 const PictureTimes &times,

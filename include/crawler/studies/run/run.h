@@ -12,7 +12,7 @@ namespace crawler
   /// crawler run: one simulation with all its files (collective).
   ExitCode
   run(MPI_Comm communicator, const CommandOptions &options);
-  /// The same of a parameter file that is read already.
+  /// Runs a parameter file that has been read already.
   ExitCode
   run_input(MPI_Comm communicator, const CommandOptions &options, ParameterFile file);
 } // namespace crawler

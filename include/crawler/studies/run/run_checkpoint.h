@@ -12,14 +12,14 @@
 
 namespace crawler
 {
-  /// What a run leaves in its folder so that it can go on: restart.dat, and the one before it, restart.old.dat.
+  /// Checkpoint from which a run can be resumed: restart.dat in its folder, and the previous one, restart.old.dat.
   struct RunCheckpoint
   {
-    std::string program;                                    ///< who wrote it
+    std::string program;                                    ///< that wrote it
     std::string effective;                                  ///< parameters
     std::string petsc_options;                              ///< behind "--"
-    std::vector<std::pair<std::string, std::string>> files; ///< that were read, with their fingerprints
-    std::string journal;                                    ///< of the runs (run_journal.h)
+    std::vector<std::pair<std::string, std::string>> files; ///< files read, with their fingerprints
+    std::string journal;                                    ///< states of the runs (run_journal.h)
 
     void
     exchange(Archive &archive)
@@ -28,28 +28,28 @@ namespace crawler
     }
   };
 
-  /// That of this program and input, without a journal.
+  /// Checkpoint of this program and input, without a journal.
   RunCheckpoint
   checkpoint_of(const Input &input, const CommandOptions &options);
 
-  /// Writes a new file first, then gives it its name; the older one stays under the other name. Throws FileError.
+  /// Writes a new file first, then renames it; the older one stays under the other name. Throws FileError.
   void
   write_checkpoint(const std::filesystem::path &folder, RunCheckpoint &checkpoint);
 
   void
   remove_checkpoints(const std::filesystem::path &folder);
 
-  /// What `--resume` finds in a folder.
+  /// Findings of `--resume` in a folder.
   struct Resumption
   {
     enum Kind
     {
-      begins,   ///< there is nothing to go on with
-      goes_on,  ///< with the journal
-      is_whole, ///< the run has ended
+      begins,   ///< nothing to resume
+      goes_on,  ///< resumed with the journal
+      is_whole, ///< run that has ended
     } kind = begins;
     std::string journal;
-    std::vector<std::string> notes; ///< what the user should know
+    std::vector<std::string> notes; ///< notes for the user
 
     void
     exchange(Archive &archive)
@@ -58,8 +58,7 @@ namespace crawler
     }
   };
 
-  /// Looks at a folder that is locked. Throws InputError if what is there belongs to another command or other
-  /// parameters.
+  /// Examines a folder that is locked. Throws InputError if its content belongs to another command or other parameters.
   Resumption
   resumption_of(const std::filesystem::path &folder, const RunCheckpoint &own);
 } // namespace crawler

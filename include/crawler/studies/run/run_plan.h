@@ -11,11 +11,11 @@
 
 namespace crawler
 {
-  /// Mesh and steps, for the user.
+  /// Mesh and steps in words, for the user.
   std::string
   in_words(const Numerics &numerics, const Input &input);
 
-  /// The lines that say what will be computed. @p choice: null on a level that needs no mesh.
+  /// Logs what will be computed. @p choice: null on a level that needs no mesh.
   void
   report_plan(Log &log, const Input &input, const ModelChoice &model, const NumericsChoice *choice);
 } // namespace crawler

@@ -11,28 +11,28 @@
 
 namespace crawler
 {
-  /// Who touches a file of this name in the output folder asks the run to stop.
+  /// Name of the file in the output folder whose presence asks the run to stop.
   extern const std::string stop_file_name;
 
-  /// In words for the user; also of runs without files.
+  /// Limit in words for the user; also of runs without files.
   inline std::string
   by_wall_time_limit(const double limit)
   {
     return fmt::format("by Time/Wall time limit, {:g} s,", limit);
   }
 
-  /// Why a run that could go on is to stop: a signal, its wall time, or a file that asks for it.
+  /// Reasons to stop a run that could go on: a signal, its wall time, or a file that asks for it.
   class RunStops
   {
   public:
     /// @p limit of the wall time [s] since @p start (base/clock.h), if there is one; @p file as above.
     RunStops(const StopSignal &signal, std::optional<double> limit, double start, std::filesystem::path file);
 
-    /// Is it to stop on any rank? (collective) Once it is, it stays so.
+    /// Returns true, from then on, once the run is to stop on any rank (collective).
     bool
     arrived_anywhere(MPI_Comm communicator);
 
-    /// "signal", "time_limit" or "stop_file"; and in words, "by ...".
+    /// Reason: "signal", "time_limit" or "stop_file"; and in words, "by ...".
     const char *
     reason() const;
     std::string
@@ -46,7 +46,7 @@ namespace crawler
     const std::optional<double> limit_;
     const double start_;
     const std::filesystem::path file_;
-    double next_look_    = 0.; ///< for the file
+    double next_look_    = 0.; ///< time of the next look for the file
     bool is_out_of_time_ = false, is_asked_ = false;
   };
 } // namespace crawler

@@ -21,8 +21,8 @@
 
 namespace crawler
 {
-  /// `crawler run`, from the parameter file to the files and the exit code (all functions are collective). What a part
-  /// of the computation throws is how the run ends, with all that an end has.
+  /// `crawler run`, from the parameter file to the files and the exit code (all functions are collective). An exception
+  /// in a part of the computation becomes the end of the run, with all files of an end.
   class RunStudy
   {
   public:
@@ -32,12 +32,13 @@ namespace crawler
     run();
 
   private:
-    /// Either all ranks share the cells, or each computes the whole body and the first one writes.
+    /// Division of the work: either all ranks share the cells, or each computes the whole body and the first one
+    /// writes.
     struct Sharing
     {
       bool is_shared  = false;
-      MPI_Comm ranks  = MPI_COMM_SELF; ///< that compute together
-      bool has_output = false;         ///< does this rank take part in writing?
+      MPI_Comm ranks  = MPI_COMM_SELF; ///< ranks that compute together
+      bool has_output = false;         ///< true if this rank takes part in writing
     };
 
     // Before there are files.
@@ -86,7 +87,7 @@ namespace crawler
     bool
     keep_states(const std::string &all);
 
-    const StopSignal stop_signal_; ///< from here on a signal ends the run in order
+    const StopSignal stop_signal_; ///< ends the run in an orderly way when a signal arrives
     const double begin_;
     const MPI_Comm communicator_;
     const CommandOptions &options_;
@@ -101,12 +102,12 @@ namespace crawler
     RunStops stops_;
 
     std::optional<ModelChoice> model_;
-    std::optional<NumericsChoice> choice_; ///< of a level with a mesh
+    std::optional<NumericsChoice> choice_; ///< for a level with a mesh
     Sharing sharing_;
     PictureTimes pictures_;
     std::optional<Scene> scene_with_fronts_;
     std::unique_ptr<Simulation> simulation_;
-    std::optional<WaitProgress> other_runs_; ///< those without a progress of their own
+    std::optional<WaitProgress> other_runs_; ///< progress of runs without one of their own
     unsigned int n_runs_ = 0;
     SimulationResult result_;
   };

@@ -11,9 +11,9 @@
 namespace crawler
 {
   /**
-   * The sensitivities that are wanted (Input::sensitivities, core/sensitivities.h) of a finished run into its
-   * @p result, those that matter most first; of all those that have no effect, or may not vary from where they are by
-   * default, are left out. Returns where and when it matters, empty if that is not known.
+   * Adds the requested sensitivities (Input::sensitivities, core/sensitivities.h) of a finished run to its @p result,
+   * those of largest relative effect first; if all are requested, those without effect, and those that may not vary and
+   * have their default, are left out. Returns where and when the run is sensitive, empty if that is not known.
    */
   LocalSensitivity
   add_sensitivities(const Input &input,
@@ -21,7 +21,7 @@ namespace crawler
                     SimulationResult &result,
                     const std::function<bool()> &keep_going);
 
-  /// Writes sensitivity_body.csv and sensitivity_stress.csv, as far as there is something in them. Throws FileError.
+  /// Writes sensitivity_body.csv and sensitivity_stress.csv, unless they would be empty. Throws FileError.
   void
   write_sensitivities(const LocalSensitivity &local, const std::filesystem::path &folder, const UnitNames &units);
 } // namespace crawler

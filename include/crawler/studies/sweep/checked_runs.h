@@ -9,15 +9,15 @@
 
 namespace crawler
 {
-  /// Sweep/Cross-check: the other runs of a point, in both forms and refined, and what cross_check() says of them all.
+  /// Sweep/Cross-check: the other runs of a point, in both forms and refined, and the verdict of cross_check() on all.
 
-  /// Their columns in the table of a sweep (a contract, doc/user_guide.md, "Sweep").
+  /// Columns of these runs in the table of a sweep (a contract, doc/user_guide.md, "Sweep").
   std::vector<RowFile::Column>
   checked_columns();
 
-  /// What stands in these columns for each of @p points, which have been computed with gait numbers or without, all
-  /// alike. What goes wrong is the status of a run. The runs of all points share the lanes (compute_all()); the time
-  /// limit of a point is that of each. Of no use once @p interrupted says so.
+  /// Values in these columns for each of @p points, which have been computed, all with gait numbers or all without.
+  /// Failures are the status of a run. The runs of all points share the lanes (compute_all()); each has the time limit
+  /// of a point. Of no use once @p interrupted returns true.
   std::vector<RowFile::Row>
   checked_values(const std::vector<const Task *> &points, const std::function<bool()> &interrupted);
 } // namespace crawler

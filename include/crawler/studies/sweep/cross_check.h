@@ -7,7 +7,7 @@
 
 namespace crawler
 {
-  /// What one run says about a scene.
+  /// Answer of one run to a scene.
   struct Claim
   {
     std::string run;    ///< its name in explanations
@@ -17,26 +17,26 @@ namespace crawler
     double inversion_time = std::numeric_limits<double>::quiet_NaN(); ///< if inverted [time]
   };
 
-  /// What is known about the inversion of a scene without a run (doc/theory.md, "When a body can invert").
+  /// Knowledge about the inversion of a scene without a run (doc/theory.md, "When a body can invert").
   struct InversionFacts
   {
     double end_time      = 1.;   ///< T [time]
     bool possible_inside = true; ///< a > -1
-    /// An end inverts between these two times; infinite if it does not.
+    /// Earliest and latest time of inversion of an end; infinite if no end inverts.
     double earliest_at_end = std::numeric_limits<double>::infinity();
     double latest_at_end   = std::numeric_limits<double>::infinity();
   };
 
-  /// Times of inversion that differ by more than this part of the end time disagree.
+  /// Relative tolerance, as a part of the end time, within which times of inversion agree.
   constexpr double inversion_time_tolerance = 1e-3;
 
-  /// Whether the runs of one scene can all be right.
+  /// Verdict on whether the runs of one scene can all be right.
   struct Verdict
   {
     enum Kind
     {
-      agree,               ///< all answers fit together
-      unchecked,           ///< there are no two answers to compare
+      agree,               ///< all answers are consistent
+      unchecked,           ///< no two answers to compare
       silent_wrong_answer, ///< two answers contradict each other, or one contradicts the theory
     };
     Kind kind = unchecked;
@@ -49,7 +49,7 @@ namespace crawler
 
   /**
    * Compares answers to one scene. Each of @p runs is compared with @p refined, or, if that one gave no answer, with
-   * each other; and each, refined too, with the theory. Two answers contradict each other if
+   * each other run; and each, including refined, with the theory. Two answers contradict each other if
    * - both finished, and the displacements differ by more than the sum of the promised errors (no promise, no check);
    * - one finished, and the other inverted before T;
    * - both inverted, at different times.
@@ -57,7 +57,7 @@ namespace crawler
    * - an end must have inverted, but the run did not invert by then;
    * - it inverted earlier than an end, where the body cannot invert inside (a <= -1).
    * Times differ if they do so by more than inversion_time_tolerance T. A run that failed with a name, was stopped or
-   * refused is not an answer, and so never wrong.
+   * was refused is not an answer, and so never wrong.
    */
   Verdict
   cross_check(const std::vector<Claim> &runs, const Claim &refined, const InversionFacts &facts);

@@ -9,15 +9,15 @@
 
 namespace crawler
 {
-  // What stands of a run in the table of a sweep.
+  // Values of a run in the table of a sweep.
 
-  /// The number or word of a run under this key, and its value in a row; not a number or empty where it is not known.
+  /// Number or word of a run under this key, and its value in a row; not a number or empty where it is unknown.
   const ResultEntry &
   entry_of(const std::string &key);
   RowFile::Value
   value_in_row(const Task &task, const ResultEntry &entry);
 
-  /// What has become of a point, in a word, and why.
+  /// Outcome of a point, in a word, and why.
   struct PointStatus
   {
     std::string status, reason, message;

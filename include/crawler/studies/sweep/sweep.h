@@ -12,23 +12,23 @@ namespace crawler
 {
   /**
    * crawler sweep: a run without files for each point of section Sweep, shared among all ranks; the results are a
-   * table, results.h5 and results.csv (collective). A point that goes wrong is a row with status and reason. With
-   * --resume the points that have no row yet are computed, with --strict rows that failed make the exit code 8.
+   * table, results.h5 and results.csv (collective). A point that fails is a row with status and reason. With --resume
+   * the points that have no row yet are computed, with --strict rows that failed make the exit code 8.
    *
-   * The parts, each used by those below it: sweep_design.h, which values the axes take; sweep_points.h, the parameters
-   * of a point; sweep_blocks.h, what is computed together and in which order; sweep_rows.h, columns, rows and results
-   * of the table; sweep_inputs.h, what the answers depend on; point_table.h, to begin or to resume; sweep_worker.h, one
-   * rank's work.
+   * Parts, each used by those below it: sweep_design.h, values of the axes; sweep_points.h, the parameters of a point;
+   * sweep_blocks.h, grouping and order of the points, and one rank's work; sweep_rows.h, columns, rows and results of
+   * the table; sweep_inputs.h, inputs of the answers; point_table.h, to begin or to resume.
    */
   ExitCode
   sweep(MPI_Comm communicator, const CommandOptions &options);
-  /// The same of a parameter file that is read already.
+  /// Sweeps with a parameter file that has been read already.
   ExitCode
   sweep_input(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file);
 
   class SweepDesign;
 
-  /// Does the parameter file declare a sweep? Then says how large it is and how long it will take (`crawler check`).
+  /// Reports the size and the expected duration of the sweep in the parameter file (`crawler check`). Returns false if
+  /// there is none.
   bool
   check_sweep(MPI_Comm communicator, const ParameterFile &file, Log &log);
 

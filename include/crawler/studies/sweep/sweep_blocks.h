@@ -13,10 +13,10 @@
 namespace crawler
 {
   /**
-   * All points of a sweep in blocks of at most 256 neighbours, which share the numerics if they can. They do not depend
-   * on the number of ranks or on what is done already, so neither do the answers. A block does not go beyond the end of
-   * the last axis of a grid, or of the last two where the rows are short and the axis before it is of numbers: there
-   * its points would not be similar any more. Nothing is kept for a block.
+   * Points of a sweep in blocks of at most 256 neighbours, which share the numerics if they can. Blocks do not depend
+   * on the number of ranks or on rows that exist already, so neither do the answers. A block does not go beyond the end
+   * of the last axis of a grid, or of the last two where the rows are short and the axis before it is of numbers:
+   * beyond, its points would no longer be similar. Nothing is stored for a block.
    */
   class SweepBlocks
   {
@@ -28,7 +28,7 @@ namespace crawler
     unsigned long
     size() const;
 
-    /// Points of the largest block.
+    /// Number of points of the largest block.
     unsigned long
     largest() const;
 
@@ -40,16 +40,16 @@ namespace crawler
   };
 
   /**
-   * The order in which the blocks are computed. Longest first, as far as that is known: by the duration and the number
-   * of digits wanted. Otherwise spread over the whole sweep from the beginning (golden_stride() in study.h), so the
-   * time left is known early.
+   * Order in which the blocks are computed: longest first, as far as that is known, by the duration and the number of
+   * digits wanted. Otherwise spread over the whole sweep from the beginning (golden_stride() in study.h), so the time
+   * left is known early.
    */
   class SweepOrder
   {
   public:
     SweepOrder(const SweepBlocks &blocks, SweepPoints &points);
 
-    /// The number of the block whose turn it is as number @p i.
+    /// Number of the block that is computed as number @p i.
     unsigned long
     operator[](unsigned long i) const;
 
@@ -59,9 +59,8 @@ namespace crawler
   };
 
   /**
-   * One rank's part of the work of a sweep. The work is handed out in parts of blocks, small enough that each of
-   * @p n_ranks gets several; who computes a part does not change its answers, since the numerics are those of its
-   * block.
+   * Work of one rank in a sweep. The work is handed out in parts of blocks, small enough that each of @p n_ranks gets
+   * several; the answers do not depend on the rank that computes a part, since the numerics are those of its block.
    */
   class SweepWork
   {
@@ -71,18 +70,17 @@ namespace crawler
     unsigned long
     n_parts() const;
 
-    /// Takes the rows of points in succession, from the one with this number on.
+    /// Receives the rows of consecutive points, the first of which is number @p first.
     using WriteRows = std::function<void(unsigned long first, std::span<const RowFile::Row> rows)>;
 
-    /// Points at which a process died before come last and alone from now on; those at which it died twice are not
-    /// computed, and their rows say so. @p note is told which are computed, and must live as long as this.
+    /// Puts points at which a process died before last and alone; those at which it died twice are not computed, and
+    /// their rows say so. @p note is told which points are computed, and must outlive this object.
     void
     beware_of(Crashes crashes, CrashNote &note);
 
-    /// Computes the points of the part @p number that have no row yet (@p done), and gives their rows to @p write.
-    /// Calls
-    /// @p see when rows have been written, with their number and how many of these did not finish. Returns false if it
-    /// was interrupted. Throws what @p write throws.
+    /// Computes the points of the part @p number that have no row yet (@p done), and passes their rows to @p write.
+    /// Calls @p see when rows have been written, with their number and the number of these that did not finish. Returns
+    /// false if it was interrupted. Throws what @p write throws.
     bool
     compute(unsigned long number,
             const std::vector<bool> &done,
@@ -90,29 +88,29 @@ namespace crawler
             const std::function<bool()> &interrupted,
             const std::function<void(unsigned long n, unsigned long failed)> &see);
 
-    /// The answers of the points of the part @p number, without files; their number.
+    /// Computes the points of the part @p number without files; returns their number.
     unsigned long
     try_out(unsigned long number);
 
   private:
     SweepBlock
     block_of(unsigned long part) const;
-    /// Its points, in order.
+    /// Points of the part @p number, in order.
     std::vector<unsigned long>
     part(unsigned long number) const;
 
-    /// Computes points of one part with the numerics that they share; what it returns has been computed.
+    /// Computes points of one part with the numerics that they share; returns those that succeeded.
     struct Point;
     std::vector<Point>
     compute_shared(const SweepBlock &block,
                    const std::vector<unsigned long> &points,
                    const std::function<bool()> &interrupted);
 
-    /// Adds the sensitivities that are wanted to those that finished.
+    /// Adds the requested sensitivities to the points that finished.
     void
     differentiate(std::vector<Point> &points, const std::function<bool()> &interrupted);
 
-    /// Adds the other runs of a cross-check, if one is wanted.
+    /// Adds the other runs of a cross-check, if one is requested.
     void
     check(std::vector<Point> &points, const std::function<bool()> &interrupted) const;
 
@@ -122,7 +120,7 @@ namespace crawler
     const unsigned long parts_of_block_;
     const double time_limit_; ///< for each point [s]
     SweepNumerics numerics_;
-    Crashes crashes_; ///< how often a process died at a point
+    Crashes crashes_; ///< number of times a process died at each point
     CrashNote *note_ = nullptr;
   };
 } // namespace crawler

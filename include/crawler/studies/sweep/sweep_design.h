@@ -9,14 +9,14 @@
 
 namespace crawler
 {
-  /// Something that varies over a sweep: an entry, or the parameter file itself.
+  /// Quantity that varies over a sweep: an entry, or the parameter file itself.
   struct SweepAxis
   {
     static constexpr const char *file = "File";
 
     std::string entry; ///< "Section/Entry", or "File"
-    /// Of a grid each value once, of a zip one for each point, of a random design those that it draws from, of a range
-    /// its two ends: in any case what has to be admissible.
+    /// Values of the axis: of a grid each one once, of a zip one for each point, of a random design those that it draws
+    /// from, of a range its two ends; all of them must be admissible.
     std::vector<std::string> values;
     bool is_range = false, is_logarithmic = false;
 
@@ -27,13 +27,13 @@ namespace crawler
     }
   };
 
-  /// All points of a sweep, numbered from 0.
+  /// Points of a sweep, numbered from 0.
   class SweepDesign
   {
   public:
-    /// Reads the axes, with the CSV files that they name, whose names count from @p folder. Throws InputError in the
-    /// name of the entry Sweep/Axes if they do not make sense, if the axes of a zip have different lengths or if there
-    /// are more than SweepParameters::most_points.
+    /// Reads the axes, with the CSV files that they name, relative to @p folder. Throws InputError in the name of the
+    /// entry Sweep/Axes if they do not make sense, if the axes of a zip have different lengths or if there are more
+    /// than SweepParameters::most_points.
     explicit SweepDesign(const SweepParameters &parameters, std::filesystem::path folder = "");
 
     unsigned long
@@ -47,33 +47,34 @@ namespace crawler
       return axes_;
     }
 
-    /// Of axis @p number. Of a grid the last one varies fastest. Nothing is kept for random points: they are computed.
+    /// Value of axis @p number at a point. The last axis of a grid varies fastest. Random values are not stored but
+    /// computed.
     std::string
     value(std::size_t number, unsigned long point) const;
 
-    /// From which the names of files on the axes count.
+    /// Folder to which the names of files on the axes are relative.
     const std::filesystem::path &
     folder() const
     {
       return folder_;
     }
 
-    /// The points next to a point: of a grid one step away on one axis, otherwise the one before and the one after.
+    /// Points next to a point: of a grid one step away on one axis, otherwise the previous one and the next one.
     std::vector<unsigned long>
     neighbours(unsigned long point) const;
 
-    /// Does the entry vary from point to point?
+    /// Returns true if the entry varies from point to point.
     bool
     varies(const std::string &entry) const;
 
-    /// Does point i have the value i of each axis?
+    /// Returns true if point i has the value i of each axis.
     bool
     is_zip() const
     {
       return kind_ == Kind::zip;
     }
 
-    /// So many points in succession differ in the last axis only: its length for a grid, otherwise 1.
+    /// Number of consecutive points that differ in the last axis only: its length for a grid, otherwise 1.
     unsigned long
     run_length() const
     {

@@ -13,24 +13,24 @@
 
 namespace crawler
 {
-  /// Points in succession.
+  /// Consecutive points.
   struct SweepBlock
   {
     unsigned long first, size;
   };
 
   /**
-   * The numerics that the points of a block share, measured on a few of them that lie as far apart as they can. Where
-   * these have nothing in common the halves of the block are tried, and so on. The answer for a point depends on its
-   * block alone, not on who asks and in which order. Sweeps of few points share nothing: there each rank would measure
-   * for too few points. With a cross-check each point chooses for itself, as `crawler run` does.
+   * Numerics that the points of a block share, measured on a few of them that lie as far apart as possible. Where these
+   * have nothing in common the halves of the block are tried, and so on. The answer for a point depends on its block
+   * alone, not on who asks and in which order. Sweeps of few points share nothing: each rank would measure for too few
+   * points. With a cross-check each point chooses for itself, as `crawler run` does.
    */
   class SweepNumerics
   {
   public:
     explicit SweepNumerics(SweepPoints &points);
 
-    /// Do the points of this sweep share anything?
+    /// Returns true if the points of this sweep share numerics.
     static bool
     are_shared(const SweepPoints &points)
     {
@@ -39,19 +39,19 @@ namespace crawler
 
     struct Shared
     {
-      SweepBlock points;          ///< that share it
-      const SharedChoice *choice; ///< null if they share nothing; good until a point of another block is asked for
+      SweepBlock points;          ///< points that share it
+      const SharedChoice *choice; ///< null if they share nothing; valid until a point of another block is requested
     };
 
-    /// For the points from @p point on; @p keep_going may end the search, which is not begun again then.
+    /// Numerics of the points from @p point on; @p keep_going may end the search, which is not begun again then.
     Shared
     at(const SweepBlock &block, unsigned long point, const std::function<bool()> &keep_going);
 
-    /// About what the displacement of a point is, from those of the examples [length].
+    /// Estimate of the displacement of a point from those of the examples [length].
     double
     size_at(const Shared &shared, unsigned long point);
 
-    /// A point as a task.
+    /// Task of a point.
     Task
     task(unsigned long point) const;
 
@@ -69,7 +69,7 @@ namespace crawler
     place(unsigned long point) const;
 
     SweepPoints &points_;
-    std::optional<unsigned long> block_;                             ///< its first point
+    std::optional<unsigned long> block_;                             ///< first point of the block
     std::map<std::pair<unsigned long, unsigned long>, Known> known_; ///< of that block and its parts
   };
 } // namespace crawler

@@ -14,12 +14,11 @@
 
 namespace crawler
 {
-  /// The parameters of all points of a sweep: the parameter file as a form in which the values of the axes are filled
-  /// in.
+  /// Parameters of all points of a sweep: the parameter file as a form in which the values of the axes are filled in.
   class SweepPoints
   {
   public:
-    /// Reads the design and looks at all names and values (collective: rank 0 looks at the files of a file axis, which
+    /// Reads the design and checks all names and values (collective: rank 0 examines the files of a file axis, which
     /// are read again when their points need them). Throws InputError, with the place in the file.
     SweepPoints(MPI_Comm communicator, const ParameterFile &file);
 
@@ -34,33 +33,33 @@ namespace crawler
       return sweep_;
     }
 
-    /// The entries of the file itself, without an axis.
+    /// Entries of the file itself, without an axis.
     const Declarations &
     declarations() const;
 
-    /// The files on the file axis: their different names, sorted, and one of them, which is read now. Throws
-    /// InputError, FileError.
+    /// Files on the file axis: their different names, sorted, and one of them, which is read now. Throws InputError,
+    /// FileError.
     std::vector<std::string>
     scene_names() const;
     ParameterFile
     scene(const std::string &name) const;
 
-    /// All entries as they are used, but for the axes, as a .prm file.
+    /// Entries as used, except for the axes, as a .prm file.
     const std::string &
     effective() const
     {
       return effective_;
     }
 
-    /// What the axes fill in.
+    /// Entries that the axes fill in.
     VariedEntries
     varied() const;
 
-    /// On entries without an effect at any point.
+    /// Notes on entries without an effect at any point.
     std::vector<std::string>
     notes() const;
 
-    /// The entries of a point; good until the next call.
+    /// Entries of a point; valid until the next call.
     Form &
     form(unsigned long point);
     const Parameters &
@@ -69,22 +68,24 @@ namespace crawler
       return form(point).parameters;
     }
 
-    /// By which the numbers of all points are differentiated.
+    /// Entries by which the numbers of all points are differentiated.
     const std::vector<SensitivityEntry> &
     sensitivities() const
     {
       return sensitivities_;
     }
 
-    /// The same as overrides "Section/Entry=value" of a command line: the file of the axis, the user, the axes.
+    /// Entries of a point as overrides "Section/Entry=value" of a command line: the file of the axis, the user, the
+    /// axes.
     std::vector<std::string>
     overrides(unsigned long point) const;
 
-    /// The numbers in Sweep/Keep fields. Throws InputError if one is not that of a point.
+    /// Point numbers in Sweep/Keep fields. Throws InputError if one is not that of a point.
     std::vector<unsigned long>
     kept_points() const;
 
-    /// Throws InputError, with the place in the file, if Sweep/Cross-check is wanted where answers cannot be compared.
+    /// Throws InputError, with the place in the file, if Sweep/Cross-check is requested where answers cannot be
+    /// compared.
     void
     require_checkable();
 
@@ -103,8 +104,9 @@ namespace crawler
     std::unique_ptr<SweepDesign> design_;
     std::string effective_;
     std::vector<SensitivityEntry> sensitivities_;
-    std::size_t file_axis_ = 0;                          ///< number of axes: none
-    std::unique_ptr<Form> base_;                         ///< of the file itself
-    std::map<std::string, std::unique_ptr<Form>> forms_; ///< of those files of the file axis that were needed lately
+    std::size_t file_axis_ = 0;                          ///< number of axes if there is none
+    std::unique_ptr<Form> base_;                         ///< form of the file itself
+    std::map<std::string, std::unique_ptr<Form>> forms_; ///< forms of the files of the file axis that were needed
+                                                         ///< lately
   };
 } // namespace crawler

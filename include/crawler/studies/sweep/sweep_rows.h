@@ -18,20 +18,20 @@ namespace crawler
 {
   class Declarations;
 
-  /// The columns of results.h5 (a contract, doc/user_guide.md, "Sweep"): index, the axes, the numbers of summary.json
-  /// with dots for nesting, those of the sensitivities that are wanted, those of a cross-check (checked_runs.h),
-  /// seconds, reason, message, and status, which is written last.
+  /// Columns of results.h5 (a contract, doc/user_guide.md, "Sweep"): index, the axes, the numbers of summary.json with
+  /// dots for nesting, those of the requested sensitivities, those of a cross-check (checked_runs.h), seconds, reason,
+  /// message, and status, which is written last.
   std::vector<RowFile::Column>
   sweep_columns(const SweepPoints &points);
 
   extern const std::string sweep_file, sweep_group; ///< results.h5, and the group in it
 
-  /// The row of a point that has been computed, in the columns after the known ones.
-  /// @p sensitivities: the entries by which it was differentiated; @p checked: of checked_columns(), if it has them.
+  /// Row of a point that has been computed, in the columns after the known ones. @p sensitivities: the entries by which
+  /// it was differentiated; @p checked: values of checked_columns(), if there are any.
   RowFile::Row
   sweep_row(const Task &task, const std::vector<SensitivityEntry> &sensitivities, const RowFile::Row &checked = {});
 
-  /// How often which status, reason and verdict stands in the table.
+  /// Number of rows with each status, reason and verdict in the table.
   struct SweepCounts
   {
     std::map<std::string, unsigned long> statuses, ///< "missing": not computed
@@ -42,7 +42,7 @@ namespace crawler
 
     unsigned long
     number_of(Verdict::Kind kind) const;
-    /// Points with two answers at least.
+    /// Number of points with at least two answers.
     unsigned long
     checked() const
     {
@@ -58,21 +58,21 @@ namespace crawler
                     const std::string &file  = sweep_file,
                     const std::string &group = sweep_group);
 
-  /// How a sweep ended.
+  /// End of a sweep.
   struct SweepEnd
   {
     std::string status, reason; ///< finished, or stopped by time_limit or signal
     double seconds;
     unsigned int n_ranks;
-    unsigned long n_before; ///< rows that were there at the start
+    unsigned long n_before; ///< rows that existed at the start
     std::string command_line;
   };
 
-  /// Rows that this start has made.
+  /// Number of rows that this start has computed.
   unsigned long
   n_computed(const SweepCounts &counts, const SweepEnd &end);
 
-  /// The content of summary.json.
+  /// Content of summary.json.
   std::string
   sweep_json(const SweepCounts &counts, const SweepEnd &end);
 } // namespace crawler
