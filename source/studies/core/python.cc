@@ -17,7 +17,7 @@ namespace crawler
 {
   namespace
   {
-    /// Where a script is looked for: where it is installed with the program, and in the build folder.
+    /// Paths at which a script is looked for: where it is installed with the program, and in the build folder.
     std::array<std::filesystem::path, 2>
     places_of_script(const std::string &name, const std::filesystem::path &program)
     {
