@@ -69,7 +69,7 @@ namespace crawler
         section[root.size()] = static_cast<char>(std::toupper(static_cast<unsigned char>(section[root.size()])));
         if (name == "none" || (name == "sum" && !has_sum))
           continue;
-        // A strain given by a formula or a table has entries of its own.
+        // Strains given by a formula or a table have entries of their own.
         const bool gives_strain = name != "expression" && name != "table" && name != "prescribed strain";
         rules.push_back(
           {{section}, {{root + "Generator", gives_strain ? any_of({name, "prescribed strain"}) : any_of({name})}}});
@@ -173,7 +173,7 @@ namespace crawler
       rules.push_back(
         {{output + "Snapshot format", output + "Kymograph"}, {{output + "Number of snapshots", is_not(0.)}}});
       rules.push_back({{output + "Ledger tolerance"}, {{output + "Ledger", any_of({"true"})}}});
-      // The series has no balance to check.
+      // Perturbation, a series, has no energy balance to check.
       rules.push_back(
         {{output + "Ledger tolerance"}, {{"Model", any_of({"auto", "kinematic", "linear", "nonlinear"})}}});
       // Cycle stop is off by default with fixed steps.

@@ -132,7 +132,7 @@ namespace crawler
     std::error_code error;
     if (!fs::exists(folder, error))
     {
-      // The nearest folder that exists must let us make the missing ones.
+      // Missing folders are made in the nearest one that exists, which must be writable.
       fs::path parent = fs::absolute(folder).parent_path();
       while (!fs::exists(parent, error) && parent.has_relative_path())
         parent = parent.parent_path();

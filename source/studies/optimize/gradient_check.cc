@@ -43,8 +43,7 @@ namespace crawler
         const auto p = static_cast<std::size_t>(place - values.begin());
         list.push_back(
           {fmt::format("{} {}", place == least ? "smallest" : "largest", name),
-           [=](const GaitValues &there) { return (there.*block).values[p]; }, // at this place: others may have the same
-                                                                              // value
+           [=](const GaitValues &there) { return (there.*block).values[p]; }, // X // value
            [=](const GaitValues &there, const std::size_t i) { return (*(there.*block).jacobian)[p * n + i]; }});
       }
     }

@@ -44,7 +44,7 @@ namespace crawler
       }
 
       std::vector<RowFile::Column> columns;
-      RowFile::Row values; ///< if they are written
+      RowFile::Row values; ///< values, if they are written
 
       void
       number(const RowFile::Column &column, double &value)
@@ -73,7 +73,7 @@ namespace crawler
       }
 
     private:
-      const Table *table_ = nullptr; ///< if they are read
+      const Table *table_ = nullptr; ///< table, if the fields are read
       unsigned long row_  = 0;
     };
 

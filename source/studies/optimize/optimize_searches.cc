@@ -195,7 +195,7 @@ namespace crawler
     return static_cast<std::size_t>(std::ranges::count_if(parts_, [](const Part &part) { return part.neighbour > 0; }));
   }
 
-  /// For each case whose best gait is beaten by that of a neighbour, the best one of these as a new start.
+  /// New starts: for each case whose best gait is beaten by that of a neighbour, the best one of these.
   std::vector<Part>
   OptimizeSearches::parts_from_neighbours()
   {

@@ -23,7 +23,7 @@ namespace crawler
       const auto holds = [](const LimitEntry &limit) { return limit.value && limit.name != "Largest stress rate"; };
       if (p.objective == "cost of transport" || std::ranges::any_of(limits_of(p), holds))
         return;
-      for (const Variable &variable : variables) // ranges are limits, but not meant as such
+      for (const Variable &variable : variables) // ranges are not meant as limits
         if (variable.path.starts_with("Active stress/Modes/Coefficients"))
           throw InputError(
             "there is no limit on strain, stress or work: the " + p.objective +

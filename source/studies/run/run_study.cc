@@ -443,7 +443,7 @@ namespace crawler
     result_.time.message = fmt::format("stopped {} {}", stops_.in_words(), when);
   }
 
-  /// Does @p work unless the run has ended.
+  /// Performs @p work unless the run has ended.
   template <typename Work>
   void
   RunStudy::guarded(const Work &work)

@@ -15,9 +15,9 @@ namespace crawler
   enum class GaitNumber
   {
     displacement,
-    work,          ///< of the active stress over the duration
-    positive_work, ///< positive part of the same work
-    mean_square,   ///< of the strain
+    work,          ///< stress work over the duration
+    positive_work, ///< positive stress work over the duration
+    mean_square,   ///< mean square of the strain
     speed,
     friction_time, ///< T/(gamma L): the merit is D/sqrt(W T/(gamma L))
     dissipation,
@@ -47,7 +47,7 @@ namespace crawler
   struct LimitedValues
   {
     std::vector<double> values;
-    std::shared_ptr<const std::vector<double>> jacobian; ///< if requested
+    std::shared_ptr<const std::vector<double>> jacobian; ///< null unless requested
   };
 
   /// Numbers of a gait.

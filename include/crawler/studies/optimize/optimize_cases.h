@@ -96,7 +96,7 @@ namespace crawler
     add_case(unsigned long number);
 
     Form file_form_;
-    std::unique_ptr<SweepPoints> points_; ///< if there are axes
+    std::unique_ptr<SweepPoints> points_; ///< null if there are no axes
     OptimizeNames names_;
   };
 } // namespace crawler

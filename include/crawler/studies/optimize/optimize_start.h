@@ -28,7 +28,7 @@ namespace crawler
     GaitRecord best = {};
     std::vector<GaitLimit> limits;
     bool has_converged = false, was_interrupted = false;
-    std::string message; ///< if it has not converged
+    std::string message; ///< reason, if it has not converged
     unsigned int iterations = 0;
     double admissible       = 0.; ///< admissible violation of a limit, relative to it
     double seconds          = 0.;

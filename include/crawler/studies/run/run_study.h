@@ -102,7 +102,7 @@ namespace crawler
     RunStops stops_;
 
     std::optional<ModelChoice> model_;
-    std::optional<NumericsChoice> choice_; ///< for a level with a mesh
+    std::optional<NumericsChoice> choice_; ///< numerics of a level with a mesh
     Sharing sharing_;
     PictureTimes pictures_;
     std::optional<Scene> scene_with_fronts_;
