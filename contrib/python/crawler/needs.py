@@ -48,7 +48,7 @@ def script():
 
 
 def complain(sentence):
-    """Prints an error after the name of the script, unless the sentence begins with that of the program."""
+    """Prints an error after the name of the script; alone in __main__.py, where that of the program precedes it."""
     print(sentence if script() == "__main__.py" else f"{script()}: {sentence}", file=sys.stderr)
 
 

@@ -196,8 +196,7 @@ def read_kymograph(path):
     parts of the length and of the end time; others belong to the whole, e.g. "shown_stretch" [2], the range of a field
     in pictures. Raises FileError if the file is damaged."""
     try:
-        grid = ElementTree.parse(path).getroot().find("StructuredGrid")  # numbers in base 64, after that of their byte
-                                                                         # count
+        grid = ElementTree.parse(path).getroot().find("StructuredGrid")  # base 64: number of bytes, then values
         arrays = {array.get("Name"): np.frombuffer(base64.b64decode(array.text)[8:])
                   for array in grid.iter("DataArray") if array.get("type") == "Float64"}
         _, last, _, last_row, _, _ = map(int, grid.find("Piece").get("Extent").split())

@@ -10,11 +10,8 @@ from ..needs import FileError, InputError, write_whole
 from .folder import bytes_of, drawn, require_usable
 
 TABLE, SUMMARY, PAGES = "comparison.csv", "summary.json", ("comparison.png", "report.html")
-WEIGHED_BY = tuple(f"Fit/{name}" for name in ("Standard deviation", "Place deviation", "Origin", "First time"))  # entries
-                                                                                                                 # that
-                                                                                                                 # weigh
-                                                                                                                 # the
-                                                                                                                 # data
+# Entries that weigh the data.
+WEIGHED_BY = tuple(f"Fit/{name}" for name in ("Standard deviation", "Place deviation", "Origin", "First time"))
 
 
 class Comparison:

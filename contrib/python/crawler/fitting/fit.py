@@ -26,10 +26,9 @@ class Problem:
         self.width = model.high - model.low
         units = [one.deviation or float(np.nanstd(one.values - np.nanmean(one.values, axis=0))) or 1.0 for one in data.series]
         self.scales = data.relative * data.flat(units)  # [datum]
-        self.scale = units[0] if len(units) == 1 else 1.0  # scale of reported residuals: those of several kinds are in
-                                                           # deviations
+        self.scale = units[0] if len(units) == 1 else 1.0  # of reported residuals; in deviations for several kinds
         self.n_rows = len(data.places) if 0 < data.place_deviation < math.inf else 0  # rows that hold places
-        self.last = None  # scaled variables, values of the last run, and the complement of the nuisance
+        self.last = None  # scaled variables, values of the last run, and the basis of the nuisance
         self.least = (math.inf, None, data.places)  # least sum of squares so far, with its scaled variables and places
 
     def run(self, z):
