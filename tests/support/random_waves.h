@@ -48,7 +48,7 @@ namespace crawler::test
     std::mt19937_64 generator_{20261121};
   };
 
-  /// By the nonlinear model, to 1e-6 of it; nothing if the run does not finish.
+  /// Displacement of the nonlinear model, to a relative 1e-6; nothing if the run does not finish.
   inline std::optional<double>
   true_displacement(Settings settings)
   {

@@ -14,7 +14,7 @@ from ..needs import FileError, InputError
 from ..results import parameters_of, read_columns, read_kymograph
 from .numbers import DIGITS, Column, fields_of, plain, some
 
-MOST_STEPS, MOST_ROWS, MOST_BYTES = 2000, 100000, 9000000  # limits for a run; for a table; for a table [byte]
+MOST_STEPS, MOST_ROWS, MOST_BYTES = 2000, 100000, 9000000  # limits of a run; of a table: page < 10 MB
 
 
 def text_of(path):
