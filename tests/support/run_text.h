@@ -84,7 +84,7 @@ namespace crawler::test
     return run_with(parameters_with(settings), options);
   }
 
-  /// The optimal wave with one harmonic a_1 = 1, L = gamma = 1.
+  /// Settings of the optimal wave with one harmonic a_1 = 1, L = gamma = 1.
   inline Settings
   wave(const double a, const double chi, const double speed = 1., const double end_time = 1., const double k = 1.)
   {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The command line of crawler report, and the page with its data: page.html with page.css and scripts of this folder."""
+"""Command line of crawler report, and the page with its data: page.html with page.css and scripts of this folder."""
 import json
 import os
 import pathlib
