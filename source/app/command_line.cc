@@ -26,7 +26,7 @@ namespace crawler
 {
   namespace
   {
-    /// Says what went wrong. Returns the exit code.
+    /// Prints an error message. Returns the exit code.
     int
     say(const ExitCode code, const std::string &message)
     {
@@ -35,26 +35,25 @@ namespace crawler
       return static_cast<int>(code);
     }
 
-    /// The same of an error of one rank, or of all.
+    /// Reports an error of one rank, or of all.
     int
     report_error(MPI_Comm communicator, const ExitCode code, const std::string &message, const bool on_all_ranks)
     {
       if (!on_all_ranks || rank_of(communicator) == 0)
         say(code, message);
-      // A rank that fails alone must not leave the others waiting.
+      // MPI_Abort, since a rank that fails alone would leave the others waiting.
       if (!on_all_ranks && size_of(communicator) > 1)
         MPI_Abort(communicator, static_cast<int>(code));
       return static_cast<int>(code);
     }
 
-    /// What the command line says, and all of the commands that compute nothing. Nothing is returned if there is still
-    /// something to do.
+    /// Handles the command line, and commands that compute nothing. Returns nothing if there is still work to do.
     std::optional<int>
     without_mpi(Commands &commands,
                 const std::vector<std::string> &arguments,
                 const std::vector<std::string> &petsc_options)
     {
-      const bool first = rank_of_launcher() == 0; // of several processes one speaks
+      const bool first = rank_of_launcher() == 0; // one of several processes prints
       const auto fail  = [&](const ExitCode code, const std::string &message) {
         return first ? say(code, message) : static_cast<int>(code);
       };
@@ -64,7 +63,7 @@ namespace crawler
           return 0;
         if (commands.needs_mpi())
         {
-          forced_instruction_set(); // or it says why not
+          forced_instruction_set(); // throws if it is not available
           return std::nullopt;
         }
         if (first)
@@ -93,7 +92,7 @@ namespace crawler
       }
     }
 
-    /// A command that computes; MPI is there.
+    /// Runs a command that computes, after MPI has started.
     int
     with_mpi(MPI_Comm communicator, const Commands &commands)
     {
@@ -159,7 +158,7 @@ namespace crawler
   {
     std::signal(SIGPIPE, SIG_IGN); // a run goes on when the reader of its output has ended
     std::signal(SIGXFSZ, SIG_IGN); // a file that becomes too large (ulimit -f) is a file that cannot be written
-    // What stands behind "--" is for PETSc, everything before it for us.
+    // Arguments behind "--" are for PETSc, all before it for the program.
     char **end       = argv + argc;
     char **separator = std::find_if(argv, end, [](const char *text) { return std::strcmp(text, "--") == 0; });
     char **petsc     = separator == end ? end : separator + 1;

@@ -29,7 +29,7 @@ namespace crawler
 {
   namespace
   {
-    /// Commands that contrib/python/crawler/__main__.py has.
+    /// Commands of contrib/python/crawler/__main__.py.
     constexpr std::pair<const char *, const char *> commands_in_python[] = {
       {"fit", "Finds numbers of a parameter file, with their uncertainty, from measured data"},
       {"report", "Makes a page for browsers, report.html, of the output folder of any other command"},
@@ -41,7 +41,7 @@ namespace crawler
       return std::ranges::any_of(commands_in_python, [&](const auto &command) { return name == command.first; });
     }
 
-    /// A command that reads a parameter file.
+    /// Command that reads a parameter file.
     struct Command
     {
       const char *name, *description;
@@ -181,7 +181,7 @@ namespace crawler
 
   namespace
   {
-    /// A word as a shell would take it.
+    /// Quotes a word for a shell.
     std::string
     quoted(const std::string &word)
     {
@@ -215,7 +215,7 @@ namespace crawler
       options_.command_line += " --";
     for (const std::string &word : petsc_options)
       options_.command_line += " " + quoted(word);
-    // They would be lines of their own in the files and messages that repeat them.
+    // Control characters would break lines in the files and messages that repeat the words.
     for (const std::string &word : arguments)
       if (std::any_of(
             word.begin(), word.end(), [](const char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }))
@@ -250,7 +250,7 @@ namespace crawler
     if (!petsc_options.empty())
     {
       check_petsc_options(petsc_options);
-      // they are for PETSc's objects, unless the user wants something else
+      // PETSc options are for its integrators, unless the user chooses another engine
       options_.overrides.insert(options_.overrides.begin(), "Time/Engine=petsc");
     }
     return true;

@@ -18,14 +18,14 @@ namespace crawler
 {
   namespace
   {
-    /// What may stand for the value of an option or for an argument of a command.
+    /// Admissible values of an option or of an argument of a command.
     struct Values
     {
       enum class Kind
       {
         none,
         words,
-        beginnings, ///< of a word: it goes on behind it
+        beginnings, ///< beginnings of a word, which continues behind them
         parameter_file,
         folder,
         file
@@ -78,7 +78,7 @@ namespace crawler
       return option.get_items_expected_max() > 0;
     }
 
-    /// What fills COMPREPLY.
+    /// Commands that fill COMPREPLY.
     std::string
     bash_action(const Values &values)
     {

@@ -12,8 +12,8 @@ namespace crawler
 {
   namespace
   {
-    /// A word of the command line for each example: which command it belongs to is its second word or, behind mpirun -n
-    /// N, its fifth.
+    /// Examples for all commands: the command to which an example belongs is its second word or, behind mpirun -n N,
+    /// its fifth.
     const std::vector<Example> all_examples = {
       {"crawler init earthworm > worm.prm", "a parameter file to begin with"},
       {"crawler init table --output my.prm", "the same into a file that is new"},

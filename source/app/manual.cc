@@ -13,7 +13,7 @@ namespace crawler
 {
   namespace
   {
-    /// Text as roff has it: no escapes, no requests, hyphens that can be copied.
+    /// Text in roff: no escapes, no requests, hyphens that can be copied.
     std::string
     roff(const std::string &text)
     {
@@ -23,7 +23,7 @@ namespace crawler
       return escaped;
     }
 
-    /// A name in bold, and what it means behind it.
+    /// Prints a name in bold with its meaning.
     void
     print_item(const std::string &name, const std::string &meaning)
     {

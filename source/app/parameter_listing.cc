@@ -26,7 +26,7 @@ namespace crawler
       std::function<void(const Declarations &, std::ostream &)> print;
     };
 
-    /// What a page says of the numbers in summary.json, and of the program that makes it.
+    /// Prints descriptions of the numbers in summary.json, and the versions of the program, for pages that show them.
     void
     print_results(const Declarations &, std::ostream &out)
     {
@@ -44,7 +44,7 @@ namespace crawler
       return list;
     }
 
-    /// All entries, with one term of a sum, to show its entries.
+    /// Declares all entries, with one term of a sum, to show its entries.
     void
     declare(Parameters &parameters, Declarations &declarations)
     {

@@ -19,14 +19,14 @@ namespace crawler
   {
     namespace fs = std::filesystem;
 
-    /// A kind of picture, and the files by which an output folder is known: one of them is there.
+    /// Kind of picture, and the files by any of which an output folder is recognised.
     struct Kind
     {
       const char *name, *of;
       std::vector<std::string> files;
     };
 
-    /// The first that fits is drawn; those without files only if their name is given.
+    /// Kinds in order: the first that fits is drawn; those without files only if their name is given.
     const std::vector<Kind> &
     kinds()
     {

@@ -16,7 +16,7 @@ namespace crawler
 {
   namespace
   {
-    /// Never over a file that is there.
+    /// Writes a file that does not exist yet.
     void
     write_new_file(const std::string &path, const std::string_view text)
     {
@@ -33,7 +33,7 @@ namespace crawler
       if (good)
         return;
       if (file != nullptr)
-        std::remove(path.c_str()); // it was not there before
+        std::remove(path.c_str()); // created just now
       throw FileError(fmt::format("cannot write \"{}\": {}", path, std::strerror(error)), /*on_all_ranks=*/true);
     }
   } // namespace

@@ -13,7 +13,7 @@ namespace crawler
 {
   namespace
   {
-    /// What stands behind a command without a name of its own.
+    /// Positional argument of a command, without a name of its own.
     struct Argument
     {
       const char *name, *meaning, *usage;
@@ -24,7 +24,7 @@ namespace crawler
                                                   {"SHELL", "shell", "SHELL"},
                                                   {"SECTION", "section", "SECTION"}};
 
-    /// Whether @p words, the first of which is the command, are too few or too many. Empty if they are not.
+    /// Error message if @p words, the first of which is the command, are too few or too many; empty otherwise.
     std::string
     count_error(const CLI::App &command, const std::vector<std::string> &words)
     {
@@ -43,7 +43,7 @@ namespace crawler
       return "";
     }
 
-    /// A setting that the shell has cut at its blanks, or that has a blank for its "=".
+    /// Throws InputError for a setting that the shell has split at its blanks, or that has a blank instead of its "=".
     void
     require_whole_settings(const std::vector<std::string> &arguments)
     {

@@ -10,14 +10,14 @@
 
 namespace crawler::test
 {
-  /// Nobody interrupts.
+  /// Interrupts nothing.
   inline bool
   never()
   {
     return false;
   }
 
-  /// What `crawler run` computes, without files.
+  /// Computes what `crawler run` does, without files.
   inline Computed
   computed(const Parameters &parameters)
   {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Chromium without a window, steered through a pipe (the Chrome DevTools Protocol); nothing but Python is needed."""
+"""Chromium without a window, controlled through a pipe (the Chrome DevTools Protocol); only Python is needed."""
 import base64
 import json
 import os
@@ -12,7 +12,7 @@ from program import PATIENCE
 
 
 class Browser:
-    """One page in a browser of its own: with Browser() as browser: browser.open(path)."""
+    """Page in a browser of its own: with Browser() as browser: browser.open(path)."""
 
     def __init__(self):
         self.program = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -35,7 +35,7 @@ class Browser:
         os.close(from_browser)
         self.number, self.buffer, self.session, self.loaded = 0, b"", None, False
         self.complaints = []  # errors and warnings of the page
-        self.requests = []    # what it asked for
+        self.requests = []    # requests of the page
         target = next(one for one in self.call("Target.getTargets")["targetInfos"] if one["type"] == "page")
         self.session = self.call("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
@@ -52,7 +52,7 @@ class Browser:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def message(self):
-        """The next message of the browser; what pages complain about is kept."""
+        """Next message of the browser; complaints of pages are recorded."""
         while b"\0" not in self.buffer:
             if not select.select([self.read], [], [], PATIENCE)[0]:
                 raise RuntimeError("the browser does not answer")
@@ -69,7 +69,7 @@ class Browser:
         elif method == "Runtime.consoleAPICalled" and values["type"] in ("error", "warning", "assert"):
             self.complaints.append(str([one.get("value") for one in values["args"]]))
         elif method == "Log.entryAdded" and values["entry"]["level"] in ("error", "warning"):
-            if "willReadFrequently" not in values["entry"]["text"]:  # tests that look at pictures read them
+            if "willReadFrequently" not in values["entry"]["text"]:  # caused by tests that read pictures
                 self.complaints.append(values["entry"]["text"])
         elif method == "Network.requestWillBeSent":
             self.requests.append(values["request"]["url"])
@@ -78,7 +78,7 @@ class Browser:
         return message
 
     def call(self, method, **values):
-        """The answer of the browser."""
+        """Calls a method of the browser; returns its answer."""
         self.number += 1
         request = {"id": self.number, "method": method, "params": values}
         if self.session:
@@ -92,7 +92,7 @@ class Browser:
                 return message["result"]
 
     def open(self, path, width=1200, height=900, dark=False):
-        """Loads a file; its size and colour scheme are as given."""
+        """Loads a file with the given size and colour scheme."""
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
         self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
         self.loaded = False
@@ -106,11 +106,11 @@ class Browser:
         self.ask("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done))))")
 
     def wait_for(self, condition):
-        """Until this expression is true in the page, which looks at it whenever it draws."""
+        """Waits until this expression is true in the page, which evaluates it whenever it draws."""
         self.ask(f"new Promise(done => {{ const look = () => {condition} ? done() : requestAnimationFrame(look); look(); }})")
 
     def ask(self, expression):
-        """The value of an expression in the page."""
+        """Value of an expression in the page."""
         answer = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in answer:
             raise RuntimeError(f"{expression}: {answer['exceptionDetails'].get('exception', {}).get('description')}")
@@ -127,13 +127,13 @@ class Browser:
         self.settle()
 
     def mouse(self, x, y, click=False):
-        """Moves the pointer to a place in the window, and presses its button."""
+        """Moves the pointer to a place in the window, and clicks there if click."""
         self.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
         for kind in ("mousePressed", "mouseReleased") if click else ():
             self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
         self.settle()
 
     def picture(self, path, whole=True):
-        """A PNG of the whole page, or of the window."""
+        """Takes a PNG of the whole page, or of the window."""
         data = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)["data"]
         path.write_bytes(base64.b64decode(data))

@@ -7,7 +7,7 @@
 
 namespace crawler::test
 {
-  /// The derivative of @p f at 0, by central differences of fourth order.
+  /// Derivative of @p f at 0, by central differences of fourth order.
   inline std::vector<double>
   derivative(const std::function<std::vector<double>(double step)> &f)
   {

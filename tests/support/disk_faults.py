@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Commands that cannot write: what tests of full disks do with every command, and what they expect of it."""
+"""Commands that cannot write: operations of tests of full disks on every command, and the expected behaviour."""
 import csv
 import os
 import resource
@@ -59,26 +59,27 @@ subsection Time
 end
 """
 SAMPLES = "s,t,m\n" + "".join(f"{s / 4},{t / 8},{(s - t) % 3}\n" for t in range(9) for s in range(5))
-TIMES = ("seconds", "cost", "memory", "speed", "time of")  # in names of columns that differ from run to run
+TIMES = ("seconds", "cost", "memory", "speed", "time of")  # parts of names of columns that differ from run to run
 
 
 def content(folder):
-    """All files by name; the folder itself, which some name, is FOLDER."""
+    """Contents of all files by name; the folder itself, which some name, is FOLDER."""
     return {str(path.relative_to(folder)): path.read_bytes().replace(str(folder).encode(), b"FOLDER")
             for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
 class Case:
-    """A command. {out}: where its results go, a folder or a file; {in}: a folder with inputs."""
+    """Command. {out}: place of its results, a folder or a file; {in}: a folder with inputs."""
 
-    program = None  # the path to crawler
+    program = None  # path to crawler
 
     def __init__(self, name, words, resumes=True, prepared=None, to_screen=False, place="out"):
         self.name, self.words, self.resumes, self.prepared = name, words, resumes, prepared
         self.to_screen, self.place = to_screen, place
 
     def start(self, out, inputs, options=(), largest=None):
-        """The finished process; out is where results go, largest the size of the largest file in bytes."""
+        """Runs the command; returns the finished process. out: place of the results, largest: size of the largest file
+        in bytes."""
         words = [str(word).replace("{out}", str(out)).replace("{in}", str(inputs)) for word in self.words]
 
         def limit():
@@ -93,41 +94,42 @@ class Case:
         try:
             with open(out, "w", encoding="utf-8") as file:
                 return call(command, preexec_fn=limit, stdout=file, **more)
-        except OSError:  # no room for the name of the file: that is the shell's affair
+        except OSError:  # no room for the name of the file: an error of the shell
             return None
 
 
 def without_times(text):
-    """The rows of a table without columns that differ from run to run."""
+    """Rows of a table without columns that differ from run to run."""
     rows = list(csv.reader(text.decode().splitlines()))
     kept = [i for i, name in enumerate(rows[0]) if not any(word in name for word in TIMES)]
     return [[row[i] for i in kept] for row in rows]
 
 
 class Faults:
-    """Counts commands that were disturbed, and judges them."""
+    """Counts disturbed commands, and judges them."""
 
     def __init__(self, checks):
         self.checks, self.n = checks, 0
 
     def compare(self, case, folder, whole, what):
-        """Are these the files of an undisturbed command?"""
+        """Expects the files of an undisturbed command."""
         ours = content(folder) if folder.is_dir() else {"": folder.read_bytes()}
         free = {"log.txt", "restart.dat", "restart.old.dat"}
         self.checks.expect(set(ours) - free == set(whole) - free, f"{what}: other files: {sorted(set(ours) ^ set(whole))}")
         for name in set(ours) & set(whole) - free:
             if name.endswith(("results.csv", "starts.csv", "optima.csv")):
                 same = without_times(ours[name]) == without_times(whole[name])
-            elif name.endswith(".prm") and "recommendations" not in name:  # comments stand behind names of folders
+            elif name.endswith(".prm") and "recommendations" not in name:  # comments follow names of folders
                 same = ours[name].split() == whole[name].split()
             elif name.endswith((".vtu", ".vts", ".pvd", "sensitivity_body.csv", "statistics.csv", "stress.csv")):
                 same = ours[name] == whole[name]
-            else:  # times are in them
+            else:  # contain times
                 same = abs(len(ours[name]) - len(whole[name])) < 0.2 * len(whole[name]) + 200
             self.checks.expect(same, f"{what}: {name} is another one")
 
     def judge(self, done, out, before, what):
-        """A command that could not write: exit code, sentence, older files. Returns whether it had room enough."""
+        """Judges a command that could not write: exit code, sentence, older files. Returns True if it had enough
+        room."""
         if done is None:
             return False
         self.n += done.returncode != 0
@@ -145,7 +147,7 @@ class Faults:
         return False
 
     def resumed(self, case, out, inputs, whole, what):
-        """With room enough, the command goes on to the end."""
+        """Expects the command, with enough room, to go on to the end."""
         options = ["--resume"] if case.resumes else []
         if not case.resumes and case.prepared is None:
             out.unlink(missing_ok=True)
@@ -155,7 +157,7 @@ class Faults:
             self.compare(case, out, whole, what)
 
     def taken_away(self, place, command, stop_at):
-        """The folder {out} of a run or study is removed, renamed or replaced while it waits."""
+        """Removes, renames or replaces the folder {out} of a run or study while it waits."""
         for how in ("removed", "renamed", "replaced"):
             out, other = place / "taken", place / "other"
             for folder in (out, other):
@@ -179,33 +181,33 @@ class Faults:
 
 
 class Disk:
-    """A tmpfs of some size."""
+    """Tmpfs of some size."""
 
     def __init__(self, place):
         self.place = place
         place.mkdir()
 
     def room(self):
-        """All that may ever be needed."""
+        """Sets the size to a maximum that is never exceeded."""
         return self.mount("size=64M")
 
     def used(self):
-        """Pages."""
+        """Used pages."""
         return sum(-(-path.stat().st_size // PAGE) for path in self.place.rglob("*") if path.is_file())
 
     def mount(self, options):
-        """Whether that is possible."""
+        """Mounts it; returns True if that is possible."""
         mounted = ["-o", "remount," + options] if os.path.ismount(self.place) else ["-t", "tmpfs", "-o", options, "tmpfs"]
         return subprocess.run(["mount", *mounted, str(self.place)], capture_output=True, check=False).returncode == 0
 
     def unmount(self):
-        """Whatever was there."""
+        """Unmounts it in any case."""
         if os.path.ismount(self.place):
             subprocess.run(["umount", str(self.place)], check=True)
 
 
 def fresh(case, out, inputs):
-    """The place of the results as it is before the command, and the older files in it."""
+    """Restores the place of the results to its state before the command; returns the older files in it."""
     shutil.rmtree(out, ignore_errors=True)
     out.unlink(missing_ok=True)
     if case.prepared is not None:
@@ -214,7 +216,7 @@ def fresh(case, out, inputs):
 
 
 def prepare(program, prm, inputs):
-    """The commands; their parameter files are written."""
+    """Returns the commands, after writing their parameter files."""
     Case.program = program
     inputs.mkdir()
     for file, text in [("run.prm", RUN), ("quick.prm", QUICK), ("sweep.prm", SWEEP), ("tradeoff.prm", TRADEOFF),
@@ -237,7 +239,7 @@ def prepare(program, prm, inputs):
             Case("check", ["check", "{in}/run.prm"], resumes=False, to_screen=True)]
 
 
-# Runs and studies whose folders are taken away: without pilot runs, and with so much to do that they do not end before.
+# Runs and studies whose folders are taken away: without pilot runs, and too long to end before.
 LONG_RUN = ["--set", "Time/End time=60", "--set", "Output/Sensitivities=", "--set", "Output/Active stress table=", "--set",
             "Output/Number of snapshots=0", "--set", "Time/Tolerance=1e-9", "--set", "Time/Integrator=radau 5", "--set",
             "Discretization/Number of cells=8", "--set", "Time/Cycle stop=off", "--set", "Time/Checkpoint interval=0", "--quiet"]
@@ -246,6 +248,6 @@ LONG_SWEEP = ["--set", "Sweep/Axes=Active stress/Prescribed strain/Amplitude : l
 
 
 def take_folders_away(program, faults, place, inputs):
-    """Of a run and of a sweep."""
+    """Takes away the folders of a run and of a sweep."""
     faults.taken_away(place, [program, "run", inputs / "run.prm", *LONG_RUN], "step:300:STOP")
     faults.taken_away(place, [program, "sweep", inputs / "sweep.prm", *LONG_SWEEP], "row:3:STOP")

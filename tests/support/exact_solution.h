@@ -9,7 +9,7 @@
 namespace crawler::test
 {
   /**
-   * An exact solution of the whole equation for a = +1, gamma = k = L = 1: the strain
+   * Exact solution of the whole equation for a = +1, gamma = k = L = 1: the strain
    *   e = E (sin 2 pi (s+t) - sin 2 pi s),
    * which belongs to the velocity v = E sin 2 pi (s+t) - d with d = (E^2/2)(1 - cos 2 pi t), since then <(1+e) v> = 0,
    * and to the active stress m = int_0^s (1+e) v ds - k e (doc/theory.md, kinematic level).
@@ -18,7 +18,7 @@ namespace crawler::test
   {
     double E = 0.2;
 
-    /// The displacement of the centre of mass.
+    /// Displacement of the centre of mass.
     double
     displacement(const double t) const
     {
@@ -37,7 +37,7 @@ namespace crawler::test
       return 1. + E * (std::sin(q * (s + t)) - std::sin(q * s));
     }
 
-    /// The scene, its active stress written as a formula.
+    /// Settings of the scene, with the active stress as a formula.
     Settings
     settings(const double end_time) const
     {

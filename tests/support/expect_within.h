@@ -10,7 +10,7 @@
 
 namespace crawler::test
 {
-  /// The displacement is within its bound of what is exact, and the bound is what Accuracy asks for.
+  /// Expects the displacement within its bound of the exact one, and the bound within Accuracy.
   inline void
   expect_within(const SimulationResult &result, const double exact, const double accuracy, const std::string &what)
   {

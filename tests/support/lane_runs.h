@@ -14,7 +14,7 @@
 
 namespace crawler::test
 {
-  /// Everything that a run needs. It cannot be moved, since the others point to it.
+  /// Inputs of a run. The object cannot be moved, since others point to it.
   struct LaneRun
   {
     Parameters parameters;
@@ -36,7 +36,7 @@ namespace crawler::test
       return {&scene, &parameters.time, &numerics};
     }
 
-    /// By a Simulation, on the fused engine or on PETSc.
+    /// Runs a Simulation, on the fused engine or on PETSc.
     SimulationResult
     simulate(const Engine engine, const Simulation::Options &options = {.energy_balance = true}) const
     {
@@ -56,7 +56,7 @@ namespace crawler::test
     return result;
   }
 
-  /// A run alone in a batch.
+  /// Computes one run alone in a batch.
   inline std::optional<SimulationResult>
   run_alone(const LaneRun &run,
             const Simulation::Options &options = {.energy_balance = true},
@@ -66,7 +66,7 @@ namespace crawler::test
     return run_batch(only, options, {}, engine).front();
   }
 
-  /// The engines that this processor has.
+  /// Engines that this processor supports.
   inline std::vector<const LaneEngine *>
   batch_engines()
   {
@@ -77,7 +77,7 @@ namespace crawler::test
     return result;
   }
 
-  /// A stress by a formula, friction exponent @p a.
+  /// Settings of an active stress by a formula, friction exponent @p a.
   inline Settings
   expression(const double a, const std::string &formula, const double end_time = 1., const double k = 1.)
   {
@@ -88,7 +88,7 @@ namespace crawler::test
             {"Time/End time", text(end_time)}};
   }
 
-  /// All numbers of a result but the seconds.
+  /// Numbers of a result except the seconds.
   inline std::vector<double>
   numbers_of(const SimulationResult &r)
   {
@@ -135,7 +135,7 @@ namespace crawler::test
     return result;
   }
 
-  /// The same to the last bit; signs of zeros and what is not a number included.
+  /// True if equal to the last bit, including signs of zeros and NaN.
   inline bool
   same_bits(const std::vector<double> &a, const std::vector<double> &b)
   {

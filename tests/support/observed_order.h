@@ -6,7 +6,7 @@
 
 namespace crawler::test
 {
-  /// The slope of log(error) over log(n) by least squares, with the sign that makes a convergent method positive.
+  /// Slope of log(error) over log(n) by least squares, with the sign that makes a convergent method positive.
   inline double
   observed_order(const std::vector<double> &n, const std::vector<double> &error)
   {

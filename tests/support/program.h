@@ -22,7 +22,7 @@
 
 namespace crawler::test
 {
-  /// Ends a program that hangs [s]; no test depends on it otherwise.
+  /// Time limit of a program that hangs [s]; tests do not depend on it otherwise.
   constexpr int patience = 600;
 
   inline std::string
@@ -50,7 +50,7 @@ namespace crawler::test
     return lines;
   }
 
-  /// An empty folder that goes away with this object.
+  /// Empty folder that is removed with this object.
   class TemporaryFolder
   {
   public:
@@ -68,7 +68,7 @@ namespace crawler::test
       std::filesystem::remove_all(path, ignored);
     }
 
-    /// Every file by its name with its content, every folder with the content "folder".
+    /// Content of every file by its name; that of every folder is "folder".
     std::map<std::string, std::string>
     content() const
     {
@@ -83,9 +83,9 @@ namespace crawler::test
   };
 
   /**
-   * The real program, started in a folder. It gets an environment of its own: MPI_Init of the test
-   * leaves variables behind that would make the child believe it belongs to the same job. It stops where
-   * @p stop_at says (crawler/base/stop_place.h), if that is not empty.
+   * Process of the real program, started in a folder. The environment is its own: MPI_Init of the test leaves variables
+   * from which the child would conclude that it belongs to the same job. The program stops at @p stop_at
+   * (crawler/base/stop_place.h), if that is not empty.
    */
   class Program
   {
@@ -131,7 +131,7 @@ namespace crawler::test
       }
     }
 
-    /// Waits for the end: the exit code, or minus the number of the signal that ended the program.
+    /// Waits for the end; returns the exit code, or minus the number of the signal that ended the program.
     int
     exit_code()
     {
@@ -198,7 +198,7 @@ namespace crawler::test
     return {exit_code, program.out(), program.err()};
   }
 
-  /// "set ..." lines within the subsections of a path like "Active stress/Expression".
+  /// Wraps "set ..." lines in the subsections of a path like "Active stress/Expression".
   inline std::string
   in_section(const std::string &path, const std::string &lines)
   {

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The program as scripts of the tests start, stop and continue it.
+"""Program as started, stopped and resumed by scripts of the tests.
 
 A stop happens at a place of the work, not at a time: the environment variable CRAWLER_STOP_AT (see
 include/crawler/base/stop_place.h) raises a signal when the program gets there. So no test reads a clock; PATIENCE only
-ends what hangs.
+ends hanging programs.
 """
 import os
 import pathlib
@@ -11,22 +11,22 @@ import signal
 import subprocess
 import sys
 
-PATIENCE = 600  # seconds
+PATIENCE = 600  # [s]
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1",
                "OPENBLAS_NUM_THREADS": "1"}
 ENVIRONMENT.pop("CRAWLER_STOP_AT", None)
-# For studies that need no picture: their Python does nothing.
+# Environment of studies that need no picture: their Python does nothing.
 NO_PICTURES = {"PATH": f"{pathlib.Path(__file__).resolve().parent / 'no_pictures'}:{os.environ['PATH']}"}
 
 
 class Checks:
-    """Counts what is wrong: `expect` notes it, `end` closes the script with the exit code."""
+    """Counts failures: `expect` notes them, `end` closes the script with the exit code."""
 
     def __init__(self):
         self.n, self.failures, self.skipped = 0, [], []
 
     def expect(self, condition, what):
-        """What is to be, in words; printed if it is not. Returns whether it is."""
+        """Prints @p what, the expectation in words, if the condition is false. Returns the condition."""
         self.n += 1
         if not condition:
             self.failures.append(what)
@@ -34,23 +34,23 @@ class Checks:
         return bool(condition)
 
     def skip(self, what):
-        """What this machine cannot check, and why; the last line counts it."""
+        """Notes a check that this machine cannot do, and why; the last line counts it."""
         self.skipped.append(what)
         print(f"SKIPPED {what}", flush=True)
 
     def end(self):
-        """Exit code 0 only if something was checked, and all of it is right."""
+        """Exits with code 0 only if something was checked, and all of it is right."""
         print(f"{self.n} checks, {len(self.failures)} failed, {len(self.skipped)} skipped")
         sys.exit(1 if self.failures or self.n == 0 else 0)
 
 
 def environment(stop_at=None, **more):
-    """Of the program: one thread, Open MPI as root, and where it is to stop, if anywhere."""
+    """Environment of the program: one thread, Open MPI as root, and the place of the stop, if any."""
     return {**ENVIRONMENT, **({"CRAWLER_STOP_AT": stop_at} if stop_at else {}), **more}
 
 
 def call(command, folder=None, stop_at=None, variables=None, **more):
-    """Runs a command to its end, and gives its exit code (negative: the signal that killed it) and what it printed.
+    """Runs a command to its end; returns its exit code (negative: the signal that killed it) and its output.
 
     The variables are added to its environment; more are arguments of subprocess.run, such as the text of its input.
     """
@@ -60,23 +60,23 @@ def call(command, folder=None, stop_at=None, variables=None, **more):
 
 
 def on_ranks(mpirun, n):
-    """What stands before a command that n ranks run; nothing for one."""
+    """Words before a command that n ranks run; none for one rank."""
     return [mpirun, "--oversubscribe", "-n", n] if n > 1 else []
 
 
 def tests_of_part(alone, several):
-    """The tests of this call of a script, whose last argument may be "alone": those that start no ranks; or "several": those
-    that do, which ctest gives the processors that they need. Without either: all.
+    """Selects the tests of this call of a script, whose last argument may be "alone": those that start no ranks; or
+    "several": those that do, for which ctest reserves processors. Without either: all.
     """
     part = sys.argv[-1]
     return (*(alone if part != "several" else ()), *(several if part != "alone" else ()))
 
 
 def ranks_that_stop(mpirun, command, *places):
-    """This command on as many ranks as places, each of which stops at its own (None: nowhere).
+    """Command on as many ranks as places, each of which stops at its own (None: nowhere).
 
-    Where one rank is to be killed in the middle of its work, another that waits from then on (STOP) leaves it enough of it,
-    on any machine; mpirun ends that one, too.
+    Where one rank is to be killed in the middle of its work, another that waits from then on (STOP) leaves it enough
+    work, on any machine; mpirun ends that one, too.
     """
     words = [mpirun, "--oversubscribe"]
     for i, place in enumerate(places):
@@ -85,7 +85,7 @@ def ranks_that_stop(mpirun, command, *places):
 
 
 class Paused:
-    """A command that waits at a place (its stop_at has the signal STOP) while the `with` block runs; `go_on` lets it end.
+    """Command that waits at a place (its stop_at has the signal STOP) while the `with` block runs; `go_on` lets it end.
 
     Raises AssertionError if it ended before it came there.
     """
@@ -100,7 +100,7 @@ class Paused:
             raise AssertionError(f"{command} ended before {stop_at}: {status}, {self.process.stderr.read()}")
 
     def go_on(self, *signals):
-        """These signals are sent, then it goes on to its end. Gives its exit code and what it printed."""
+        """Sends these signals, then lets it go on to its end. Returns its exit code and output."""
         for number in signals:
             self.process.send_signal(number)
         self.process.send_signal(signal.SIGCONT)

@@ -35,7 +35,7 @@ namespace crawler::test
       wave.k          = log_between(0.1, 10.);
       wave.T          = log_between(0.3, 3.);
       const double a2 = between(-0.5, 0.5), b1 = between(-0.5, 0.5), b2 = between(-0.5, 0.5);
-      // The strain is at most 2 chi/|c| times the sum of the amplitudes.
+      // Strain is at most 2 chi/|c| times the sum of the amplitudes.
       const double amplitudes = std::sqrt(1. + b1 * b1) + std::sqrt(a2 * a2 + b2 * b2);
       wave.chi                = log_between(0.01, 0.9) * std::abs(wave.c) / (2. * amplitudes);
       wave.settings           = test::wave(wave.a, wave.chi, wave.c, wave.T, wave.k);
@@ -48,7 +48,7 @@ namespace crawler::test
     std::mt19937_64 generator_{20261121};
   };
 
-  /// By the nonlinear model, to 1e-6 of it; nothing if the run does not finish.
+  /// Displacement of the nonlinear model, to a relative 1e-6; nothing if the run does not finish.
   inline std::optional<double>
   true_displacement(Settings settings)
   {

@@ -7,7 +7,7 @@
 
 namespace crawler::test
 {
-  /// Sum, or what else @p operation makes, of the numbers of all ranks (collective).
+  /// Sum, or other reduction by @p operation, of the numbers of all ranks (collective).
   template <typename Number>
   Number
   over_ranks(Number own, MPI_Op operation = MPI_SUM)

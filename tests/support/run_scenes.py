@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Runs that are disturbed and go on with --resume: the scenes that a run can have, and whether its files are those of an
+"""Runs that are disturbed and go on with --resume: the possible scenes of a run, and whether its files are those of an
 undisturbed run.
 """
 import json
@@ -60,8 +60,7 @@ end
 """
 FINE = ["Discretization/Number of cells=40", "Time/Tolerance=1e-8", "Time/Integrator=radau 9"]
 COARSE = ["Discretization/Number of cells=12", *FINE[1:]]
-# What a run can be: a scene, and entries that are set, its end time among them, where it is to be long and where it is
-# to be short.
+# Scenes of a run, with entries, the end time among them, for a long and for a short run.
 SCENES = {
     "lanes": (WAVE, [*FINE, "Time/End time=1000"], [*COARSE, "Time/End time=20"]),
     "jumps": (SEGMENTS, [*FINE[1:], "Discretization/Number of cells=24", "Time/End time=60"],
@@ -94,7 +93,7 @@ STARTS_ANEW = {"bdf"}
 
 
 class Scene:
-    """A scene in a folder of its own, with the files of an undisturbed run in "whole"."""
+    """Scene in a folder of its own, with the files of an undisturbed run in "whole"."""
 
     def __init__(self, program, place, name, checks, extra=(), before=(), is_long=False):
         text, long, short = SCENES[name]
@@ -106,33 +105,33 @@ class Scene:
         self.expect("whole", [], 0)
 
     def command(self, folder, options=()):
-        """Its words."""
+        """Words of the command."""
         sets = [word for entry in self.entries for word in ("--set", entry)]
         return [*self.before, self.program, "run", self.file, "--output", self.place / folder, "--quiet", *sets, *options]
 
     def run(self, folder, options=(), stop_at=None):
-        """The finished process."""
+        """Runs the command; returns the finished process."""
         return call(self.command(folder, options), stop_at=stop_at)
 
     def expect(self, folder, options, code, *words, stop_at=None):
-        """Runs it; it must end so, and say these words."""
+        """Runs it and expects this end and these words."""
         done = self.run(folder, options, stop_at)
         self.checks.expect(done.returncode == code and all(word in done.stderr for word in words),
                            f"{self.name}, {options}, stopped at {stop_at}: exit code {done.returncode}, {done.stderr[:500]!r}")
         return done
 
     def copy(self, folder, other):
-        """Another one that is the same."""
+        """Copies a folder."""
         shutil.rmtree(self.place / other, ignore_errors=True)
         shutil.copytree(self.place / folder, self.place / other)
 
     def went_on(self, folder):
-        """How often this run went on from a state."""
+        """Number of times this run went on from a state."""
         log = self.place / folder / "log.txt"
         return log.read_text(encoding="utf-8").count(GOES_ON) if log.exists() else 0
 
     def compare(self, folder, what, other="whole"):
-        """All files of two folders, but for times and what tells one run from another."""
+        """Compares all files of two folders, except times and identifiers of a run."""
         one, two = self.place / folder, self.place / other
         if self.name in STARTS_ANEW:
             ends = [json.loads((place / "summary.json").read_text(encoding="utf-8")) for place in (one, two)]
@@ -148,7 +147,7 @@ class Scene:
 
 
 def same_content(one, two):
-    """Is it the same in two files, but for times, the command and the number of ranks?"""
+    """Returns True if two files are the same except for times, the command and the number of ranks."""
     if one.name == "summary.json":
         return plain(json.loads(one.read_text(encoding="utf-8"))) == plain(json.loads(two.read_text(encoding="utf-8")))
     if one.suffix == ".h5":
@@ -157,12 +156,12 @@ def same_content(one, two):
 
 
 def plain(summary):
-    """Without times, the command and the number of ranks."""
+    """Summary without times, the command and the number of ranks."""
     return {key: value for key, value in summary.items() if key not in ("seconds", "command_line", "versions", "ranks")}
 
 
 def same_data(one, two):
-    """Are all numbers of two HDF5 files the same?"""
+    """Returns True if all numbers of two HDF5 files are the same."""
     with h5py.File(one) as first, h5py.File(two) as second:
         names = []
         first.visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)

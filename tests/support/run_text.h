@@ -17,7 +17,7 @@ namespace crawler::test
 {
   using Settings = std::vector<std::pair<std::string, std::string>>;
 
-  /// Settings, and others that are stronger.
+  /// Settings with others that override them.
   inline Settings
   with(Settings settings, const Settings &others)
   {
@@ -25,7 +25,7 @@ namespace crawler::test
     return settings;
   }
 
-  /// A value as it stands in a parameter file.
+  /// Text of a value in a parameter file.
   inline std::string
   text(const double value)
   {
@@ -53,8 +53,7 @@ namespace crawler::test
     NumericsChoice choice;
   };
 
-  /// The run with the numerics that the program chooses, without what the adjoint knows of its error (answers.h has
-  /// that).
+  /// Runs with the numerics that the program chooses, without the error by the adjoint (as in answers.h).
   inline Outcome
   run_with(const Parameters &parameters,
            const Scene &scene,
@@ -85,7 +84,7 @@ namespace crawler::test
     return run_with(parameters_with(settings), options);
   }
 
-  /// The optimal wave with one harmonic a_1 = 1, L = gamma = 1.
+  /// Settings of the optimal wave with one harmonic a_1 = 1, L = gamma = 1.
   inline Settings
   wave(const double a, const double chi, const double speed = 1., const double end_time = 1., const double k = 1.)
   {

@@ -12,7 +12,7 @@
 
 namespace crawler::test
 {
-  /// The active stress of a scene, by full names of entries.
+  /// Active stress of a scene, by full names of entries.
   inline std::unique_ptr<const ActiveStress>
   stress_with(const Settings &settings)
   {
@@ -44,7 +44,7 @@ namespace crawler::test
     return largest;
   }
 
-  /// n + 1 places from 0 to @p length.
+  /// Places: n + 1 from 0 to @p length.
   inline std::vector<double>
   places(const double length, const unsigned int n = 40)
   {
@@ -54,7 +54,7 @@ namespace crawler::test
     return points;
   }
 
-  /// The rate against differences of fourth order, at these @p times.
+  /// Expects the rate to equal differences of fourth order, at these @p times.
   inline void
   expect_rate(const ActiveStress &stress,
               const double length,
@@ -73,7 +73,7 @@ namespace crawler::test
     }
   }
 
-  /// What is wrong with these settings.
+  /// Error message for these settings.
   inline std::string
   complaint(const Settings &settings)
   {

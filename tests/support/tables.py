@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The tables of studies as scripts of the tests read and compare them."""
+"""Tables of studies, read and compared by scripts of the tests."""
 import csv
 import json
 import math
@@ -9,41 +9,42 @@ import h5py
 
 
 def json_of(file):
-    """What a JSON file holds."""
+    """Content of a JSON file."""
     return json.loads(pathlib.Path(file).read_text(encoding="utf-8"))
 
 
 def csv_rows(file):
-    """The rows of a CSV file, by the names of its columns."""
+    """Rows of a CSV file, by the names of its columns."""
     with open(file, newline="", encoding="utf-8") as lines:
         return list(csv.DictReader(lines))
 
 
 def h5_columns(file, group):
-    """All columns of a table in HDF5, by their names: arrays of numbers, lists of texts."""
+    """Columns of a table in HDF5, by their names: arrays of numbers, lists of texts."""
     with h5py.File(file, "r") as whole:
         return {bytes(data.attrs["name"]).decode(): list(data.asstr()[:]) if data.dtype.kind == "S" else data[:]
                 for data in whole[group].values()}
 
 
 def number(text):
-    """What is not known is empty in CSV and not a number in HDF5."""
+    """Converts a text to a number; unknown values are empty in CSV and NaN in HDF5."""
     return float(text) if text else math.nan
 
 
 def same_values(column, other):
-    """Whether two columns are the same bit for bit."""
+    """Returns True if two columns are equal bit for bit."""
     return column == other if isinstance(column, list) else column.tobytes() == other.tobytes()
 
 
 def same_columns(one, other, but="seconds"):
-    """Whether two tables are the same bit for bit, but for columns whose name ends so (or with one of these)."""
+    """Returns True if two tables are equal bit for bit, except for columns whose name ends so (or with one of
+    these)."""
     return one.keys() == other.keys() and all(same_values(one[name], other[name]) for name in one
                                               if not (but and name.endswith(but)))
 
 
 def same_as_csv(columns, rows):
-    """Whether a table in HDF5 has the columns, texts and numbers of one in CSV."""
+    """Returns True if a table in HDF5 has the columns, texts and numbers of one in CSV."""
     def same(column, texts):
         if isinstance(column, list):
             return column == texts

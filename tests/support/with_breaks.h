@@ -9,7 +9,7 @@
 
 namespace crawler::test
 {
-  /// An active stress that declares its jumps.
+  /// Active stress that declares its discontinuities.
   class WithBreaks : public ActiveStress
   {
   public:

@@ -31,14 +31,14 @@ __all__ = ["FileError", "Gradient", "InputError", "Numbers", "Result", "RunFaile
 
 
 def __getattr__(name):
-    """The module measured needs scipy and pandas, so it is loaded when it is used first."""
+    """Loads the module measured at its first use, since it needs scipy and pandas."""
     if name == "measured":
         return importlib.import_module(".measured", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 class RunFailed(RuntimeError):
-    """A run did not finish, and check=True was asked for. `result` has how it ended."""
+    """Exception: a run did not finish, and check=True was given. `result` describes its end."""
 
     def __init__(self, result):
         super().__init__(f"{result.reason}: {result.message}")
@@ -47,7 +47,8 @@ class RunFailed(RuntimeError):
 
 @functools.cache
 def _compiled():
-    """The compiled part. It brings 200 libraries, so it is loaded when it is needed first, and their functions later."""
+    """Returns the compiled part, imported at its first use: it brings 200 libraries, whose functions are bound
+    later."""
     flags = sys.getdlopenflags()
     sys.setdlopenflags(os.RTLD_LAZY)
     try:
@@ -63,12 +64,12 @@ def _compiled():
 
 @functools.cache
 def entries():
-    """All entries of a parameter file by their full names, each a dict with default, expected, unit, documentation."""
+    """Entries of a parameter file by their full names, each a dict with default, expected, unit, documentation."""
     return {one.pop("entry"): one for one in json.loads(_compiled().entries())}
 
 
 def check(scene, *, set=None, **keywords):
-    """All entries of a scene as they are used, by their full names; nothing is computed. Raises what run() would."""
+    """Entries of a scene as used, by their full names; nothing is computed. Raises the same errors as run()."""
     effective, notes = _compiled().check(_source(scene, _overrides(set, keywords)))
     _warn(notes)
     return parameters_of(effective)
@@ -81,11 +82,11 @@ def run(scene, *, set=None, fields=True, places=None, output=None, overwrite=Fal
     set, keywords: other values of entries, {"Body/Elastic modulus": 2} or elastic_modulus=2 where that names one entry.
     fields: True, the fields over s and t and the statistics that the scene asks for (Output); False, none, which is
     fastest; or the times [time] of the fields, increasing.
-    places: with times, where the fields are [length], increasing, instead of 201 equidistant points.
+    places: with times, the points of the fields [length], increasing, instead of 201 equidistant points.
     output: a folder for the files that `crawler run` writes; otherwise nothing is written.
-    check: a run that does not finish raises RunFailed; otherwise see Result.status, reason and message.
-    verbose: prints what the program would.
-    Raises InputError and FileError with the program's sentence.
+    check: raises RunFailed if a run does not finish; otherwise see Result.status, reason and message.
+    verbose: prints the messages of the program.
+    Raises InputError and FileError with the message of the program.
     """
     overrides = _overrides(set, keywords)
     times = None
@@ -118,10 +119,10 @@ def run(scene, *, set=None, fields=True, places=None, output=None, overwrite=Fal
 
 
 def batch(scenes, *, set=None, check=False, **keywords):
-    """Computes many scenes side by side in vector registers, without fields; the list of their Results.
+    """Computes many scenes side by side in vector registers, without fields; returns the list of their Results.
 
     Displacements agree with those of run() within their error bounds, and do not depend on the neighbours. set and
-    keywords hold for all scenes. Scenes that are alike but for some numbers are faster in sweep().
+    keywords hold for all scenes. Scenes that differ in some numbers only are faster in sweep().
     """
     if isinstance(scenes, (Mapping, str, os.PathLike)):
         raise InputError("this is one scene, but a list of scenes is expected; run() computes one")
@@ -131,10 +132,11 @@ def batch(scenes, *, set=None, check=False, **keywords):
 
 
 def sweep(scene, axes=None, *, design=None, set=None, output=None, overwrite=False, verbose=False, **keywords):
-    """Computes all points of a sweep; the table of `crawler sweep`, a pandas.DataFrame (without pandas a dict of arrays).
+    """Computes all points of a sweep; returns the table of `crawler sweep`, a pandas.DataFrame (a dict of arrays
+    without pandas).
 
     axes: {"Body/Elastic modulus": [1, 2, 4], ...}, or the values in words, "linspace(1, 4, 10)"; None: Sweep/Axes of
-    the scene. design: "grid", "zip", "random" or "latin hypercube". Points that go wrong are rows with status and
+    the scene. design: "grid", "zip", "random" or "latin hypercube". Points that fail are rows with status and
     reason. output: a folder for the files of `crawler sweep`.
     """
     overrides = _overrides(set, keywords)
@@ -153,7 +155,7 @@ def sweep(scene, axes=None, *, design=None, set=None, output=None, overwrite=Fal
 
 
 class Gradient(NamedTuple):
-    """A number of a run and its derivatives by entries; lists in the order of the entries that were asked for."""
+    """Number of a run and its derivatives by entries; lists in the order of the entries given."""
     value: float
     derivatives: np.ndarray  # [entry], in units of the number per unit of the entry
     errors: np.ndarray       # [entry], bounds of their errors
@@ -161,7 +163,7 @@ class Gradient(NamedTuple):
 
 
 def gradient(scene, by, *, of="displacement", set=None, **keywords):
-    """A number of a run and its derivatives, as a Gradient: for objectives and fits of one's own.
+    """Returns a number of a run and its derivatives, as a Gradient: for user-defined objectives and fits.
 
     by: entries by their full names, or one. of: displacement, stress_power, dissipation,
     positive_power, paper_energy, gait.displacement, or gait.speed. The derivatives are those of Output/Sensitivities
@@ -187,13 +189,13 @@ def gradient(scene, by, *, of="displacement", set=None, **keywords):
 
 
 def optimize(scene, variables=None, *, set=None, output=None, overwrite=False, verbose=False, **keywords):
-    """The best gait within limits, as `crawler optimize` finds it (doc/optimize.md), as a Study: best, the Results of the best
-    gaits; optimize.optima, for each case the objective, the variables and, of each limit, its value and multiplier; starts
-    and table.
+    """Finds the best gait within limits, as `crawler optimize` does (doc/optimize.md), and returns a Study: best, the
+    Results of the best gaits; optimize.optima, for each case the objective, the variables and, of each limit, its value
+    and multiplier; starts and table.
 
     variables: {"Active stress/Segments/Phase lag": (0.05, 0.45), ...}, entries and their ranges; None: those of the scene
     (Optimize/Variables). objective="speed", starts=8, work=0.1, ... are entries of section Optimize. output: a folder for
-    the files of `crawler optimize`. Raises InputError and FileError; a search that fails says so in status and reason.
+    the files of `crawler optimize`. Raises InputError and FileError; a failed search has status and reason.
     """
     own = {_keyword(entry): entry for entry in entries() if entry.startswith("Optimize/")}
     overrides = _overrides({**(set or {}), **{own[name]: keywords.pop(name) for name in list(keywords) if name in own}}, keywords)
@@ -209,13 +211,15 @@ def optimize(scene, variables=None, *, set=None, output=None, overwrite=False, v
 
 
 def fit(scene, data=None, variables=None, *, set=None, workers=1, verbose=False, **keywords):
-    """Numbers of a scene, with their uncertainty, from what was measured, as `crawler fit` finds them (doc/fit.md): a Fit.
+    """Estimates numbers of a scene, with their uncertainty, from measured data, as `crawler fit` does (doc/fit.md);
+    returns a Fit.
 
-    data: the name of a file, or measured.Samples, as measured.read_samples(name, unit_of_t="1/30") gives for a file in other units;
-    of several kinds a list, with standard_deviation=[0.01, 0.02] for each; None: that of the scene (Fit/Data). variables: {entry: (from, to), ...};
-    None: Fit/Variables. starts=8, standard_deviation=0.01, ... are entries of section Fit. workers: so many processes share the
-    starts; the result does not depend on it. Fit.variables has, for each, value, deviation, intervals and numerical error;
-    Fit.undetermined what the data cannot tell. Raises InputError, FileError, and RuntimeError where the fit fails.
+    data: the name of a file, or measured.Samples, e.g. from measured.read_samples(name, unit_of_t="1/30") for a file in
+    other units; for several kinds a list, with standard_deviation=[0.01, 0.02] for each; None: that of the scene
+    (Fit/Data). variables: {entry: (from, to), ...}; None: Fit/Variables. starts=8, standard_deviation=0.01, ... are
+    entries of section Fit. workers: number of processes that share the starts; the result does not depend on it.
+    Fit.variables has, for each, value, deviation, intervals and numerical error; Fit.undetermined the combinations that
+    the data do not determine. Raises InputError, FileError, and RuntimeError where the fit fails.
     """
     own = {_keyword(entry): entry for entry in entries() if entry.startswith("Fit/")}
     for option, _, _ in importlib.import_module(".measured.options", __name__).READING:
@@ -240,7 +244,7 @@ def _ranges(variables):
 
 
 def to_prm(scene):
-    """A dict as the text of a parameter file."""
+    """Writes a dict as the text of a parameter file."""
     nested = {}
     for name, value in _flat(scene):
         *sections, entry = name.split("/")
@@ -271,7 +275,7 @@ def _lines(nested, indent):
 
 
 def _text(value, name):
-    """A value as it stands in a parameter file."""
+    """Text of a value in a parameter file."""
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, numbers.Integral):
@@ -289,7 +293,7 @@ def _text(value, name):
 
 
 def _axis(values, name):
-    """The values of an axis in words; those with a comma, a colon or a semicolon of their own stand in quotes."""
+    """Values of an axis in words; those that contain a comma, a colon or a semicolon are quoted."""
     if isinstance(values, (str, numbers.Number)) or not hasattr(values, "__iter__"):
         return _text(values, name)
     texts = [_text(one, name) for one in values]
@@ -300,7 +304,7 @@ def _axis(values, name):
 
 
 def _full_name(name):
-    """The entry with this full name, or the only one that is called so as a keyword."""
+    """Entry with this full name, or the only one with this keyword."""
     if "/" in name or name in entries() or name == "File":
         return name
     found = [entry for entry in entries() if _keyword(entry) == name]
@@ -323,7 +327,7 @@ def _overrides(settings, keywords):
 
 
 def _source(scene, overrides):
-    """What the compiled part reads."""
+    """Input of the compiled part."""
     if isinstance(scene, Mapping):
         name, text = "scene", to_prm(scene)
     elif isinstance(scene, str) and re.search(r"\n|^\s*(set|subsection|include)\s", scene):
@@ -336,7 +340,7 @@ def _source(scene, overrides):
 
 
 def _warn(notes):
-    """Warnings in the line that called this package."""
+    """Issues warnings at the line that called this package."""
     level, frame = 2, sys._getframe(1)
     while frame.f_back is not None and frame.f_globals.get("__name__") == __name__:
         level, frame = level + 1, frame.f_back

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The commands of crawler that are written in Python. The program hands over to them; its name is CRAWLER_PROGRAM.
+"""Commands of crawler that are written in Python. The program, whose path is CRAWLER_PROGRAM, calls them.
 
     python3 contrib/python/crawler table IN.csv OUT.csv [options]
 """
@@ -8,14 +8,15 @@ import pathlib
 import sys
 
 HERE = pathlib.Path(__file__).absolute().parent  # in the build folder, or installed
-COMMANDS = {"fit": ("fitting.command", ("numpy", "scipy")),  # module and what it needs
+COMMANDS = {"fit": ("fitting.command", ("numpy", "scipy")),  # module and the modules it needs
             "report": ("report.command", ("numpy", "h5py")),
             "table": ("measured.command", ("numpy", "scipy")),
-            "tradeoff": ("tradeoff", ("numpy",))}  # what the program leaves to do
+            "tradeoff": ("tradeoff", ("numpy",))}  # part of the command left to Python
 
 
 def place_of_package():
-    """The folder of the package with its compiled part: of an installed program where Python looks; else this one."""
+    """Folder of the package with its compiled part: for an installed program a folder of Python's path; else this
+    one."""
     places = [HERE.parent, *(HERE.parents[3].glob("lib/python3*/dist-packages") if len(HERE.parents) > 3 else ())]
     return next((place for place in places if any(place.glob("crawler/_core*"))), HERE.parent)
 

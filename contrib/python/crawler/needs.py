@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What all commands and scripts in Python share: which modules they need, command lines, and how they end.
+"""Common parts of all commands and scripts in Python: required modules, command lines, and exit codes.
 
-A script that fails says why in one sentence and ends with 2 (bad input), 3 (it could not be computed), 5 (stopped), 6 (a
-file that cannot be written) or 69 (no Python has the modules that it needs).
+A script that fails prints the reason in one sentence and ends with 2 (bad input), 3 (no result could be computed), 5
+(stopped), 6 (a file that cannot be written) or 69 (no Python has the modules that it needs).
 """
 import argparse
 import contextlib
@@ -18,44 +18,44 @@ import sys
 import warnings
 
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1)
-DEBIANS_PYTHON, LACKING = "/usr/bin/python3", "CRAWLER_LACKING_PYTHON"  # the latter: what another Python lacks
+DEBIANS_PYTHON, LACKING = "/usr/bin/python3", "CRAWLER_LACKING_PYTHON"  # the latter: modules that another Python lacks
 PACKAGES = {name: f"python3-{name}" for name in ("h5py", "matplotlib", "numpy", "scipy")}
 
 
 class InputError(ValueError):
-    """The input is wrong: what was found, what was expected, and where."""
+    """Wrong input: what was found, what was expected, and where."""
     code = 2
 
 
 class FileError(OSError):
-    """A file or folder cannot be read or written."""
+    """File or folder that cannot be read or written."""
     code = 6
 
 
 class Failed(RuntimeError):
-    """What was asked for could not be computed."""
+    """Failure of a computation."""
     code = 3
 
 
 class Stopped(RuntimeError):
-    """A signal has stopped what was to be done."""
+    """Stop of the work by a signal."""
     code = 5
 
 
 def script():
-    """The name of the script that runs."""
+    """Name of the running script."""
     return pathlib.Path(sys.argv[0]).name
 
 
 def complain(sentence):
-    """Prints what is wrong, behind the name of the script; that of the program stands before the sentence already."""
+    """Prints an error after the name of the script; alone in __main__.py, where that of the program precedes it."""
     print(sentence if script() == "__main__.py" else f"{script()}: {sentence}", file=sys.stderr)
 
 
 def need(*modules):
-    """Sees to it that all modules are there: if this Python lacks one, Debian's Python goes on with the script. If that
-    lacks one too, or is not there, the script ends and says which Python lacks what. Pictures need no screen. What modules
-    warn of is not shown: standard error has the sentences of the program only."""
+    """Ensures that all modules exist: if this Python lacks one, Debian's Python continues the script. If that lacks one
+    too, or does not exist, the script ends and names the missing modules. Pictures need no screen. Warnings of modules
+    are suppressed: standard error has the messages of the program only."""
     warnings.simplefilter("ignore")
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     missing = []
@@ -82,7 +82,8 @@ def need(*modules):
 
 
 def write_whole(path, content):
-    """Writes a file beside its place first, so that it is whole or not there; a link in its place is not followed."""
+    """Writes a temporary file and renames it, so that the file is whole or missing; a link in its place is not
+    followed."""
     part = path.with_name(path.name + ".part")
     try:
         part.unlink(missing_ok=True)
@@ -95,7 +96,7 @@ def write_whole(path, content):
         raise FileError(f'cannot write "{path}": {error.strerror or error}') from None
 
 
-# Slips on a command line, in the words of argparse and in those of the program.
+# Mistakes on a command line, in the words of argparse and in those of the program.
 SLIPS = ((r"^argument (\S+): invalid float value: '(.*)'$", r'"\1" is "\2", but a number is expected'),
          (r"^argument (\S+): invalid int value: '(.*)'$", r'"\1" is "\2", but a whole number is expected'),
          (r"^argument (\S+): invalid choice: '(.*)' \(choose from (.*)\)$", r'"\1" is "\2", but one of \3 is expected'),
@@ -105,7 +106,7 @@ SLIPS = ((r"^argument (\S+): invalid float value: '(.*)'$", r'"\1" is "\2", but 
 
 
 class Parser(argparse.ArgumentParser):
-    """Says what is wrong with the command line in one sentence."""
+    """Argument parser that reports errors of the command line in one sentence."""
 
     def error(self, message):
         word = message.removeprefix("unrecognized arguments: ").split(" ")[0]
@@ -119,20 +120,20 @@ class Parser(argparse.ArgumentParser):
 
 
 def _stop(_number, _frame):
-    """The first signal stops the script in order; more of them change nothing."""
+    """Ends the script in an orderly way at the first signal; further ones are ignored."""
     for number in STOPPING:
         signal.signal(number, signal.SIG_IGN)
     raise KeyboardInterrupt
 
 
 def _end_with_the_program():
-    """A program that is killed takes the script with it that it waits for (prctl(2), PR_SET_PDEATHSIG)."""
+    """Ends the script when the program that waits for it is killed (prctl(2), PR_SET_PDEATHSIG)."""
     if "CRAWLER_PROGRAM" in os.environ and hasattr(ctypes.CDLL(None), "prctl"):
         ctypes.CDLL(None).prctl(1, signal.SIGTERM)
 
 
 def run_script(main):
-    """Calls main() and says in one sentence what went wrong."""
+    """Calls main() and reports errors in one sentence."""
     _end_with_the_program()
     for number in STOPPING:
         if signal.getsignal(number) != signal.SIG_IGN:
@@ -147,7 +148,7 @@ def run_script(main):
         complain("stopped by a signal")
         sys.exit(Stopped.code)
     except OSError as error:
-        if error.filename is None:  # of standard output; what is left of it would be another error at the end
+        if error.filename is None:  # standard output: unwritten text would be another error at the end
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if not isinstance(error, BrokenPipeError):  # the reader may leave
             complain(f"{error.filename or 'standard output'}: {error.strerror}")

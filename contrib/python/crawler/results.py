@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What runs and studies give, and how it is read from the folders of the program."""
+"""Results of runs and studies, read from the folders of the program."""
 import base64
 import contextlib
 import csv
@@ -16,7 +16,8 @@ from .needs import FileError
 
 
 class Numbers(dict):
-    """A dict whose values are attributes too; dots lead to inner ones: n["gait.speed"], n["gait"]["speed"], n.gait.speed."""
+    """Dict whose values are attributes too; dots lead to inner ones: n["gait.speed"], n["gait"]["speed"],
+    n.gait.speed."""
 
     def __init__(self, values=()):
         super().__init__({key: Numbers(value) if isinstance(value, dict) else value
@@ -42,9 +43,9 @@ class Numbers(dict):
 
 @dataclasses.dataclass
 class Fields:
-    """The fields over time and body, arrays [time, point]; displacement and position are lengths."""
+    """Fields over time and body, arrays [time, point]; displacement and position are lengths."""
     t: np.ndarray  # [time]
-    s: np.ndarray  # along the undeformed body, 201 equidistant points unless others were wanted [length]
+    s: np.ndarray  # along the undeformed body, by default 201 equidistant points [length]
     position: np.ndarray
     displacement: np.ndarray
     stretch: np.ndarray
@@ -54,10 +55,10 @@ class Fields:
 
 
 class Result(Numbers):
-    """One run: the keys of summary.json (doc/user_guide.md, "summary.json"); what is not known is None.
+    """Result of a run: the keys of summary.json (doc/user_guide.md, "summary.json"); unknown values are None.
 
-    Besides: parameters, all entries with their values; fields and statistics (a row for each time step and snapshot),
-    None if they were not wanted; local_sensitivities, arrays, None without Output/Sensitivities.
+    Further attributes: parameters, all entries with their values; fields and statistics (a row for each time step and
+    snapshot), None if they were not requested; local_sensitivities, arrays, None without Output/Sensitivities.
     """
 
     def __init__(self, summary=(), effective=""):
@@ -78,10 +79,10 @@ class Result(Numbers):
 
 
 class Study(Numbers):
-    """The folder of a sweep, tradeoff, optimisation, fit or comparison of fits: the keys of its summary.json.
+    """Folder of a sweep, tradeoff, optimisation, fit or comparison of fits: the keys of its summary.json.
 
-    Besides: kind; table, a pandas.DataFrame (without pandas a dict of arrays); parameters; of an optimisation starts,
-    a table, and best, the Results of the best gaits.
+    Further attributes: kind; table, a pandas.DataFrame (a dict of arrays without pandas); parameters; for an
+    optimisation starts, a table, and best, the Results of the best gaits.
     """
 
     def __init__(self, summary=(), kind="", table=None, effective=""):
@@ -94,7 +95,7 @@ class Study(Numbers):
 
 
 def read(folder):
-    """The results in a folder of `crawler run`, sweep, tradeoff, optimize or fit: a Result or a Study."""
+    """Results in a folder of `crawler run`, sweep, tradeoff, optimize or fit: a Result or a Study."""
     folder = pathlib.Path(folder).expanduser()
     summary_file = folder / "summary.json"
     if not summary_file.is_file():
@@ -126,12 +127,12 @@ def fields_of(t, length, values, places=None):
 
 
 def entries_of(effective):
-    """All entries in a parameters.prm by their full names: dicts of the texts value, default, unit and meaning."""
+    """Entries in a parameters.prm by their full names: dicts of the texts value, default, unit and meaning."""
     entries, sections, comment = {}, [], []
     for line in map(str.strip, effective.splitlines()):
         word, _, rest = line.partition(" ")
         if word == "#":
-            comment = [*comment, rest] if rest.strip("-") else []  # below a line is the first entry
+            comment = [*comment, rest] if rest.strip("-") else []  # the first entry is below a line
             continue
         if word == "subsection":
             sections.append(rest.strip())
@@ -150,8 +151,8 @@ def entries_of(effective):
 
 
 def parameters_of(effective):
-    """The values in a parameters.prm by their full names: numbers where they are numbers, whole ones as int. A scene as
-    crawler.run() takes it."""
+    """Values in a parameters.prm by their full names: numbers where possible, whole ones as int. The dict is a scene
+    for crawler.run()."""
     values = {name: entry["value"] for name, entry in entries_of(effective).items()}
     for name, text in values.items():
         with contextlib.suppress(ValueError):
@@ -160,7 +161,7 @@ def parameters_of(effective):
 
 
 def table_of(columns):
-    """A pandas.DataFrame; without pandas a dict of arrays."""
+    """Makes a pandas.DataFrame; a dict of arrays without pandas."""
     try:
         import pandas
     except ImportError:
@@ -169,8 +170,8 @@ def table_of(columns):
 
 
 def read_columns(path):
-    """A CSV file of the program: {heading: column}, arrays where all cells are numbers or empty (NaN), else lists of texts.
-    A row that is not whole, as of a run or machine that broke off, is left out."""
+    """Reads a CSV file of the program: {heading: column}, arrays where all cells are numbers or empty (NaN), else lists
+    of texts. Incomplete rows, left by an interrupted run, are skipped."""
     with open(path, newline="", encoding="utf-8", errors="replace") as file:
         names, *rows = list(csv.reader(line.replace("\0", "") for line in file)) or [[]]
     rows, columns = [row for row in rows if len(row) == len(names)], {}
@@ -185,17 +186,17 @@ def read_columns(path):
 
 
 def _read_table(path):
-    """The same as a table; names without their units."""
+    """Reads a CSV file as a table; names without their units."""
     return table_of({re.sub(r" \[[^]]*\]$", "", name) if path.name == "statistics.csv" else name: column
                      for name, column in read_columns(path).items()})
 
 
 def read_kymograph(path):
-    """kymograph.vts: its arrays by name. Those of fields are [time, point]; places [point] and times [time] are parts of
-    the length and of the end time; others belong to the whole, as "shown_stretch" [2], what pictures show of a field.
-    Raises FileError if it is damaged."""
+    """Reads kymograph.vts: its arrays by name. Those of fields are [time, point]; places [point] and times [time] are
+    parts of the length and of the end time; others belong to the whole, e.g. "shown_stretch" [2], the range of a field
+    in pictures. Raises FileError if the file is damaged."""
     try:
-        grid = ElementTree.parse(path).getroot().find("StructuredGrid")  # numbers in base 64 behind that of their bytes
+        grid = ElementTree.parse(path).getroot().find("StructuredGrid")  # base 64: number of bytes, then values
         arrays = {array.get("Name"): np.frombuffer(base64.b64decode(array.text)[8:])
                   for array in grid.iter("DataArray") if array.get("type") == "Float64"}
         _, last, _, last_row, _, _ = map(int, grid.find("Piece").get("Extent").split())
@@ -208,7 +209,7 @@ def read_kymograph(path):
 
 
 def _fields_in(path, parameters):
-    """The fields of a kymograph.vts."""
+    """Fields of a kymograph.vts."""
     arrays = read_kymograph(path)
     try:
         return fields_of(arrays["times"] * parameters["Time/End time"], parameters["Body/Length"],

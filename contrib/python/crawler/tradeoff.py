@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the rows of a tradeoff mean together: Pareto fronts, and which setting to use for which accuracy.
+"""Evaluation of all rows of a tradeoff: Pareto fronts, and which setting to use for which accuracy.
 
     python3 contrib/python/crawler tradeoff FOLDER
 
-adds that to the files of the folder. A row is a dict of the texts in tradeoff.csv; rows of one mesh follow each other, from the loosest tolerance on.
+adds it to the files of the folder. A row is a dict of the texts in tradeoff.csv; rows of one mesh follow each other,
+from the loosest tolerance on.
 """
 import collections
 import csv
@@ -15,18 +16,18 @@ import sys
 from . import to_prm
 from .needs import InputError, write_whole
 
-EXPONENTS = range(2, 15)  # recommendations are for errors of 1e-2, 1e-3, ...
+EXPONENTS = range(2, 15)  # exponents of the errors 1e-2, 1e-3, ... with recommendations
 OF_A_SETTING = ("model", "formulation", "mesh", "engine", "integrator", "degree", "cells", "mesh tolerance")  # and the tolerance
 
 
 def number(text):
-    """What is not known is not a number."""
+    """Converts a text to a number; NaN if it is unknown."""
     return float(text) if text not in ("", None) else math.nan
 
 
 def pareto_front(costs, errors):
-    """The places of those points that no other one beats, the cheapest first: none is as cheap and as good and better in one
-    of the two. Of equal points the first counts; points that are not numbers are never on the front."""
+    """Indices of the points that no other one dominates, the cheapest first: none is as cheap and as accurate and
+    better in one of the two. Of equal points the first counts; points with NaN are never on the front."""
     best, front = math.inf, []
     for cost, error, i in sorted((*point, i) for i, point in enumerate(zip(costs, errors)) if not any(map(math.isnan, point))):
         if error < best:
@@ -36,13 +37,13 @@ def pareto_front(costs, errors):
 
 
 def safe_errors(rows):
-    """For each row the largest error of it and of all tighter tolerances on its mesh; infinite if one of them failed."""
+    """Largest error of each row and of all tighter tolerances on its mesh; infinite if one of them failed."""
     def mesh(row):
         return [row[name] for name in OF_A_SETTING]
 
     safe, last = [], None
     for row in reversed(rows):
-        # A tighter tolerance for which there was no time says nothing against the looser ones.
+        # Tighter tolerances that ran out of time say nothing against the looser ones.
         own = number(row["shown error"]) if row["status"] == "finished" else 0.0 if row["reason"] == "time_limit" else math.inf
         safe.append(max(own, safe[-1]) if last is not None and mesh(row) == mesh(last) else own)
         last = row
@@ -50,8 +51,9 @@ def safe_errors(rows):
 
 
 def recommend(rows, batch=False):
-    """[(exponent, place of the row)]: for errors of 10^-exponent the cheapest setting that is safe, as far as there is one. A
-    lucky error is not recommended, nor a level whose own estimate of its error (the message) is larger than it promises."""
+    """Recommends [(exponent, index of the row)]: for errors of 10^-exponent the cheapest setting that is safe, if there
+    is one. Accidentally small errors are not recommended, nor a level whose own error estimate (the message) exceeds
+    its promise."""
     candidates = [(number(row["seconds"]), i, safe) for i, (row, safe) in enumerate(zip(rows, safe_errors(rows)))
                   if row["status"] == "finished" and not row["message"] and (row["engine"] == "batch") == batch]
     found = []
@@ -85,12 +87,12 @@ def cost_in_words(row):
 
 
 def block(row):
-    """The setting as lines of a parameter file."""
+    """Setting as lines of a parameter file."""
     return to_prm(dict(entry.split("=", 1) for entry in row["entries"].split("; ")))
 
 
 def items(rows, found):
-    """Recommendations as summary.json has them; batches have no parameter file."""
+    """Recommendations for summary.json; batches have no parameter file."""
     def known(value):
         return None if math.isnan(value) else value
 
@@ -100,7 +102,7 @@ def items(rows, found):
 
 
 def lines(rows, found, words):
-    """A line for each setting that is recommended, whose accuracies stand at the place of {}."""
+    """Formats a line for each recommended setting, with its accuracies in place of {}."""
     exponents = collections.defaultdict(list)
     for exponent, i in found:
         exponents[i].append(f"1e-{exponent}")
@@ -108,8 +110,8 @@ def lines(rows, found, words):
 
 
 def evaluate(rows):
-    """What summary.json has besides what the program writes: pareto, the places of the rows on the front of single runs and on
-    that of batches; recommendations and batch_recommendations; advice, sentences."""
+    """Entries of summary.json besides those of the program: pareto, the indices of the rows on the front of single runs
+    and on that of batches; recommendations and batch_recommendations; advice, sentences."""
     fronts, found = [], []
     for batch in (False, True):
         own = [i for i, row in enumerate(rows) if row["status"] == "finished" and (row["engine"] == "batch") == batch]
@@ -128,14 +130,14 @@ def evaluate(rows):
 
 
 def recommendations_prm(rows):
-    """Blocks for a parameter file, each with a comment that says what it costs."""
+    """Blocks for a parameter file, each with a comment about its cost."""
     text = ("# The cheapest settings that crawler tradeoff has found for this scene. Copy the block that you want into the\n"
             "# parameter file; errors are relative, costs are processor time of a run without snapshots.\n")
     return text + "".join(f"\n# For 1e-{exponent}: {cost_in_words(rows[i])}\n{block(rows[i])}" for exponent, i in recommend(rows))
 
 
 def read_rows(folder):
-    """The rows of tradeoff.csv. Raises InputError if it is not there or of another version."""
+    """Rows of tradeoff.csv. Raises InputError if the file is missing or of another version."""
     path = folder / "tradeoff.csv"
     try:
         with open(path, newline="", encoding="utf-8") as file:
@@ -150,8 +152,8 @@ def read_rows(folder):
 
 
 def complete(folder):
-    """The summary of a folder, as a dict, with what evaluate() gives. Where summary.json does not have that yet, it is written,
-    and recommendations.prm. Raises InputError, FileError."""
+    """Summary of a folder, a dict, with the results of evaluate(). If summary.json lacks these, it is written, and
+    recommendations.prm. Raises InputError, FileError."""
     path = folder / "summary.json"
     try:
         summary = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
@@ -166,5 +168,5 @@ def complete(folder):
 
 
 def main():
-    """What crawler tradeoff calls at its end."""
+    """Completes a folder at the end of crawler tradeoff."""
     complete(pathlib.Path(sys.argv[2]))

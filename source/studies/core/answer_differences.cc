@@ -15,7 +15,7 @@ namespace crawler
 {
   namespace
   {
-    /// A number at a place, and the bound of its error.
+    /// Value of a number, and the bound of its error.
     struct Known
     {
       double value, error;
@@ -30,10 +30,11 @@ namespace crawler
       return {differentiated_numbers[number].of(result), error};
     }
 
-    /// Weights of the middle and of the four places.
+    /// Weights of the middle and of the four other places.
     using Weights = std::array<double, 5>;
 
-    /// Two estimates of the derivative, and what a kink adds to the second differences and a smooth function does not.
+    /// Weights of two estimates of the derivative, and of the second differences to which a kink contributes and a
+    /// smooth function does not.
     struct Differences
     {
       Weights value, coarse, kink;
@@ -42,7 +43,7 @@ namespace crawler
     constexpr Differences central = {{{0., 1. / 120., -8. / 15., 8. / 15., -1. / 120.}},
                                      {{0., -1. / 8., 0., 0., 1. / 8.}},
                                      {{-15. / 8., -1. / 16., 1., 1., -1. / 16.}}};
-    /// A kink cannot be told from one side.
+    /// Differences to one side, which cannot detect a kink.
     constexpr Differences one_sided = {{{-25. / 12., 4., -3., 4. / 3., -0.25}}, {{-0.75, 0., 1., 0., -0.25}}, {}};
 
     using Values = std::array<Known, 5>;

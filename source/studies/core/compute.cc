@@ -43,8 +43,8 @@ namespace crawler
       return task.gait ? Simulation::GaitWish::declared : Simulation::GaitWish::none;
     }
 
-    /// A part of the work for one task: its time is taken. What it throws is how the task ended, unless the user has to
-    /// mend it; that is kept.
+    /// Times a part of the work for one task. An exception becomes the status of the task, unless the user has to mend
+    /// its cause; that one is stored.
     void
     guarded(Task &task, const std::function<void()> &work)
     {
@@ -69,7 +69,8 @@ namespace crawler
       task.seconds += clock.seconds();
     }
 
-    /// Scene and numerics, without which the task is stopped; or the result of a level that needs none.
+    /// Makes scene and numerics, without which the task is stopped, or computes the result of a level that needs no
+    /// numerics.
     void
     prepare(Task &task, const double time_limit, const std::function<bool()> &interrupted)
     {
@@ -105,22 +106,22 @@ namespace crawler
       return !task.error && task.computed.result.time.status == Status::none;
     }
 
-    /// May runs of this choice and the finer ones that measure their errors share the lanes?
+    /// Returns true if runs of this choice and the finer ones that measure their errors may share the lanes.
     bool
     may_share_lanes(const Task &task, const NumericsChoice &choice)
     {
       return !choice.is_of_several_runs() && batch_method(*task.scene, task.parameters.time, choice.numerics);
     }
 
-    /// A task in the lanes, and what its run and the finer one take.
+    /// Task in the lanes, with the inputs of its run and of the finer one.
     struct Member
     {
       Task *task;
       NumericsChoice choice;
-      bool is_shared; ///< the choice was made for others: it knows nothing of the size of this displacement
+      bool is_shared; ///< choice made for other scenes, without knowledge of the size of this displacement
       std::optional<CycleWish> cycles;
       TimeParameters finer_time;
-      Numerics finer = {}; ///< once the run has finished
+      Numerics finer = {}; ///< set once the run has finished
 
       Member(Task &its_task, const NumericsChoice &its_choice, const bool choice_is_shared)
         : task(&its_task)
@@ -139,7 +140,7 @@ namespace crawler
       }
     };
 
-    /// The answer of a member, if it is as good as it should be.
+    /// Stores the answer of a member if it is as accurate as requested.
     void
     take_answer(const Member &member, SimulationResult result, const SimulationResult &finer)
     {
@@ -155,8 +156,8 @@ namespace crawler
     }
 
     /**
-     * The runs, and of those that finish the finer ones, side by side; all want the same. Tasks whose answer is as good
-     * as it should be have it with its errors, other runs that finished without.
+     * Computes the runs, and the finer runs of those that finish, side by side; all have the same options. Tasks whose
+     * answer is as accurate as requested have it with its errors, other runs that finished without.
      */
     void
     compute_members(std::vector<Member> members,
@@ -194,7 +195,7 @@ namespace crawler
       return {.energy_balance = task.parameters.output.energy_balance, .gait = gait_wish(task)};
     }
 
-    /// Runs that fit, side by side, each with the numerics chosen for it.
+    /// Computes runs that fit the lanes, each with the numerics chosen for it.
     void
     compute_batches(const std::span<Task> tasks, const double time_limit, const std::function<bool()> &interrupted)
     {
@@ -215,7 +216,7 @@ namespace crawler
             return clock.seconds() <= n * time_limit && !interrupted();
           });
         }
-        catch (const std::exception &) // whoever computes them one by one finds out what is wrong with which
+        catch (const std::exception &) // the one-by-one computation finds the faulty run
         {
         }
         for (const Member &member : members)
@@ -223,7 +224,7 @@ namespace crawler
       }
     }
 
-    /// What the batch has left: runs, and errors of the displacement with what follows from them.
+    /// Completes a task after the batch: runs, errors of the displacement, and results that follow from them.
     void
     finish(Task &task, const double time_limit, const std::function<bool()> &interrupted)
     {
@@ -285,7 +286,7 @@ namespace crawler
       choose_model(task.parameters, *task.scene); // refuses what the model cannot compute
     }
 
-    /// Leaves nothing of a try behind.
+    /// Discards all results of an attempt.
     void
     forget(Task &task)
     {
@@ -310,7 +311,7 @@ namespace crawler
       }
       return shared_choice(scenes, keep_going);
     }
-    catch (const std::exception &) // whoever computes them one by one finds out what is wrong with which
+    catch (const std::exception &) // the one-by-one computation finds the faulty run
     {
       return std::nullopt;
     }
@@ -344,7 +345,7 @@ namespace crawler
       for (std::size_t i = 0; i < tasks.size(); ++i)
         done[i] = tasks[i].computed.result.error.has_value();
     }
-    catch (const std::exception &) // whoever computes them one by one finds out what is wrong with which
+    catch (const std::exception &) // the one-by-one computation finds the faulty run
     {
       done.assign(tasks.size(), false);
     }

@@ -25,18 +25,18 @@ namespace crawler
   {
     constexpr int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
-    /// What the signal's function needs, where it may not ask for memory.
+    /// Data of the signal handler, which must not allocate memory.
     struct Prepared
     {
       std::array<char, 4096> path{};
       std::array<char, 4096> line{};
-      std::array<char, 65536> stack{}; ///< the own one may be what was used up
-      volatile std::size_t size = 0;   ///< of the line
+      std::array<char, 65536> stack{}; ///< alternative stack: the overflow of the normal one may be the fault
+      volatile std::size_t size = 0;   ///< size of the line
       stack_t stack_before{};
       struct sigaction before[std::size(faults)] = {};
     } prepared;
 
-    /// Calls only what is admitted in a signal's function (signal-safety(7)).
+    /// Signal handler: calls only async-signal-safe functions (signal-safety(7)).
     void
     write_line(const int signal)
     {
@@ -46,7 +46,7 @@ namespace crawler
           [[maybe_unused]] const auto written = write(file, prepared.line.data(), prepared.size);
           close(file);
         }
-      raise(signal); // which is as it was before, and comes when this function has ended
+      raise(signal); // default action again, delivered when this handler returns
     }
   } // namespace
 

@@ -16,10 +16,11 @@ namespace crawler
 {
   namespace
   {
-    /// An entry that has no effect.
+    /// Entry that has no effect.
     struct Idle
     {
-      std::string path, place, section; ///< that has none as a whole; empty if others of its section may have one
+      std::string path, place, section; ///< section without effect as a whole; empty if others of its entries may have
+                                        ///< one
       bool is_override;
       const EntryRule *rule;
     };
@@ -114,7 +115,7 @@ namespace crawler
       return notes;
     }
 
-    /// Constants that are in no formula, while others of the list are.
+    /// Notes on constants that are in no formula, while others of the list are.
     std::vector<std::string>
     notes_on_constants(const ParameterFile &file, const Declarations &declarations, const VariedEntries &varied)
     {

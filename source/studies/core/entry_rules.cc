@@ -14,7 +14,7 @@ namespace crawler
   {
     const std::string command_entry = "crawler";
 
-    // What values a chooser needs.
+    // Conditions of a chooser on its value.
 
     auto
     any_of(std::vector<std::string> words)
@@ -43,7 +43,7 @@ namespace crawler
     {
       return is_csv(value) || to_numbers(value).value_or(std::vector<double>()).size() > 1;
     }
-    /// Is one of these constants in a formula?
+    /// Returns a condition: the formula contains one of these constants.
     auto
     uses_one_of(const std::vector<ListedNumber> &constants)
     {
@@ -51,14 +51,14 @@ namespace crawler
         return std::ranges::any_of(constants, [&](const ListedNumber &one) { return uses_name(formula, one.key); });
       };
     }
-    /// Is the variable @p name in the formula?
+    /// Returns a condition: the formula contains the variable @p name.
     auto
     has(const std::string &name)
     {
       return [name](const std::string &formula) { return uses_name(formula, name); };
     }
 
-    /// The rules within the section @p root of generators.
+    /// Adds the rules within the section @p root of generators.
     void
     add_rules_of_generators(const std::string &root, const bool has_sum, std::vector<EntryRule> &rules)
     {
@@ -69,7 +69,7 @@ namespace crawler
         section[root.size()] = static_cast<char>(std::toupper(static_cast<unsigned char>(section[root.size()])));
         if (name == "none" || (name == "sum" && !has_sum))
           continue;
-        // A strain given by a formula or a table has entries of its own.
+        // Strains given by a formula or a table have entries of their own.
         const bool gives_strain = name != "expression" && name != "table" && name != "prescribed strain";
         rules.push_back(
           {{section}, {{root + "Generator", gives_strain ? any_of({name, "prescribed strain"}) : any_of({name})}}});
@@ -77,7 +77,7 @@ namespace crawler
           rules.push_back(
             {{section}, {{root + "Generator", any_of({name})}, {root + strain + "Given by", any_of({name})}}});
       }
-      /// Entries of one section that need another one of it.
+      /// Adds a rule for entries of one section that depend on another entry of it.
       const auto add = [&](const std::string &section,
                            const std::vector<std::string> &entries,
                            const std::vector<std::string> &choosers,
@@ -126,7 +126,7 @@ namespace crawler
         add("", {fmt::format("Edge width in {}", x)}, {fmt::format("Window in {}", x)}, is_set);
     }
 
-    /// Constants none of which is in their formula; those that an axis varies may be.
+    /// Adds rules for constants none of which is in their formula, unless an axis varies it.
     void
     add_rules_of_constants(const Declarations &declarations, std::vector<EntryRule> &rules)
     {
@@ -141,7 +141,7 @@ namespace crawler
       }
     }
 
-    /// The rules of what follows the active stress in the file.
+    /// Adds the rules of the sections behind the active stress in the file.
     void
     add_rules_of_numerics(std::vector<EntryRule> &rules)
     {
@@ -165,7 +165,7 @@ namespace crawler
         {{mesh + "Mesh tolerance", mesh + "Smallest cell"}, {{mesh + "Mesh", any_of({"adaptive", "automatic"})}}});
       rules.push_back({{mesh + "Mesh", mesh + "Mesh tolerance", mesh + "Smallest cell", mesh + "Degree"},
                        {{mesh + "Formulation", is_not_stretch}}});
-      // Where the fused engine does not fit, PETSc is no choice.
+      // Engine has no effect where the fused engine does not fit: PETSc is the only one.
       rules.push_back({{time + "Engine"}, {{time + "Integrator", any_of({"automatic", "radau 5", "radau 9"})}}});
       rules.push_back({{time + "Engine"}, {{time + "Step control", any_of({"adaptive"})}}});
       rules.push_back({{time + "Engine"}, {{mesh + "Mesh", any_of({"automatic", "uniform"})}}});
@@ -173,20 +173,20 @@ namespace crawler
       rules.push_back(
         {{output + "Snapshot format", output + "Kymograph"}, {{output + "Number of snapshots", is_not(0.)}}});
       rules.push_back({{output + "Ledger tolerance"}, {{output + "Ledger", any_of({"true"})}}});
-      // The series has no balance to check.
+      // Perturbation, a series, has no energy balance to check.
       rules.push_back(
         {{output + "Ledger tolerance"}, {{"Model", any_of({"auto", "kinematic", "linear", "nonlinear"})}}});
-      // Without a choice there is no cycle stop with fixed steps.
+      // Cycle stop is off by default with fixed steps.
       rules.push_back({{time + "Cycle stop"},
                        {{time + "Cycle stop", any_of({"on"})}, {time + "Step control", any_of({"adaptive"})}}});
     }
 
-    /// The rules of the studies, and what of the rest each command does not need.
+    /// Adds the rules of the studies, and of other entries that some commands do not need.
     void
     add_rules_of_commands(std::vector<EntryRule> &rules)
     {
       const auto is_random = any_of({"random", "latin hypercube"});
-      // What is there is used by the command of its section; check makes the plan of all.
+      // Sections of studies serve their own command; check makes the plan of all.
       rules.push_back({{"Sweep/"}, {{command_entry, any_of({"sweep", "optimize", "check"})}}});
       for (const auto &[section, command] :
            {std::pair("Tradeoff/", "tradeoff"), std::pair("Optimize/", "optimize"), std::pair("Fit/", "fit")})
@@ -212,7 +212,7 @@ namespace crawler
       const auto has_files = [](const std::string &command) { return command != run_in_memory_command; };
       rules.push_back({{"Output/Snapshot format", "Output/Active stress table", "Time/Checkpoint interval"},
                        {{command_entry, has_files}}});
-      rules.push_back({{"Output/Number of snapshots"}, // it has fields at all, or none
+      rules.push_back({{"Output/Number of snapshots"}, // zero or nonzero: fields or none
                        {{command_entry, has_files}, {"Output/Number of snapshots", any_of({"0"})}}});
       rules.push_back(
         {{"Error estimate",

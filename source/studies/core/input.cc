@@ -14,7 +14,7 @@ namespace crawler
 {
   namespace
   {
-    /// Of a table that goes on behind the end of the body most likely the unit is another one.
+    /// Notes on tables that continue beyond the end of the body: most likely their unit is another one.
     std::vector<std::string>
     profiles_beyond_the_body(const Scene &scene)
     {
@@ -74,7 +74,7 @@ namespace crawler
       const InputError placed = file.with_place(error);
       std::string message     = placed.what();
       if (message.find("decimals are written with a point") == std::string::npos)
-        for (const std::string &note : notes_on_decimal_commas(file, form.declarations)) // perhaps that is why
+        for (const std::string &note : notes_on_decimal_commas(file, form.declarations)) // possible cause
           message += "; " + note.substr(note.find(": ") + 2);
       throw InputError(message, placed.entry);
     }

@@ -24,7 +24,7 @@ namespace crawler
 
   namespace
   {
-    /// The files of runs and studies, but for what a run writes while it goes on.
+    /// Files of runs and studies, except those that a run writes as it proceeds.
     const std::vector<std::string> own_names = {"original.prm",
                                                 "parameters.prm",
                                                 "log.txt",
@@ -60,7 +60,7 @@ namespace crawler
                                                 "reference.json",
                                                 crash_file,
                                                 report_name};
-    /// What a run writes while it goes on: the fields and the statistics.
+    /// Files that a run writes as it proceeds: the fields and the statistics.
     const std::vector<std::string> names_of_fields = {"statistics.csv",
                                                       "solution.pvd",
                                                       "line.pvd",
@@ -70,7 +70,7 @@ namespace crawler
                                                       "solution.h5.part",
                                                       "kymograph.vts"};
 
-    /// A link would lead what is written or removed to places outside.
+    /// Refuses links, which would redirect writing and removal to other places.
     void
     require_no_links(const fs::path &folder)
     {
@@ -92,13 +92,13 @@ namespace crawler
       }
     }
 
-    /// Was what wrote there killed (its lock or its state is left), or stopped in order?
+    /// True if the writer was killed (its lock or its state remains) or stopped in an orderly way.
     bool
     is_broken_off(const fs::path &folder)
     {
       std::error_code error;
       if (fs::exists(folder / study_lock_name, error))
-        return FileLock(folder / study_lock_name).lock() == FileLock::State::mine; // else somebody is still there
+        return FileLock(folder / study_lock_name).lock() == FileLock::State::mine; // otherwise it is still running
       if (fs::exists(folder / "restart.dat", error))
         return true;
       std::ifstream in(folder / "summary.json");
@@ -106,7 +106,7 @@ namespace crawler
       return summary.is_object() && summary.value("status", nlohmann::json()) == "stopped";
     }
 
-    /// Has it nothing but perhaps a lock?
+    /// True if the folder is empty except perhaps for a lock.
     bool
     is_free(const fs::path &folder)
     {
@@ -132,7 +132,7 @@ namespace crawler
     std::error_code error;
     if (!fs::exists(folder, error))
     {
-      // The nearest folder that exists must let us make the missing ones.
+      // Missing folders are made in the nearest one that exists, which must be writable.
       fs::path parent = fs::absolute(folder).parent_path();
       while (!fs::exists(parent, error) && parent.has_relative_path())
         parent = parent.parent_path();
@@ -174,7 +174,7 @@ namespace crawler
                        "\"; another folder is expected for --output, or that it has ended");
     try
     {
-      require_usable(folder, overwrite || is_free(folder)); // whoever had the lock may have written
+      require_usable(folder, overwrite || is_free(folder)); // the previous owner of the lock may have written
     }
     catch (...)
     {

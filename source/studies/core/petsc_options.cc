@@ -23,7 +23,7 @@ namespace crawler
     for (std::string word; words >> word;)
     {
       if (word.size() < 2 || word[0] != '-' || std::isalpha(static_cast<unsigned char>(word[1])) == 0)
-        continue; // a value
+        continue; // value of an option
       PetscBool is_used = PETSC_FALSE;
       PetscOptionsUsed(nullptr, word.c_str() + 1, &is_used);
       if (!is_true_anywhere(is_used == PETSC_TRUE, communicator))

@@ -15,14 +15,14 @@ namespace crawler
     constexpr double between_waits = 3.;
     constexpr double between_lines = 5.;
 
-    /// Characters, of a text in UTF-8.
+    /// Number of characters of a text in UTF-8.
     std::size_t
     length_of(const std::string &text)
     {
       return static_cast<std::size_t>(std::ranges::count_if(text, [](const char c) { return (c & 0xC0) != 0x80; }));
     }
 
-    /// A bar of @p n characters, the part from @p first to @p last of it (from 0 to 1) filled.
+    /// Draws a bar of @p n characters, filled from @p first to @p last (from 0 to 1).
     std::string
     bar_text(const double first, const double last, const unsigned int n)
     {
@@ -71,7 +71,7 @@ namespace crawler
     last_                        = now();
     const double gone            = seconds();
     constexpr unsigned int n_bar = 24;
-    const double swing           = 0.5 - 0.5 * std::cos(2. * gone); // of a bar that moves
+    const double swing           = 0.5 - 0.5 * std::cos(2. * gone); // position of a moving bar
     std::string line =
       done
         ? fmt::format("{} {:3.0f} %  {}",

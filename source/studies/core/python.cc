@@ -17,7 +17,7 @@ namespace crawler
 {
   namespace
   {
-    /// Where a script is looked for: where it is installed with the program, and in the build folder.
+    /// Paths at which a script is looked for: where it is installed with the program, and in the build folder.
     std::array<std::filesystem::path, 2>
     places_of_script(const std::string &name, const std::filesystem::path &program)
     {
@@ -43,7 +43,7 @@ namespace crawler
                     std::filesystem::path(script).filename().string(),
                     places[0].lexically_normal().string(),
                     places[1].string())};
-    // If this Python lacks a module, the script itself goes on with Debian's (contrib/python/crawler/needs.py).
+    // Scripts that lack a module in this Python go on with Debian's (contrib/python/crawler/needs.py).
     for (const std::string python : {"python3", "/usr/bin/python3"})
     {
       std::vector<std::string> command = {python, path->string()};

@@ -25,7 +25,7 @@ namespace crawler
         continue;
       const std::string value = declarations_.value(i);
       std::vector<std::string> paths;
-      if (to_number(value) && entry.values.kind != EntryKind::profile) // also a list of one
+      if (to_number(value) && entry.values.kind != EntryKind::profile) // also for a list with one number
         paths.push_back(entry.path);
       else
         for (const ListedNumber &one : listed_numbers(entry, value))
@@ -49,7 +49,7 @@ namespace crawler
     const auto is_in = [&](const std::vector<std::string> &list) {
       if (std::ranges::find(list, path) != list.end())
         return true;
-      // A list of one by its place, or a number behind those that a list has now.
+      // Number of a list of one by its place, or a number behind those that a list has now.
       const std::string entry = path.substr(0, path.find('['));
       return path.ends_with(']') && declarations_.info(path).values.kind == EntryKind::numbers &&
              (std::ranges::find(list, entry) != list.end() || std::ranges::find(list, entry + "[1]") != list.end());

@@ -17,20 +17,20 @@ namespace crawler
 
   namespace
   {
-    /// Relative to the entry, for the forces at the points.
+    /// Step for the forces at the points, relative to the entry.
     constexpr double step = 1e-3;
 
-    /// An entry, and the scenes in which it differs a little.
+    /// Entry, and the scenes in which it differs slightly.
     struct Varied
     {
       EntrySensitivity sensitivity;
-      VariedAnswers answers;     ///< what makes the scenes
+      VariedAnswers answers;     ///< parameters of the scenes
       std::vector<Scene> scenes; ///< four, or none if there is a reason
       bool is_one_sided = false;
     };
 
-    /// The scenes in which an entry has other values, to one side if it is at a limit. An error in one of them is a
-    /// reason. @p step: between the values, relative; @p both_sides: where they are, in steps.
+    /// Makes the scenes in which an entry has other values, to one side if it is at a limit. An error in one of them is
+    /// a reason. @p step: between the values, relative; @p both_sides: their places, in steps.
     Varied
     vary(
       Form &form, const Scene &scene, const std::string &entry, const double step, const std::array<int, 4> &both_sides)
@@ -78,7 +78,7 @@ namespace crawler
       return list;
     }
 
-    /// The derivatives, with bounds by those of the finer run. @p accuracy of the displacement, relative.
+    /// Sets the derivatives, with bounds by those of the finer run. @p accuracy of the displacement, relative.
     void
     set(EntrySensitivity &entry,
         const Derivatives &values,
@@ -98,7 +98,7 @@ namespace crawler
         if (!values[i] || !finer[i])
           continue;
         const double number = std::abs(differentiated_numbers[i].of(result)), size = std::abs(*values[i]);
-        // Works are less accurate than the displacement, in units of what is exchanged.
+        // Works are less accurate than the displacement, in units of the exchanged work.
         const bool of_work = is_work(all_quantities[i]);
         const double scale = of_work ? std::max(number, result.energy_balance->exchanged_work) : number;
         const double of_number =
@@ -173,7 +173,7 @@ namespace crawler
         for (std::size_t i = 0; i < known.size(); ++i)
           set(*known[i], values[i], finer_values[i], result, accuracy);
       }
-      catch (const std::exception &) // the engine gave up a step, say
+      catch (const std::exception &) // e.g. the engine gave up a step
       {
         has_adjoint = false;
         local       = {};

@@ -13,7 +13,7 @@ namespace crawler
 {
   namespace
   {
-    /// "0.1" or "5 %"
+    /// Parses "0.1" or "5 %".
     SensitivityEntry
     uncertain_entry(const std::string &text, const std::string &path, const std::string &own)
     {
@@ -28,7 +28,7 @@ namespace crawler
       return {path, is_part ? *number / 100. : *number, is_part};
     }
 
-    /// The parts of a list, which may be empty.
+    /// Parts of a list, which may be empty.
     std::vector<std::string>
     parts_of(const std::string &list, const char separator)
     {

@@ -42,7 +42,7 @@ namespace crawler
   std::map<std::string, std::string>
   provenance(const std::string &effective, const std::string &command_line)
   {
-    // Without comments: HDF5 allows an attribute 64 KB.
+    // Comments are left out: HDF5 allows 64 KB for an attribute.
     std::map<std::string, std::string> attributes = {{"parameters.prm", without_comments(effective)},
                                                      {"command line", command_line}};
     for (const auto &[name, version] : versions())

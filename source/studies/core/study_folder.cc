@@ -60,7 +60,7 @@ namespace crawler
     for (const auto &file : fs::directory_iterator(path_))
       if (is_lock(file.path().filename().string()))
         locks.push_back(file.path());
-    std::error_code ignored; // they disturb nothing
+    std::error_code ignored; // remaining locks are harmless
     for (const auto &file : locks)
       fs::remove(file, ignored);
   }
@@ -122,7 +122,7 @@ namespace crawler
       throw FileError("cannot make the output folder \"" + path_.string() + "\": " + error.message());
     lock();
     remove_locks_of_mpi();
-    leaving_if_refused(require_own); // the one that had the lock may have changed it
+    leaving_if_refused(require_own); // the previous owner of the lock may have changed it
     if (options_.resume && state() == State::computed)
       return true;
     prepare(path_);

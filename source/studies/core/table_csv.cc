@@ -13,8 +13,8 @@ namespace crawler
 
   namespace
   {
-    /// A file into which all ranks write at places of their own (MPI-IO). Nothing is thrown: good() tells, on all ranks
-    /// the same.
+    /// File to which all ranks write, each at its own places (MPI-IO). Nothing is thrown: good() is the same on all
+    /// ranks.
     class SharedFile
     {
     public:
@@ -33,7 +33,7 @@ namespace crawler
       }
       SharedFile(const SharedFile &) = delete;
 
-      /// The texts of all ranks in their order, after what was written before (collective).
+      /// Appends the texts of all ranks in their order (collective).
       void
       append(const std::string &text)
       {
@@ -111,7 +111,7 @@ namespace crawler
       size = file.size();
     }
     on_first_rank(communicator, [&]() {
-      // What the file system says late is seen in the size.
+      // Late errors of the file system show in the size.
       std::error_code error;
       if (!is_good || fs::file_size(temporary, error) != size)
       {

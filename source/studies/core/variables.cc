@@ -29,7 +29,7 @@ namespace crawler
       }
     };
 
-    /// "List[2-4]" and "List[*]" are several numbers of a list, "Constants[*]" all constants.
+    /// Expands "List[2-4]" and "List[*]" to several numbers of a list, "Constants[*]" to all constants.
     std::vector<std::string>
     expanded(const std::string &name, const Declarations &declarations, const Refusal &refuse)
     {
@@ -63,7 +63,7 @@ namespace crawler
       return names;
     }
 
-    /// "FROM to TO"
+    /// Parses "FROM to TO".
     std::pair<double, double>
     read_range(const std::string &text, const std::string &name, const Refusal &refuse)
     {
@@ -123,7 +123,7 @@ namespace crawler
           try
           {
             const Parameters parameters = form.parameters_with(path, end);
-            if (kind == EntryKind::profile || kind == EntryKind::constants) // the formula says what they may be
+            if (kind == EntryKind::profile || kind == EntryKind::constants) // the formula limits their values
               parameters.create_scene();
           }
           catch (const InputError &error)

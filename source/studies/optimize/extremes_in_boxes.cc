@@ -11,15 +11,15 @@ namespace crawler
   {
     constexpr std::size_t n_space = 8, per_box = 16;
     constexpr double boxes_of_stride = 8., most_strides = 4., most_times = 2560.;
-    constexpr std::size_t reach = 2; ///< of a crest from one time to the next [points]
-    /// Sides of a break, which neighbours that are so near to each other are.
+    constexpr std::size_t reach = 2; ///< shift of a crest from one time to the next [points]
+    /// Distance within which neighbours are the two sides of a break.
     constexpr double beside = 1e-9;
 
-    /// A place and the value there.
+    /// Place and the value there.
     using Point = std::pair<double, double>;
 
-    /// The largest value (@p sign 1) or the smallest on the parabola through three points, the middle one of which has
-    /// it among these; the middle one itself if the vertex is not between them, or if a break is.
+    /// Extremum (@p sign 1: largest, -1: smallest) of the parabola through three points, the middle one of which is the
+    /// extreme one; the middle one itself if the vertex is not between them, or if a break is.
     Point
     sharpened(const double sign, const Point &before, const Point &middle, const Point &after)
     {
@@ -32,7 +32,7 @@ namespace crawler
       return vertex.first > before.first && vertex.first < after.first ? vertex : middle;
     }
 
-    /// The numbers of the places in a part of n equal ones, both ends included.
+    /// Index range of the places in a part of n equal ones, both ends included.
     std::pair<std::size_t, std::size_t>
     inside(const std::vector<double> &places, const std::size_t part, const std::size_t n)
     {
@@ -78,7 +78,8 @@ namespace crawler
   {
   }
 
-  /// In each of three rows, which a crest may cross elsewhere, and then between these.
+  /// Refines an extreme in each of three rows, since a crest may cross them at different points, and then between the
+  /// rows.
   StretchPlace
   ExtremesInBoxes::sharpened_at(const std::vector<double> &stretch,
                                 const std::size_t i,

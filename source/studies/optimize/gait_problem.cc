@@ -11,7 +11,7 @@ namespace crawler
 {
   namespace
   {
-    constexpr double refused = 1e10; ///< the objective where there is a problem
+    constexpr double refused = 1e10; ///< objective where there is a problem
 
     double
     sign_of_direction(const OptimizeParameters &parameters)
@@ -97,7 +97,7 @@ namespace crawler
         "Optimize/Variables");
     if (first > 0.)
       scale_ = first;
-    // A start that hardly moves says little of what can be reached.
+    // Starts with hardly any motion say little about the attainable magnitude.
     const Point &point = at(to_y(start), true);
     double slope       = 0.;
     for (const double one : point.gradient)
@@ -127,7 +127,7 @@ namespace crawler
     return y;
   }
 
-  /// In the user's units, larger is better; of the cost of transport its inverse.
+  /// Objective in the user's units, to be maximised; of the cost of transport its inverse.
   double
   GaitProblem::objective(const GaitValues &values, std::vector<double> *const gradient) const
   {

@@ -21,7 +21,7 @@ namespace crawler
                                                                             "dissipation",
                                                                             "efficiency"}};
 
-    /// A number that is checked: its value, and its derivative by a variable.
+    /// Number to check: its value, and its derivative by a variable.
     struct Checked
     {
       std::string name;
@@ -43,7 +43,7 @@ namespace crawler
         const auto p = static_cast<std::size_t>(place - values.begin());
         list.push_back(
           {fmt::format("{} {}", place == least ? "smallest" : "largest", name),
-           [=](const GaitValues &there) { return (there.*block).values[p]; }, // in this place: others may be as high
+           [=](const GaitValues &there) { return (there.*block).values[p]; }, // X // value
            [=](const GaitValues &there, const std::size_t i) { return (*(there.*block).jacobian)[p * n + i]; }});
       }
     }
@@ -71,7 +71,7 @@ namespace crawler
       }
     }
 
-    /// The largest deviation of a gradient from differences, as a share of the number or of its largest derivative.
+    /// Largest deviation of a gradient from differences, relative to the number or to its largest derivative.
     double
     deviation_of(const Checked &number,
                  const GaitValues &here,
@@ -121,8 +121,8 @@ namespace crawler
     if (checked.empty() || list.empty())
       return std::nullopt;
 
-    // Where the integrator takes another step or the mesh another cell, values jump by their error. Narrower
-    // differences pass by most of these places; a wrong derivative agrees with none.
+    // Values jump by their error where the integrator takes another step or the mesh another cell. Narrower differences
+    // avoid most of these places; a wrong derivative agrees with none.
     std::vector<std::vector<double>> differences(list.size(), std::vector<double>(x.size()));
     std::vector<double> deviations(list.size(), std::numeric_limits<double>::max());
     for (double width = step; width >= step / 64. && std::ranges::max(deviations) > tolerance; width /= 8.)

@@ -15,7 +15,7 @@ namespace crawler
 {
   namespace
   {
-    constexpr double accurate_enough = 1e-6; ///< the quadrature, relative to displacement and works
+    constexpr double accurate_enough = 1e-6; ///< accuracy of the quadrature, relative to displacement and works
 
     double
     dot(const std::vector<double> &a, const std::vector<double> &b)
@@ -37,7 +37,7 @@ namespace crawler
     put(limited, others.limited);
   }
 
-  /// A scene of the family, and how it is computed.
+  /// Scene of the family, with its reduced form.
   struct KinematicGait::State
   {
     explicit State(const Parameters &parameters)
@@ -57,7 +57,7 @@ namespace crawler
       return {reduced.scene(), grid.points()};
     }
 
-    /// Are body, ground, units and time those of another one, so that only the strain may differ?
+    /// True if body, ground, units and time are those of another state, so that only the strain may differ.
     bool
     is_like(const State &other) const
     {
@@ -107,18 +107,19 @@ namespace crawler
     look_for_linearity(start);
   }
 
-  /// Where the strain is limited: equally spaced, so that a wave of constant shape is the same at many of them.
+  /// Chooses the places where the strain is limited: equally spaced, so that a wave of constant shape is the same at
+  /// many of them.
   void
   KinematicGait::choose_limited_places(const bool many)
   {
-    // A strain that is not linear is computed anew at all of them, for each variable.
+    // Nonlinear strains are computed anew at all of them, for each variable.
     const unsigned int most_times = many ? 128 : 32, most = many ? 65536 : 4096, closer = many ? 64 : 8;
     n_limited_t_ = std::min(std::bit_ceil(GaussPanels::n_points * n_time_), most_times);
     n_limited_s_ = std::min(closer * GaussPanels::n_points * n_space_, most / n_limited_t_);
   }
 
-  /// Of places where a linear strain is the same for all values of the variables one is enough; of those that are left,
-  /// as many as is good for the optimiser.
+  /// Removes all but one of the places where a linear strain is the same for all values of the variables, and thins out
+  /// the rest to a number that suits the optimiser.
   void
   KinematicGait::leave_out_places()
   {
@@ -157,8 +158,8 @@ namespace crawler
                        linear_ ? ", the strain is linear in the variables" : "");
   }
 
-  /// The derivatives of the strain are measured at the start; another strain, all variables being different, shows
-  /// whether they hold there.
+  /// Measures the derivatives of the strain at the start, and tests whether they hold for another strain, with all
+  /// variables changed.
   void
   KinematicGait::look_for_linearity(const std::vector<double> &start)
   {
@@ -181,7 +182,7 @@ namespace crawler
     Linear linear{start, std::make_shared<const State>(family_.parameters(start)), {}, {}};
     linear.samples  = sample(*linear.state);
     const auto base = linear.state;
-    // A little: at large values the strain may not be admissible.
+    // Small changes: at large values the strain may not be admissible.
     const auto away = [&](const std::size_t i, const double part) {
       const double range = variables[i].to - variables[i].from;
       return part * range * (start[i] + part * range > variables[i].to ? -1. : 1.);
@@ -253,7 +254,7 @@ namespace crawler
     const Units &units  = state.reduced.units();
     const Scene &scene  = state.physical;
     const double energy = units.energy(), D = units.length * values[StrainFunctional::displacement];
-    // The bound holds for the sums of the quadrature, too, whose strains are these.
+    // The bound holds for the sums of the quadrature, too, with the strains at its points.
     const auto [least, most] = std::ranges::minmax(samples.on_grid.strain);
     const double bound       = largest_merit(*state.reduced.scene().friction, 1. + least, 1. + most) *
                          std::sqrt(values[StrainFunctional::dissipation]),
@@ -339,7 +340,7 @@ namespace crawler
               derivatives[j] += around.weights[k] * its_numbers[j];
           }
         }
-        if (!only_strain[i]) // of body, ground or time
+        if (!only_strain[i]) // variables of body, ground or time
           for (std::size_t j = 0; j < n_gait_numbers; ++j)
             values.gradients[j][i] = derivatives[j];
       }
@@ -404,7 +405,7 @@ namespace crawler
     {
       possible.emplace(family_.parameters(x));
     }
-    catch (const InputError &) // the body would be inverted between the points of the grid
+    catch (const InputError &) // inversion between the points of the grid
     {
       if (is_large || x == start_)
         throw;

@@ -27,7 +27,7 @@ namespace crawler
   {
     namespace fs = std::filesystem;
 
-    /// The parameter files and runs of an earlier study, but for files that are not the program's.
+    /// Removes the parameter files and runs of an earlier study, but not files that are not the program's.
     void
     remove_optima(const fs::path &folder)
     {
@@ -45,19 +45,19 @@ namespace crawler
           runs.push_back(entry.path());
       }
       std::error_code error;
-      fs::remove_all(folder / "starts", error); // of earlier versions
+      fs::remove_all(folder / "starts", error); // files of earlier versions
       for (const fs::path &file : files)
         fs::remove(file, error);
       for (const fs::path &run : runs)
       {
         prepare(run);
         fs::remove(run / "active_stress.csv", error);
-        fs::remove(run / "solution", error); // these if they are empty
+        fs::remove(run / "solution", error); // removed only if they are empty
         fs::remove(run, error);
       }
     }
 
-    /// Starts were files of their own in versions before this table of them.
+    /// Throws InputError for a study of a version in which starts were files of their own, before the table of starts.
     void
     require_no_old_starts(const fs::path &folder)
     {
@@ -85,8 +85,8 @@ namespace crawler
         model.description());
     }
 
-    /// The optimum as a parameter file, and its run in a folder of its own. Returns the summary of the run, and whether
-    /// it ended as it should.
+    /// Writes the optimum as a parameter file, and runs it in a folder of its own. Returns the summary of the run, and
+    /// true if it ended as it should.
     std::pair<std::string, bool>
     run_optimum(OptimizeCases &cases,
                 const StartResult &start,
@@ -117,15 +117,15 @@ namespace crawler
       return {fs::exists(place / "summary.json") ? read_whole_file(place / "summary.json") : "{}", is_good};
     }
 
-    /// How a study ended.
+    /// End of a study.
     struct Ending
     {
-      std::string reason; ///< empty: well
+      std::string reason; ///< empty: none, all is well
       ExitCode code;
       std::string warning;
     };
 
-    /// @p clock's reason if it was stopped: @p stop.
+    /// Ending of a study; @p stop: the reason of @p clock if it was stopped.
     Ending
     ending_of(const OptimizeResults &results,
               const bool runs_are_good,
@@ -175,7 +175,7 @@ namespace crawler
       return {"", ExitCode::finished, ""};
     }
 
-    /// What was done, and where it is.
+    /// Logs the results and where they are.
     void
     report(const OptimizeCases &cases,
            const OptimizeResults &results,
@@ -199,7 +199,7 @@ namespace crawler
           : fmt::format("The best gait is in {0}/optimum{1}.prm, its run in {0}/best{1}/.", place, number)));
     }
 
-    /// Tables, the optima with their runs, and the summary, by rank 0. @p stop: why the study is not whole.
+    /// Writes tables, the optima with their runs, and the summary, on rank 0. @p stop: why the study is not whole.
     ExitCode
     write_results(OptimizeCases &cases,
                   OptimizeSearches &searches,
@@ -225,7 +225,7 @@ namespace crawler
       write_file(folder / "optima.csv", csv(optimum_table(results, folder, summaries)));
       const Ending end         = ending_of(results, runs_are_good, stop, clock);
       const std::string status = !stop.empty() ? "stopped" : end.code == ExitCode::finished ? "finished" : "failed";
-      const double seconds     = clock.seconds(); // pictures are no part of it
+      const double seconds     = clock.seconds(); // without pictures
       write_file(folder / "summary.json",
                  optimize_json(results, summaries, status, end.reason, seconds, options.command_line));
       for (const std::string &line : in_words(results, cases, summaries))
@@ -238,14 +238,14 @@ namespace crawler
       return end.code;
     }
 
-    /// The start of a case: the scenes about it, and what computes its gaits.
+    /// Start of a case: its scenes, variables, and the model of its gaits.
     struct CaseStart
     {
       std::unique_ptr<SceneFamily> scenes;
       std::vector<double> x;
       std::unique_ptr<GaitModel> model;
 
-      /// @p accuracy: instead of that of the file.
+      /// @p accuracy replaces that of the file.
       CaseStart(OptimizeCases &cases, const unsigned long number, const std::optional<double> accuracy = {})
         : scenes(cases.family(number))
         , x(scenes->start(0))
@@ -264,12 +264,12 @@ namespace crawler
         log.line(note);
     }
 
-    /// --check-gradient: of each case at the start; where that is special (a jump at the end of the run, say), so that
-    /// nothing can be compared, beside it.
+    /// --check-gradient: checks the gradients of each case at the start; where nothing can be compared at the start
+    /// (e.g. a jump at the end of the run), beside it.
     ExitCode
     check_gradients(OptimizeCases &cases, Log &log)
     {
-      constexpr double accurate = 1e-7, beside = 0.0137; // differences of rough simulations say little
+      constexpr double accurate = 1e-7, beside = 0.0137; // differences of rough simulations are unreliable
       const double accuracy = cases.parameters().accuracy;
       bool agrees           = true;
       for (unsigned long number = 0; number < cases.size(); ++number)

@@ -15,7 +15,7 @@ namespace crawler
   {
     const std::string axes_entry = "Sweep/Axes";
 
-    /// Of all cases together there are one objective, one table and one clock.
+    /// Throws InputError for an axis over the objective, the starts or the clock, which all cases share.
     void
     require_admissible(const std::string &axis)
     {

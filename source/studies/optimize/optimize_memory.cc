@@ -22,7 +22,7 @@ namespace crawler
   {
     const std::string converged = "converged", stopped = "stopped";
 
-    /// In the order of GaitNumber.
+    /// Columns in the order of GaitNumber.
     const std::array<RowFile::Column, n_gait_numbers> number_columns = {{{"displacement", "length", ""},
                                                                          {"stress_power", "energy", ""},
                                                                          {"positive_power", "energy", ""},
@@ -32,7 +32,7 @@ namespace crawler
                                                                          {"dissipation", "energy", ""},
                                                                          {"efficiency", "1", ""}}};
 
-    /// Goes through the fields of a row in the order of the columns: says what they are, writes them or reads them.
+    /// Visits the fields of a row in the order of the columns: describes, writes or reads them.
     class RowFields
     {
     public:
@@ -44,7 +44,7 @@ namespace crawler
       }
 
       std::vector<RowFile::Column> columns;
-      RowFile::Row values; ///< if they are written
+      RowFile::Row values; ///< values, if they are written
 
       void
       number(const RowFile::Column &column, double &value)
@@ -54,7 +54,7 @@ namespace crawler
         columns.push_back(column);
         values.emplace_back(value);
       }
-      /// A whole number; a damaged one becomes the largest.
+      /// Visits a whole number; a damaged one becomes the largest.
       template <typename Number>
       void
       whole(const RowFile::Column &column, Number &value)
@@ -73,11 +73,11 @@ namespace crawler
       }
 
     private:
-      const Table *table_ = nullptr; ///< if they are read
+      const Table *table_ = nullptr; ///< table, if the fields are read
       unsigned long row_  = 0;
     };
 
-    /// A gait of a start. The case is too large if it is damaged.
+    /// Visits a gait of a start. The number of the case is too large if it is damaged.
     void
     exchange(
       RowFields &fields, const OptimizeNames &names, StartName &start, GaitRecord &record, const unsigned int width)
@@ -87,7 +87,7 @@ namespace crawler
       start.number_of_case           = std::min(number - 1, names.cases.size());
       const OptimizeNames::Case &its = names.cases[std::min(start.number_of_case, names.cases.size() - 1)];
       for (std::size_t i = 0; i < names.axes.size(); ++i)
-        if (std::ranges::find(names.paths, names.axes[i]) == names.paths.end()) // else it is only a start
+        if (std::ranges::find(names.paths, names.axes[i]) == names.paths.end()) // otherwise the axis is only a start
         {
           std::string value  = its.values[i];
           std::size_t widest = 1;
@@ -113,7 +113,7 @@ namespace crawler
       fields.text({"problem", "", "why there is no gait", width}, record.problem);
     }
 
-    /// What is written of a gait.
+    /// Gait as written to the table.
     GaitRecord
     shown(GaitRecord record)
     {
@@ -132,7 +132,7 @@ namespace crawler
       exchange(fields, names, start, record, width);
     }
 
-    /// Of a start its gait with this number.
+    /// Row of the evaluation of a start with this number.
     RowFields
     evaluation(const OptimizeNames &names, StartName start, double number, GaitRecord record)
     {
@@ -141,7 +141,7 @@ namespace crawler
       return fields;
     }
 
-    /// A start, and the number of its evaluations, which are not in its row.
+    /// Visits a start, and the number of its evaluations, which are not in its row.
     void
     exchange(RowFields &fields, const OptimizeNames &names, StartResult &start, std::size_t &n_evaluations)
     {
@@ -200,7 +200,7 @@ namespace crawler
 
     using Evaluations = std::map<std::pair<unsigned long, unsigned long>, std::vector<GaitRecord>>;
 
-    /// Those that are whole, by case and start.
+    /// Reads the evaluations that are whole, by case and start.
     Evaluations
     read_evaluations(const OptimizeNames &names, const std::filesystem::path &path)
     {
@@ -208,7 +208,7 @@ namespace crawler
       const unsigned long n = rows.n_rows();
       const auto intact     = rows.intact(evaluation_columns(names), 0, n);
       Table table           = rows.read(0, n);
-      table.erase(table.begin()); // the index
+      table.erase(table.begin()); // index
       Evaluations all;
       for (unsigned long row = 0; row < n; ++row)
       {
@@ -220,7 +220,7 @@ namespace crawler
         if (name.number_of_case == names.cases.size() || (intact && !(*intact)[row]))
           continue;
         auto &list = all[{name.number_of_case, name.start}];
-        if (number == 0.) // a search that was broken off may be there, too
+        if (number == 0.) // possibly preceded by a search that was broken off
           list.clear();
         if (number == static_cast<double>(list.size()))
           list.push_back(std::move(record));
@@ -245,7 +245,7 @@ namespace crawler
       const RowReader rows(MPI_COMM_SELF, folder_ / file, group);
       Evaluations evaluations = read_evaluations(names_, folder_ / evaluations_file);
       Table table             = rows.read(0, rows.n_rows());
-      table.erase(table.begin()); // the index
+      table.erase(table.begin()); // index
       unsigned long n_damaged = 0;
       for (unsigned long row = 0; row < done.size(); ++row)
         if (done[row])
@@ -317,7 +317,7 @@ namespace crawler
     const std::vector<RowFile::Column> written = evaluation_columns(names_);
     std::vector<RowFile::Column> columns       = written;
     columns.insert(columns.begin(), index_column);
-    // Beside the former files, so that a kill loses nothing.
+    // New files are written beside the former ones, so that a kill loses nothing.
     const std::string fresh = ".part";
     PointTable table        = table_;
     table.file += fresh;

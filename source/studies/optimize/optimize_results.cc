@@ -22,7 +22,7 @@ namespace crawler
       return std::isfinite(value) ? Json(value) : Json();
     }
 
-    /// The number at a JSON pointer; not a number if there is none.
+    /// Number at a JSON pointer; not a number if there is none.
     double
     number_at(const Json &json, const char *place)
     {

@@ -15,15 +15,14 @@ namespace crawler
 {
   namespace
   {
-    /// A number for the notes on crashes that no other start has.
+    /// Number of a start in the notes on crashes, different for each start.
     unsigned long
     mark(const StartName &start)
     {
       return start.number_of_case << 40 | start.start << 20 | start.neighbour;
     }
 
-    /// The gait @p x in a case, if it keeps to all limits and is better than @p own by more than the optimiser's
-    /// tolerance.
+    /// Gait @p x in a case, if it keeps to all limits and is better than @p own by more than the optimiser's tolerance.
     std::optional<GaitRecord>
     better_gait(OptimizeCases &cases, const StartResult &own, const std::vector<double> &x)
     {
@@ -47,7 +46,7 @@ namespace crawler
                                                           more * problem.admissible() * std::abs(own.best.objective));
         return is_better ? std::optional(record) : std::nullopt;
       }
-      catch (const InputError &) // here it is no gait
+      catch (const InputError &) // no gait in this case
       {
         return std::nullopt;
       }
@@ -196,7 +195,7 @@ namespace crawler
     return static_cast<std::size_t>(std::ranges::count_if(parts_, [](const Part &part) { return part.neighbour > 0; }));
   }
 
-  /// Of each case whose best gait is beaten by that of a neighbour the best one of these, to go on from there.
+  /// New starts: for each case whose best gait is beaten by that of a neighbour, the best one of these.
   std::vector<Part>
   OptimizeSearches::parts_from_neighbours()
   {

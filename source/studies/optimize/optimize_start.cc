@@ -17,13 +17,13 @@ namespace crawler
 {
   namespace
   {
-    /// A limit of what a gait has at many places, and its extreme, between the places where the optimiser looks, too.
+    /// Limit of a quantity at many places, and its extreme, also between the places that the optimiser uses.
     struct LimitedExtreme
     {
       std::optional<double> OptimizeParameters::*limit;
       double value;
 
-      /// By how much it exceeds the limit that was wanted, relative to this.
+      /// Excess over the wanted limit, relative to it.
       double
       excess(const OptimizeParameters &wanted) const
       {
@@ -54,7 +54,7 @@ namespace crawler
       return list;
     }
 
-    /// The limits, closer by what was exceeded by more than @p exact. Returns whether something was.
+    /// Tightens limits that were exceeded by more than @p exact. Returns true if there was one.
     bool
     tighten(OptimizeParameters &parameters,
             const OptimizeParameters &wanted,
@@ -75,7 +75,7 @@ namespace crawler
       return is_closer;
     }
 
-    /// The rounds of one start. Each is an optimisation; the next one knows better where to look.
+    /// Rounds of one start. Each is an optimisation; the next one has better places for the limits.
     class Search
     {
     public:
@@ -103,7 +103,7 @@ namespace crawler
         {
           go_on();
         }
-        catch (const InputError &error) // this start makes no gait
+        catch (const InputError &error) // no gait from this start
         {
           const bool may_invert  = !result_.records.empty() && !wanted_.smallest_strain;
           const StartResult none = without_gait(
@@ -135,7 +135,7 @@ namespace crawler
         const auto model  = make_gait_model(family_, x_, stops_);
         wanted_.tolerance = std::max(wanted_.tolerance, above_noise * model->noise());
         parameters_       = wanted_;
-        bool is_rough     = model->noise() == 0.; // of simulations all is known after the first round
+        bool is_rough     = model->noise() == 0.; // with simulations all is known after the first round
         bool is_fine      = false;
         for (unsigned int round = 0; round < most_rounds; ++round)
         {
@@ -150,18 +150,18 @@ namespace crawler
             return;
           x_      = result_.best.x;
           is_fine = !model->refine(x_);
-          if (!is_fine) // the limits are looked at in other places
+          if (!is_fine) // limits at new places
           {
             parameters_ = wanted_;
             comparable_ = result_.records.size();
-            if (!model->evaluate(x_, /*with_gradients=*/false).problem.empty()) // between the former places
+            if (!model->evaluate(x_, /*with_gradients=*/false).problem.empty()) // problem between the former places
             {
               x_ = start_;
               multipliers_.clear();
             }
           }
           if (is_fine && !is_rough && !result_.is_admissible())
-            return; // closer limits would not help
+            return; // tighter limits would not help
           if (is_fine && !is_rough)
           {
             const auto extremes = limited_extremes(wanted_, *model, family_, x_);
@@ -179,7 +179,7 @@ namespace crawler
                                   : "the grid became finer and finer";
       }
 
-      /// From x on; @p is_rough: the grid may be too coarse, so that a rough optimum will do.
+      /// Optimises from x on; @p is_rough: the grid may be too coarse, so that a rough optimum is enough.
       void
       improve(GaitModel &model, const bool is_rough)
       {
@@ -235,7 +235,7 @@ namespace crawler
         }
       }
 
-      /// In the wanted direction?
+      /// True if the gait moves in the wanted direction.
       bool
       moves() const
       {
@@ -245,8 +245,8 @@ namespace crawler
         return sign * result_.best.objective > least_motion;
       }
 
-      /// A start far beyond the limits may end where nothing moves, and nothing leads away from there. Between both is
-      /// the place that is as near to the start as the limits admit.
+      /// Finds the point nearest to the start that the limits admit, between the start and the result. A start far
+      /// beyond the limits may end at a point without motion, where all derivatives vanish.
       std::vector<double>
       as_near_as_limits_admit(GaitModel &model)
       {
@@ -269,7 +269,7 @@ namespace crawler
         return at(admitted);
       }
 
-      /// For whoever watches.
+      /// Updates the state for the progress display.
       void
       see(const GaitProblem &problem)
       {
@@ -285,7 +285,7 @@ namespace crawler
         return scene.is_plain() && scene.body.friction_exponent() == 0.;
       }
 
-      /// Is it an optimum, and what do the limits cost?
+      /// Decides whether the result is an optimum, and sets the multipliers of the limits.
       void
       judge()
       {
@@ -304,11 +304,11 @@ namespace crawler
                                          1. + result_.records.front().violation);
         for (GaitLimit &limit : result_.limits)
         {
-          if (!result_.is_admissible()) // what the optimiser has then is no price
+          if (!result_.is_admissible()) // multipliers are meaningless then
             limit.multiplier = NAN;
           if (is_cost) // the multiplier is that of D/W
             limit.multiplier *= -result_.best.objective * result_.best.objective;
-          for (const LimitEntry &entry : limits_of(wanted_)) // as it was wanted, not tightened
+          for (const LimitEntry &entry : limits_of(wanted_)) // wanted value, not the tightened one
             if (entry.name == limit.name)
               limit.value = *entry.value;
         }
@@ -321,8 +321,8 @@ namespace crawler
       OptimizeParameters parameters_; ///< with limits that may be tightened
       const std::vector<double> start_;
       std::vector<double> x_, multipliers_;
-      double scale_           = 1.; ///< of the objective, for the multipliers
-      std::size_t comparable_ = 0;  ///< the first record whose limits were looked at where they are now
+      double scale_           = 1.; ///< scale of the objective, for the multipliers
+      std::size_t comparable_ = 0;  ///< first record with the present places of the limits
       StartResult result_;
     };
   } // namespace

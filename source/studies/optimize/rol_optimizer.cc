@@ -17,7 +17,7 @@ namespace crawler
   {
     using List = std::vector<double>;
 
-    /// An approximation of a Hessian by the gradients at the points where it was asked for.
+    /// Approximate Hessian from the gradients at the points of evaluation.
     class RankOneHessian
     {
     public:
@@ -67,7 +67,7 @@ namespace crawler
     };
 
     /**
-     * The augmented Lagrangian f + sum (t^2 - mu^2)/(2 rho), where t = mu + rho (c - bound) if that pulls c back to the
+     * Augmented Lagrangian f + sum (t^2 - mu^2)/(2 rho), where t = mu + rho (c - bound) if that pulls c back to the
      * bound, and 0 otherwise (Rockafellar 1974): the slack variables of the limits are eliminated.
      */
     class Lagrangian : public ROL::StdObjective<double>
@@ -156,7 +156,7 @@ namespace crawler
       return list;
     }
 
-    /// The largest violation of a limit, or distance from one whose multiplier pulls: |t - mu|/rho is both (Birgin and
+    /// Largest violation of a limit, or distance from one whose multiplier is active: |t - mu|/rho is both (Birgin and
     /// Martinez, Practical Augmented Lagrangian Methods, 2014, section 4.1).
     double
     distance_from_complementarity(const List &t, const List &mu, const double rho)
@@ -182,7 +182,7 @@ namespace crawler
     lagrangian->rho       = first_penalty;
     const auto unknowns   = vector_of(y);
     const bool has_limits = !problem.lower().empty();
-    unsigned int n_idle   = 0; // iterations in which nothing became better
+    unsigned int n_idle   = 0; // iterations without improvement
     double inner = has_limits ? std::max(first_tolerance, tolerance) : tolerance, before = HUGE_VAL;
     ROL::Bounds<double> limits(vector_of(List(y.size(), 0.)), vector_of(List(y.size(), 1.)));
     std::ostringstream unread;
@@ -192,7 +192,7 @@ namespace crawler
       ROL::TypeB::LinMoreAlgorithm<double> algorithm(list);
       algorithm.run(*unknowns, *lagrangian, limits, unread);
       const ROL::EExitStatus end = algorithm.getState()->statusFlag;
-      // Steps that became small since gaits there are impossible are no sign of an optimum.
+      // Steps that became small because gaits there are impossible do not indicate an optimum.
       std::string impossible;
       if (end == ROL::EXITSTATUS_STEPTOL && algorithm.getState()->gnorm > inner)
         impossible = problem.latest_beside(*unknowns->getVector()).problem;

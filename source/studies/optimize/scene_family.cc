@@ -16,14 +16,14 @@ namespace crawler
   {
     const std::string list_of_variables = "Optimize/Variables";
 
-    /// Is there a limit without which the displacement would have no maximum?
+    /// Throws InputError if no limit bounds the displacement.
     void
     require_limit(const OptimizeParameters &p, const std::vector<Variable> &variables)
     {
       const auto holds = [](const LimitEntry &limit) { return limit.value && limit.name != "Largest stress rate"; };
       if (p.objective == "cost of transport" || std::ranges::any_of(limits_of(p), holds))
         return;
-      for (const Variable &variable : variables) // ranges are limits, but not meant as such
+      for (const Variable &variable : variables) // ranges are not meant as limits
         if (variable.path.starts_with("Active stress/Modes/Coefficients"))
           throw InputError(
             "there is no limit on strain, stress or work: the " + p.objective +
@@ -46,7 +46,7 @@ namespace crawler
       return variables;
     }
 
-    /// The active stress, or its rate; where this is not known, differences of the stress.
+    /// Active stress, or its rate; where this is unknown, differences of the stress.
     FieldHistory
     stress_of(const Scene &scene, const bool rate)
     {
@@ -124,7 +124,7 @@ namespace crawler
     std::vector<double> x;
     for (const Variable &variable : variables_)
     {
-      const double part  = static_cast<double>(random() >> 11) * 0x1p-52 - 1.; // from -1 to 1, alike on all machines
+      const double part  = static_cast<double>(random() >> 11) * 0x1p-52 - 1.; // from -1 to 1, the same on all machines
       const double shift = number == 0 ? 0. : own.spread * part * (variable.to - variable.from);
       x.push_back(std::clamp(variable.start + shift, variable.from, variable.to));
     }

@@ -14,7 +14,7 @@ namespace crawler
 {
   namespace
   {
-    /// What the adjoint differentiates, for each number.
+    /// Quantity that the adjoint differentiates for each number.
     constexpr std::array<std::optional<Quantity>, n_gait_numbers> quantities = {{Quantity::displacement,
                                                                                  Quantity::stress_work,
                                                                                  Quantity::positive_work,
@@ -48,14 +48,14 @@ namespace crawler
       return scene.end_time / scene.active_stress->period().value_or(scene.end_time);
     }
 
-    /// May states between its steps be looked at, with the numerics of its answer?
+    /// True if states between the steps can be observed with the numerics of the answer.
     bool
     has_pictures(const Task &task)
     {
       return task.computed.result.model != Model::kinematic && !task.computed.choice.has_fronts;
     }
 
-    /// The extreme strains of the states that it sees.
+    /// Observer of the extreme strains.
     class ExtremesOfPictures : public Observer
     {
     public:
@@ -113,7 +113,7 @@ namespace crawler
     return std::move(observers.front());
   }
 
-  /// Steps see extremes at their stages; a thousand pictures of each stride show what is between.
+  /// Steps see extremes at their stages only; a thousand pictures of each stride show those between.
   std::pair<double, double>
   SimulatedGait::extreme_strains(const std::vector<double> &x)
   {
@@ -251,7 +251,7 @@ namespace crawler
     return values;
   }
 
-  /// For the variables for which all wanted numbers have their derivatives.
+  /// Adds gradients for the variables for which all wanted numbers have derivatives.
   void
   SimulatedGait::add_adjoint_gradients(const std::vector<double> &x,
                                        const Task &task,
@@ -321,7 +321,7 @@ namespace crawler
         values.strain_by_differences[i] = false;
       }
     }
-    catch (const std::exception &) // the engine gave up a step, say
+    catch (const std::exception &) // e.g. the engine gave up a step
     {
       if (interrupted_())
         throw Interrupted();
@@ -330,7 +330,7 @@ namespace crawler
     }
   }
 
-  /// Each derivative costs a sweep.
+  /// Adds the two extremes only: each derivative costs a sweep.
   std::vector<std::size_t>
   SimulatedGait::with_extremes(std::vector<std::size_t> places) const
   {
@@ -364,7 +364,8 @@ namespace crawler
       return;
     const std::vector<Task> tasks = answers(places);
     const std::size_t n           = x.size();
-    // Near inversion, say, a gait beside may be impossible: one on the other side gives a derivative of first order.
+    // Gaits on one side may be impossible, e.g. near inversion: those on the other side give a derivative of first
+    // order.
     std::vector<std::size_t> nearest(n, tasks.size());
     std::vector<std::string> problems(n);
     const auto distance = [&](const std::size_t j) {

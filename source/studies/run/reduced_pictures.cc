@@ -9,7 +9,7 @@ namespace crawler
 {
   namespace
   {
-    /// The fields of a state in the user's units, at @p points in natural ones.
+    /// Fields of a state in the user's units, at @p points in natural ones.
     Fields
     physical_fields(const ReducedFields &state,
                     const std::vector<double> &points,

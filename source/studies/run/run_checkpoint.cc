@@ -23,7 +23,7 @@ namespace crawler
   namespace
   {
     const std::string present_name = "restart.dat", older_name = "restart.old.dat";
-    /// These say how a run is made, not what it gives.
+    /// Entries that determine how a run is made, not its results.
     const std::vector<std::string> free_entries = {"Time/Wall time limit", "Time/Checkpoint interval"};
 
     std::string
@@ -43,7 +43,7 @@ namespace crawler
       return fmt::format("crawler state, {} bytes, CRC-32 {:08x}\n", content.size(), crc.checksum());
     }
 
-    /// Nothing if there is no such file. Throws FileError if it is not whole.
+    /// Reads a checkpoint; nothing if there is no such file. Throws FileError if it is not whole.
     std::optional<RunCheckpoint>
     read(const fs::path &path)
     {
@@ -65,7 +65,7 @@ namespace crawler
       return checkpoint;
     }
 
-    /// The newer one that is whole.
+    /// Reads the newer checkpoint that is whole.
     std::optional<RunCheckpoint>
     read_newest(const fs::path &folder, std::vector<std::string> &notes)
     {
@@ -82,13 +82,13 @@ namespace crawler
       return std::nullopt;
     }
 
-    /// Throws InputError if another command has made what is there, or if nobody knows who has.
+    /// Throws InputError if the content of the folder is that of another command, or of unknown origin.
     void
     require_run(const fs::path &folder)
     {
       std::error_code error;
       const auto has = [&](const char *name) { return fs::exists(folder / name, error); };
-      // A run that was killed while it began has left some of these.
+      // Files left by a run that was killed while it began.
       const std::set<std::string> early = {study_lock_name,
                                            report_name,
                                            "original.prm",

@@ -21,7 +21,7 @@ namespace crawler
 {
   namespace
   {
-    /// Lets somebody else see the states.
+    /// Observer that passes the states on to another one.
     class Forward : public Observer
     {
     public:
@@ -39,14 +39,14 @@ namespace crawler
       Observer &to_;
     };
 
-    /// What a run keeps besides its result.
+    /// Times and points of the data that a run keeps besides its result.
     struct Kept
     {
-      std::optional<PictureTimes> times; ///< if they are not those that the input asks for
-      std::vector<double> points;        ///< of the kymograph; empty: there is none
+      std::optional<PictureTimes> times; ///< set if they differ from those of the input
+      std::vector<double> points;        ///< points of the kymograph; empty: there is none
     };
 
-    /// New tables for a run, or for the next try.
+    /// Makes new tables for a run, or for the next attempt.
     void
     begin_tables(const OutputParameters &output, const Scene &scene, const Kept &kept, RunInMemory &run)
     {

@@ -13,7 +13,7 @@ namespace crawler
 
   namespace
   {
-    constexpr double between_looks = 0.5; ///< for the file [s]
+    constexpr double between_looks = 0.5; ///< interval between looks for the file [s]
   }
 
   RunStops::RunStops(const StopSignal &signal,

@@ -30,7 +30,7 @@ namespace crawler
 {
   namespace
   {
-    /// A rank that has failed alone, for want of memory perhaps, ends the run of all.
+    /// Ends the run of all if a rank has failed alone, e.g. for lack of memory.
     void
     agree_on_failure(MPI_Comm communicator, TimeOutcome &outcome)
     {
@@ -67,8 +67,8 @@ namespace crawler
       }
     }
 
-    /// Writes the output times of a level without a mesh as a run with one does. Returns false if @p keep_going said
-    /// no.
+    /// Writes the output times of a level without a mesh as a run with one does. Returns false if @p keep_going
+    /// returned false.
     bool
     write_pictures(const ReducedModel &level,
                    const Input &input,
@@ -150,7 +150,7 @@ namespace crawler
     return finish();
   }
 
-  /// Whose folder it is, and what is in it. Returns false if there is nothing left to do.
+  /// Checks and, to resume, locks the folder, and reads its content. Returns false if nothing is left to do.
   bool
   RunStudy::begin()
   {
@@ -214,7 +214,7 @@ namespace crawler
       sharing_.ranks, scene_with_fronts_ ? *scene_with_fronts_ : input_.scene, input_.parameters.time, choice.numerics);
   }
 
-  /// Everything is in order, or as good as it will be: from here on there are files.
+  /// Makes the files, now that nothing in the input can be refused any more.
   void
   RunStudy::begin_output()
   {
@@ -230,7 +230,7 @@ namespace crawler
     announce_petsc_options(options_, log_);
   }
 
-  /// The first rank computes a level that needs no mesh, and writes the files of any run.
+  /// Computes a level that needs no mesh on the first rank, and writes the files of any run.
   void
   RunStudy::compute_without_mesh()
   {
@@ -294,7 +294,7 @@ namespace crawler
     });
   }
 
-  /// The runs of an answer one after the other: the first one has been built and announced.
+  /// Announces the runs of an answer one after the other: the first one has been built and announced.
   void
   RunStudy::announce_next_try(const NumericsChoice &choice)
   {
@@ -308,7 +308,7 @@ namespace crawler
                 ": once more, " + (choice.is_family ? "in the stretch form." : "finer."));
       if (sharing_.has_output)
         on_first_rank(sharing_.ranks, [&]() {
-          if (journal_.was_written()) // older states need the files that are removed
+          if (journal_.was_written()) // older states need the files that are about to be removed
           {
             remove_checkpoints(folder_);
             journal_.write();
@@ -359,7 +359,7 @@ namespace crawler
       leave_folder();
       return "";
     });
-    // A signal may have stopped some ranks only.
+    // Signals may have stopped some ranks only.
     return exit_code_of_first_rank(communicator_, [&]() {
       const OutputParameters &output = input_.parameters.output;
       const bool has_pictures        = output.has_snapshots() && (choice_ || !model_ || result_.error);
@@ -378,7 +378,7 @@ namespace crawler
       stop("after the end of the run, before its error was known");
   }
 
-  /// What is known once the run has ended: the adjoint's word on its error, and sensitivities.
+  /// Adds results of a run that has ended: its error by the adjoint, and sensitivities.
   void
   RunStudy::add_what_follows()
   {
@@ -414,7 +414,7 @@ namespace crawler
     if (is_for_later)
       journal_.write();
     write_summary();
-    if (!is_for_later) // until now a kill loses nothing
+    if (!is_for_later) // a kill before this loses nothing
       remove_checkpoints(folder_);
     else if (journal_.was_written())
       log_.line("The state of the run is in restart.dat: the same command with --resume goes on with it.");
@@ -427,7 +427,7 @@ namespace crawler
     write_file(folder_ / "summary.json", summary_json(result_, size_of(communicator_), options_.command_line));
   }
 
-  /// By this rank alone. What a level without a mesh computes cannot go on later, so only a signal stops it.
+  /// Decides on this rank alone. Levels without a mesh cannot be resumed, so only a signal stops them.
   bool
   RunStudy::is_stopped()
   {
@@ -443,7 +443,7 @@ namespace crawler
     result_.time.message = fmt::format("stopped {} {}", stops_.in_words(), when);
   }
 
-  /// Does @p work unless the run has ended.
+  /// Performs @p work unless the run has ended.
   template <typename Work>
   void
   RunStudy::guarded(const Work &work)
@@ -459,12 +459,12 @@ namespace crawler
       if (!sharing_.is_shared)
         return;
       std::filesystem::create_directories(folder_);
-      write_summary(); // by whoever failed, since the others may be waiting
+      write_summary(); // by the rank that failed, since the others may be waiting
       throw;
     }
   }
 
-  /// What the journal writes.
+  /// Writes the states of the journal.
   bool
   RunStudy::keep_states(const std::string &all)
   {

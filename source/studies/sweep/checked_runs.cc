@@ -15,7 +15,7 @@ namespace crawler
 {
   namespace
   {
-    /// Can the answers at this point be compared?
+    /// True if the answers at this point can be compared.
     bool
     is_checkable(const Task &task)
     {
@@ -35,7 +35,7 @@ namespace crawler
       return main.computed.choice.numerics.formulation == Formulation::stretch;
     }
 
-    /// A point with its other runs.
+    /// Point with its other runs.
     struct Checked
     {
       enum Run
@@ -50,7 +50,7 @@ namespace crawler
       const Task *main;
       std::array<std::optional<Task>, n_runs> own = {};
 
-      /// Null if it was not asked for. The automatic choice may be the stretch form.
+      /// Null if it was not requested. The automatic choice may be the stretch form.
       const Task *
       run(const Run which) const
       {
@@ -64,7 +64,7 @@ namespace crawler
     constexpr unsigned int explanation_width = 256;
     const char *const ratio_meaning =
       "difference of the displacement to that of the refined run, over the sum of both promised errors";
-    /// What the table has of each run: numbers of a sweep.
+    /// Numbers of a sweep that the table has of each run.
     constexpr const char *numbers_of_run[] = {
       "displacement", "inversion.s", "inversion.t", "min_stretch.value", "steps"};
 
@@ -76,7 +76,7 @@ namespace crawler
       Claim claim{.run = name, .status = status.status, .promised_error = task.computed.choice.promised_error};
       if (result.error && claim.promised_error < result.error->total)
         claim.promised_error = result.error->total;
-      // An answer with a large error is an answer: what it claims is that error.
+      // Answers with a large error are answers: they claim that error.
       if (status.reason == accuracy_not_met && std::isfinite(claim.promised_error))
         claim.status = "finished";
       if (claim.status == "finished")
@@ -86,7 +86,7 @@ namespace crawler
       return claim;
     }
 
-    /// A run is no check of itself.
+    /// True if both runs are the same: a run is no check of itself.
     bool
     same_run(const Task &a, const Task &b)
     {
@@ -95,7 +95,7 @@ namespace crawler
              a.computed.result.time.steps == b.computed.result.time.steps;
     }
 
-    /// With mesh and time steps that the program chooses.
+    /// Parameters of the refined run, with mesh and time steps chosen by the program.
     Parameters
     refined_parameters(const Parameters &parameters)
     {
@@ -118,14 +118,14 @@ namespace crawler
       return parameters;
     }
 
-    /// What the run @p which of a point computes; nothing if it is not asked for.
+    /// Parameters of the run @p which of a point; nothing if it is not requested.
     Wish
     wish(const Checked &point, const Checked::Run which)
     {
       const Task &main = *point.main;
       if (which == Checked::refined)
       {
-        // Where the choice of mesh and steps does not depend on it, Accuracy is divided once more.
+        // Accuracy is divided once more where the choice of mesh and steps does not depend on it.
         const Task *const before = point.run(which);
         return before == nullptr         ? refined_parameters(main.parameters)
                : same_run(main, *before) ? refined_parameters(before->parameters)
@@ -135,13 +135,13 @@ namespace crawler
         return std::nullopt;
       if (which == Checked::position)
         return with_formulation(main.parameters, FormulationEntry::position);
-      // For a >= 0 its inversions are located less well than those of the position form.
+      // Inversions are located less well by the stretch form than by the position form for a >= 0.
       if (is_stretch(main) || main.parameters.body.friction_exponent() >= 0.)
         return std::nullopt;
       return with_formulation(main.parameters, FormulationEntry::stretch);
     }
 
-    /// The runs of one kind at all points that want them.
+    /// Adds the runs of one kind at all points that need them.
     void
     add_runs(std::vector<Checked> &points, const Checked::Run which, const std::function<bool()> &interrupted)
     {
@@ -161,10 +161,10 @@ namespace crawler
         places[i]->own[which] = std::move(tasks[i]);
     }
 
-    /// A stretch this close to 0 is not called positive or negative before the run.
+    /// Distance from 0 within which a stretch is not called positive or negative before the run.
     constexpr double clear_stretch = 1e-3;
 
-    /// The first time at which the stretch of an end, 1 - m/k, is below @p level.
+    /// First time at which the stretch of an end, 1 - m/k, is below @p level.
     double
     end_below(const Scene &scene, const double level)
     {
@@ -191,7 +191,7 @@ namespace crawler
               .latest_at_end   = end_below(scene, -clear_stretch)};
     }
 
-    /// The name that a point has in the picture: that of the sweep's own answer, unless something is wrong.
+    /// Name of a point in the picture: the sweep's own answer, unless something is wrong.
     std::string
     outcome_of(const Task &main, const Verdict &verdict)
     {

@@ -21,7 +21,7 @@ namespace crawler
       return finished(claim) || claim.status == "inverted";
     }
 
-    /// The body is uninverted at least until then.
+    /// Time until which the body is certainly not inverted.
     double
     uninverted_until(const Claim &claim, const InversionFacts &facts)
     {
@@ -35,7 +35,7 @@ namespace crawler
                              : fmt::format("{} inverted at t = {:.6g}", claim.run, claim.inversion_time);
     }
 
-    /// Why one claim cannot be right; empty if it can.
+    /// Reason why one claim cannot be right; empty if it can.
     std::string
     against_theory(const Claim &claim, const InversionFacts &facts)
     {
@@ -48,7 +48,7 @@ namespace crawler
       return "";
     }
 
-    /// A comparison of two answers: is there one, and why they cannot both be right (empty if they can).
+    /// Comparison of two answers: whether there is one, and why they cannot both be right (empty if they can).
     struct Comparison
     {
       bool possible = false;

@@ -21,7 +21,7 @@ namespace crawler
   {
     constexpr unsigned long rows_together = 1 << 16;
 
-    /// How a value of the table is shown.
+    /// Text of a value of the table.
     std::string
     text_of(const Column &column, const unsigned long row)
     {
@@ -37,7 +37,7 @@ namespace crawler
       return text != nullptr ? *text : to_text(std::get<double>(value));
     }
 
-    /// The first row whose known value is not that of the table, in words; nothing if there is none.
+    /// First row whose known value differs from that of the table, in words; nothing if there is none.
     std::string
     changed_value(const RowReader &table, const std::vector<RowFile::Column> &columns, const RowFile::Known &known)
     {
@@ -49,7 +49,7 @@ namespace crawler
           for (unsigned long row = 0; row < n; ++row)
           {
             const std::string was = text_of(column, row), is = text_of(known.value(i, first + row));
-            // A text that is longer than its column was cut.
+            // Texts longer than their column were cut.
             if (was != is && !(columns[i].width > 0 && is.size() > columns[i].width && is.starts_with(was)))
               return fmt::format("{} of point {} was \"{}\" and is \"{}\"", columns[i].name, first + row, was, is);
           }
@@ -57,7 +57,7 @@ namespace crawler
       return "";
     }
 
-    /// Which rows of @p table are there and whole; the log gets a warning of those that are damaged.
+    /// Rows of @p table that exist and are whole; damaged ones are logged as a warning.
     std::vector<bool>
     rows_done(const RowReader &rows, const PointTable &table, Log &log)
     {
@@ -96,7 +96,7 @@ namespace crawler
       return done;
     }
 
-    /// Rows of other versions of the libraries may differ from those that are computed now.
+    /// Warns that rows of other versions of the libraries may differ from those computed now.
     void
     warn_of_other_versions(StudyFolder &folder, const PointTable &table)
     {

@@ -32,7 +32,7 @@ namespace crawler
   {
     namespace fs = std::filesystem;
 
-    /// The folders of points, but for files that are not the program's.
+    /// Removes the folders of points, but not files that are not the program's.
     void
     remove_kept_fields(const fs::path &points)
     {
@@ -46,14 +46,14 @@ namespace crawler
       for (const fs::path &folder : folders)
       {
         prepare(folder);
-        fs::remove(folder / "solution", error); // these if they are empty
+        fs::remove(folder / "solution", error); // removed only if they are empty
         fs::remove(folder, error);
       }
       fs::remove(points, error);
     }
 
-    /// The folders points/NUMBER of the points whose fields are kept, by `crawler run` with their values. Points that
-    /// were given up have none.
+    /// Writes the folders points/NUMBER of the points whose fields are kept, by `crawler run` with their values. Points
+    /// that were given up have none.
     bool
     keep_fields(MPI_Comm communicator,
                 const CommandOptions &options,
@@ -84,10 +84,10 @@ namespace crawler
           fs::create_directories(place);
           all = run(MPI_COMM_SELF, one) != ExitCode::stopped && all;
         }
-        catch (const InputError &) // values that do not fit together: the row says so, and there are no fields
+        catch (const InputError &) // inconsistent values: the row says so, and there are no fields
         {
           std::error_code error;
-          fs::remove(place, error); // if it is empty
+          fs::remove(place, error); // removed only if it is empty
         }
         catch (const std::exception &error)
         {
@@ -108,7 +108,7 @@ namespace crawler
                                   "status",
                                   {},
                                   points.sweep().point_time_limit.value_or(HUGE_VAL)};
-      const std::string reason = "reason"; // of the point, and of each run of a cross-check
+      const std::string reason = "reason"; // column of the point, and of each run of a cross-check
       for (const RowFile::Column &column : table.columns)
         if (column.name.ends_with(reason))
           table.reasons_and_seconds.emplace_back(column.name,
@@ -116,7 +116,7 @@ namespace crawler
       return table;
     }
 
-    /// The rows that are missing, by all ranks. Returns false if some rank was interrupted.
+    /// Computes the missing rows on all ranks. Returns false if some rank was interrupted.
     bool
     compute_rows(MPI_Comm communicator,
                  const fs::path &folder,
@@ -147,7 +147,7 @@ namespace crawler
         log);
     }
 
-    /// What a cross-check has found.
+    /// Logs the findings of a cross-check.
     void
     report_check(const SweepCounts &counts, Log &log)
     {
@@ -164,7 +164,7 @@ namespace crawler
           : fmt::format("; the largest measured error is {:.2g} of the promised one", counts.largest_error_ratio)));
     }
 
-    /// What stands in the log at the end.
+    /// Logs the results at the end.
     void
     report(const SweepCounts &counts, const SweepEnd &end, const fs::path &folder, const StudyClock &clock, Log &log)
     {
@@ -211,7 +211,7 @@ namespace crawler
     const std::vector<bool> done = points_done(communicator, [&]() {
       auto list = begin_or_resume(folder, table, file, planned_rows(table, points), options.command_line);
       if (std::count(list.begin(), list.end(), true) == 0)
-        remove_kept_fields(path / "points"); // of an earlier sweep
+        remove_kept_fields(path / "points"); // fields of an earlier sweep
       return list;
     });
     const auto n_done            = static_cast<unsigned long>(std::count(done.begin(), done.end(), true));
@@ -294,9 +294,9 @@ namespace crawler
     std::size_t bytes         = 0;
     for (const RowFile::Column &column : sweep_columns(points))
       bytes += column.width == 0 ? sizeof(double) : column.width;
-    // The time of some parts, spread over the sweep.
+    // Measured time of some parts, spread over the sweep.
     constexpr unsigned long most_samples = 32;
-    constexpr double long_enough         = 0.5; // seconds
+    constexpr double long_enough         = 0.5; // [s]
     SweepWork work(points, size_of(communicator));
     const unsigned long n_parts = work.n_parts(), stride = golden_stride(n_parts);
     const double before      = now();

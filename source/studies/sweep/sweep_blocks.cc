@@ -15,7 +15,7 @@ namespace crawler
 {
   namespace
   {
-    /// Are neighbours on this axis similar scenes, that take similar effort?
+    /// True if neighbours on this axis are similar scenes, which take similar effort.
     bool
     is_smooth(const SweepAxis &axis)
     {
@@ -33,7 +33,7 @@ namespace crawler
       row_  = rows_;
       rows_ = design.axes()[n_axes - 2].values.size();
     }
-    // Equal parts of each run.
+    // Runs are cut into equal parts.
     n_runs_                           = design.n_points() / (row_ * rows_);
     const unsigned long rows_of_block = most / row_;
     parts_of_run_                     = (rows_ + rows_of_block - 1) / rows_of_block;
@@ -85,17 +85,17 @@ namespace crawler
     return sorted_.empty() ? i * stride_ % size_ : sorted_[i];
   }
 
-  /// A point with its answer.
+  /// Point with its answer.
   struct SweepWork::Point
   {
     unsigned long number;
     Task task;
-    RowFile::Row checked = {}; ///< of a cross-check
+    RowFile::Row checked = {}; ///< row of a cross-check
   };
 
   namespace
   {
-    /// Unknowns times steps of the run; none on levels without a mesh, infinite where nothing is known.
+    /// Unknowns times steps of the run; 0 on levels without a mesh, infinite where unknown.
     double
     work_of(const Task &task)
     {
@@ -105,7 +105,7 @@ namespace crawler
       return result.mesh ? static_cast<double>(result.mesh->n_unknowns) * result.time.steps : 0.;
     }
 
-    /// In place of the answer at a point that killed its process twice.
+    /// Result in place of the answer at a point that killed its process twice.
     Task
     crashed_task()
     {
@@ -117,7 +117,7 @@ namespace crawler
       return task;
     }
 
-    /// The rows of these points, those in succession at once.
+    /// Writes the rows of these points, consecutive ones together.
     template <typename Point>
     void
     write_rows(const std::vector<Point> &points,
@@ -146,7 +146,7 @@ namespace crawler
     , blocks_(points.design())
     , order_(blocks_, points)
     , parts_of_block_([&]() {
-      // A rank that takes a part must measure what its block shares. Points of a cross-check take long.
+      // Each rank that takes a part must measure the numerics its block shares. Points of a cross-check take long.
       constexpr unsigned long most = 64, most_if_alone = 8;
       const unsigned long parts_per_rank = points.sweep().cross_check ? 8 : 4;
       const unsigned long n = points.design().n_points(), largest = blocks_.largest();
@@ -177,7 +177,7 @@ namespace crawler
     const SweepBlock block   = block_of(number);
     const unsigned long part = number % parts_of_block_;
     std::vector<unsigned long> points;
-    if (points_.sweep().cross_check) // neighbours, which take long together, go to different ranks
+    if (points_.sweep().cross_check) // neighbours, which take similarly long, go to different ranks
       for (unsigned long i = part; i < block.size; i += parts_of_block_)
         points.push_back(block.first + i);
     else
@@ -306,12 +306,12 @@ namespace crawler
     for (const Point &point : shared)
       std::erase(missing, point.number);
 
-    // The rest a few at a time, or one by one where one takes much work: what is finished shall be on the disk soon.
-    // With a time limit for each, no one may use up that of its neighbours.
+    // Remaining points are computed a few at a time, or one by one where one takes much work, so that finished ones are
+    // soon on the disk. With a time limit for each, none may use up that of its neighbours.
     const std::size_t most_together = std::isfinite(time_limit_) ? 1 : 8;
     constexpr double much           = 1e6; // unknowns times steps
     std::size_t together            = most_together;
-    const std::size_t alone         = missing.size(); // from here on
+    const std::size_t alone         = missing.size(); // number of the first point to compute alone
     missing.insert(missing.end(), sorted.alone.begin(), sorted.alone.end());
     for (std::size_t from = 0, to = 0; from < missing.size(); from = to)
     {

@@ -35,7 +35,7 @@ namespace crawler
                        entry_name);
     }
 
-    /// Opens a file that the axes name, @p what in words.
+    /// Opens a file that the axes name, described by @p what.
     std::ifstream
     open(const std::string &file, const std::string &what)
     {
@@ -48,7 +48,7 @@ namespace crawler
         return in;
       const std::string reason         = errno != 0 ? std::strerror(errno) : "unknown reason";
       const std::filesystem::path path = file, folder = path.parent_path();
-      std::vector<std::string> others; // without the ending, which they share
+      std::vector<std::string> others; // names without the extension, which they share
       for (std::filesystem::directory_iterator i(folder.empty() ? "." : folder, ignored), end; !ignored && i != end;
            i.increment(ignored))
         if (i->path().extension() == path.extension() && i->is_regular_file(ignored))
@@ -63,7 +63,7 @@ namespace crawler
              near.empty() ? "" : "; the nearest name is " + quoted_list(near));
     }
 
-    /// Can it be shown on a terminal? Not if it is UTF-16, compressed or a picture.
+    /// True if it can be shown on a terminal: not UTF-16, compressed or a picture.
     bool
     is_text(const std::string &line)
     {
@@ -73,7 +73,7 @@ namespace crawler
         return false;
       try
       {
-        nlohmann::json(line).dump(); // throws if it is no UTF-8
+        nlohmann::json(line).dump(); // throws if it is not UTF-8
         return true;
       }
       catch (const nlohmann::json::type_error &)
@@ -82,7 +82,7 @@ namespace crawler
       }
     }
 
-    /// The cells of a line of a CSV file; a cell in quotes may have commas in it, and two quotes for one. Nothing if a
+    /// Cells of a line of a CSV file; a cell in quotes may have commas in it, and two quotes for one. Nothing if a
     /// quote is not closed.
     std::optional<std::vector<std::string>>
     csv_cells(const std::string &line)
@@ -108,7 +108,7 @@ namespace crawler
       return cells;
     }
 
-    /// Which column of the file @p file has the name @p name.
+    /// Index of the column named @p name in the file @p file.
     std::size_t
     column_of(const std::string &name, const std::vector<std::string> &names, const std::string &file)
     {
@@ -133,7 +133,7 @@ namespace crawler
       return static_cast<std::size_t>(found - names.begin());
     }
 
-    /// The values in a column of a CSV file with a line of names. Lines that are empty or start with "#" do not count.
+    /// Values in a column of a CSV file with a line of names. Lines that are empty or start with "#" are skipped.
     std::vector<std::string>
     read_column(const Call &call, const std::filesystem::path &folder)
     {
@@ -182,7 +182,7 @@ namespace crawler
       return values;
     }
 
-    /// The ends of uniform(from, to) or loguniform(from, to).
+    /// Ends of uniform(from, to) or loguniform(from, to).
     std::vector<std::string>
     read_range(const Call &call)
     {
@@ -200,7 +200,7 @@ namespace crawler
       return {to_text(ends[0]), to_text(ends[1])};
     }
 
-    /// The generator SplitMix64 (@cite SteeleLeaFlood2014), whose n-th number is computed without the ones before it.
+    /// Generator SplitMix64 (@cite SteeleLeaFlood2014), whose n-th number is computed without the previous ones.
     std::uint64_t
     mixed(std::uint64_t x)
     {
@@ -215,15 +215,15 @@ namespace crawler
       return mixed(state + (n + 1) * 0x9e3779b97f4a7c15u);
     }
 
-    /// The n-th number in [0, 1) of a sequence, the same on every machine.
+    /// Returns the n-th number in [0, 1) of a sequence that is the same on every machine.
     double
     random_number(const std::uint64_t state, const std::uint64_t n)
     {
       return static_cast<double>(random_bits(state, n) >> 11) * 0x1p-53;
     }
 
-    /// Where @p i goes in a random permutation of 0, ..., @p n - 1: a Feistel network, which permutes the numbers of 2
-    /// b bits, as often as it takes to come back below n.
+    /// Returns the image of @p i in a random permutation of 0, ..., @p n - 1: a Feistel network, which permutes the
+    /// numbers of 2 b bits, is applied until the number is below n.
     std::uint64_t
     permuted(const std::uint64_t state, std::uint64_t i, const std::uint64_t n)
     {
@@ -348,7 +348,7 @@ namespace crawler
     }
     const std::uint64_t state = random_bits(random_bits(seed_, number), 0);
     double x                  = random_number(state, point);
-    if (kind_ == Kind::latin_hypercube) // each of n equal parts of an axis has one point
+    if (kind_ == Kind::latin_hypercube) // one point in each of n equal parts of an axis
       x = (static_cast<double>(permuted(~state, point, n_points_)) + x) / static_cast<double>(n_points_);
     if (!axis.is_range)
     {

@@ -25,7 +25,7 @@ namespace crawler
       return json.dump(-1, ' ', /*ensure_ascii=*/false, nlohmann::json::error_handler_t::replace);
     }
 
-    /// "WHAT was A and is B" for each name whose text differs; a text that is missing is @p otherwise.
+    /// Adds "WHAT was A and is B" for each name whose text differs; a missing text is @p otherwise.
     void
     compare(const Texts &before,
             const Texts &now,
@@ -113,7 +113,7 @@ namespace crawler
     {
       list = differences(before.effective, now.effective, free_entries);
     }
-    catch (const InputError &) // what it says may be bytes that no terminal can show
+    catch (const InputError &) // the message may contain bytes that no terminal can show
     {
       throw InputError("the parameters that are kept in the table cannot be read: it is damaged, or of another version "
                        "of crawler; a whole one is expected");

@@ -10,13 +10,13 @@ namespace crawler
 {
   namespace
   {
-    /// So few points are not worth a search.
+    /// Fewest points that are worth a search.
     constexpr unsigned long fewest = 6;
-    /// Examples of a block, and of one that has fewer points than many.
+    /// Numbers of examples of a block, and of one that has fewer points than many.
     constexpr std::size_t n_examples = 5, n_examples_of_few = 3;
     constexpr unsigned long many = 48;
 
-    /// The square of the distance of two places.
+    /// Square of the distance of two places.
     double
     distance(const std::vector<double> &a, const std::vector<double> &b, const std::vector<double> &spread)
     {
@@ -27,7 +27,7 @@ namespace crawler
       return sum;
     }
 
-    /// The numbers of @p n places: the first, and then always the one that is farthest from all before.
+    /// Indices of @p n places: the first, and then always the one farthest from all before.
     std::vector<std::size_t>
     far_apart(const std::vector<std::vector<double>> &places, const std::vector<double> &spread, const std::size_t n)
     {
@@ -60,7 +60,7 @@ namespace crawler
     return one;
   }
 
-  /// On axes of numbers; others have none.
+  /// Coordinates of a point on axes of numbers; other axes have none.
   std::vector<double>
   SweepNumerics::place(const unsigned long point) const
   {

@@ -26,7 +26,7 @@ namespace crawler
       {
         return parameters.create_scene().active_stress->feedback() != nullptr;
       }
-      catch (const InputError &) // its row says so
+      catch (const InputError &) // reported in its row
       {
         return false;
       }
@@ -101,13 +101,14 @@ namespace crawler
     {
       add_notes_on_scene(file_, base_->parameters, base_->parameters.create_scene(), notes);
     }
-    catch (const InputError &) // it is that of a point, and told there
+    catch (const InputError &) // error of a point, reported there
     {
     }
     return notes;
   }
 
-  /// One form serves all files: each entry is looked at by itself. A sum has entries of its own.
+  /// Checks the scene files. A single form serves them all: each entry is checked by itself. A sum has entries of its
+  /// own.
   void
   SweepPoints::require_scene_files(MPI_Comm communicator) const
   {
@@ -165,7 +166,7 @@ namespace crawler
     }
   }
 
-  /// Words are looked at by what they make of the scene: a formula with an unknown name, a table that is not there.
+  /// Checks words by the scene that they make: a formula with an unknown name, a missing table.
   void
   SweepPoints::require_words()
   {
@@ -182,7 +183,7 @@ namespace crawler
           {
             form.parameters.create_scene();
           }
-          catch (const InputError &error) // of another entry: it may fit at other points
+          catch (const InputError &error) // another entry is at fault: the word may fit at other points
           {
             if (error.entry == axis.entry)
               throw InputError(
@@ -192,8 +193,8 @@ namespace crawler
         }
   }
 
-  /// Values that do not fit together at one point are a row that failed; if they do so at the first, the middle and
-  /// the last point the file itself is wrong.
+  /// Values that do not fit together at one point are a failed row; if they do not fit at the first, the middle and the
+  /// last point, the file itself is wrong.
   void
   SweepPoints::require_scene()
   {
@@ -234,7 +235,7 @@ namespace crawler
   Form &
   SweepPoints::form(const unsigned long point)
   {
-    constexpr std::size_t most_forms = 64; // a form takes half a megabyte
+    constexpr std::size_t most_forms = 64; // half a megabyte each
     const auto &axes                 = design_->axes();
     const auto form_of               = [&](const std::string &name) -> Form               &{
       if (const auto known = forms_.find(name); known != forms_.end())
@@ -265,7 +266,7 @@ namespace crawler
     if (file_axis_ < axes.size())
     {
       const ParameterFile its = scene(design_->value(file_axis_, point));
-      const Form its_form(file_, &its); // it may have entries of its own
+      const Form its_form(file_, &its); // needed since it may have entries of its own
       for (const Assignment &assignment : its.assignments())
         add(its_form.declarations, assignment.path, assignment.value, assignment.folder);
     }

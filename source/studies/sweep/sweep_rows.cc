@@ -27,7 +27,7 @@ namespace crawler
     constexpr double not_known        = std::numeric_limits<double>::quiet_NaN();
     constexpr unsigned int word_width = 24, reason_width = 32, message_width = 256;
 
-    /// Of a number by its key.
+    /// Unit of a number by its key.
     std::string
     unit_of(const std::string &key)
     {
@@ -72,7 +72,7 @@ namespace crawler
             counts.largest_error_ratio = std::fmax(counts.largest_error_ratio, ratio);
     }
 
-    /// The sum over all ranks, on rank 0.
+    /// Sums the counts over all ranks, on rank 0.
     SweepCounts
     sum(MPI_Comm communicator, const SweepCounts &counts)
     {
@@ -94,7 +94,7 @@ namespace crawler
         all.wrong_answers.merge(json[3].get<std::map<unsigned long, std::string>>());
         while (all.wrong_answers.size() > most_wrong_answers)
           all.wrong_answers.erase(std::prev(all.wrong_answers.end()));
-        if (json[4].is_number()) // null: not known
+        if (json[4].is_number()) // null: unknown
           all.largest_error_ratio = std::fmax(all.largest_error_ratio, json[4].get<double>());
       }
       return all;

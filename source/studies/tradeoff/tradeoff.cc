@@ -28,7 +28,7 @@ namespace crawler
 {
   namespace
   {
-    /// A row for each setting, which are known from the beginning; the columns are a contract (doc/user_guide.md,
+    /// Table with a row for each setting, known from the beginning; the columns are a contract (doc/user_guide.md,
     /// "Trading accuracy for speed").
     PointTable
     tradeoff_table(const double time_limit)
@@ -66,7 +66,7 @@ namespace crawler
       return table;
     }
 
-    /// What stands in a column; what is not known is an empty text or not a number.
+    /// Value in a column: an empty text or not a number if unknown.
     RowFile::Value
     value_in(const TradeoffTexts &texts, const RowFile::Column &column)
     {
@@ -77,7 +77,7 @@ namespace crawler
       return to_number(text).value_or(std::numeric_limits<double>::quiet_NaN());
     }
 
-    /// Adds the errors, if there is a displacement.
+    /// Adds the errors if there is a displacement.
     void
     compare(TradeoffTexts &row, const TradeoffReference &reference)
     {
@@ -90,7 +90,7 @@ namespace crawler
       row["below bar"]   = error < reference.relative_bar ? "true" : "false";
     }
 
-    /// What all parts of the study need.
+    /// Data shared by all parts of the study.
     struct Study
     {
       MPI_Comm communicator;
@@ -105,7 +105,7 @@ namespace crawler
       std::vector<bool> done = {}; ///< settings that have a row
     };
 
-    /// The first settings of all meshes that are not done, and those behind their last ones; spread out.
+    /// Ranges of settings, one for each mesh that is not done: first setting, and the one behind the last; spread out.
     std::vector<std::pair<unsigned long, unsigned long>>
     meshes_to_do(const Study &study)
     {
@@ -125,7 +125,7 @@ namespace crawler
       return spread;
     }
 
-    /// The rows that are missing, by all ranks. Returns false if some rank was interrupted.
+    /// Measures the missing rows on all ranks. Returns false if some rank was interrupted.
     bool
     measure_all(const Study &study, const TradeoffReference &reference)
     {
@@ -169,7 +169,7 @@ namespace crawler
         study.communicator, {meshes.size(), n_missing, "settings", study.interrupted, measure_mesh}, study.log);
     }
 
-    /// How good the reference is; without one there is nothing to measure against.
+    /// Reports the quality of the reference; without a reference nothing can be measured.
     ExitCode
     report(const TradeoffReference &reference, const double accuracy, Log &log)
     {
@@ -198,7 +198,7 @@ namespace crawler
       return ExitCode::finished;
     }
 
-    /// Which settings have a row already, and the reference (collective).
+    /// Finds the settings that have a row already, and the reference (collective).
     TradeoffReference
     begin(Study &study)
     {
@@ -231,7 +231,7 @@ namespace crawler
       if (!text.empty())
         if (TradeoffReference reference = nlohmann::json::parse(text); reference.status == "finished")
           return reference;
-      // On every rank alike, so that none has an idle core beside it; the first one's is used.
+      // Every rank computes the reference, so that none has an idle core beside it; that of the first is used.
       study.log.line("Making the reference ...");
       const nlohmann::json made = make_reference(input.parameters, study.interrupted);
       text = broadcast(made.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), study.communicator);
@@ -243,7 +243,7 @@ namespace crawler
       return nlohmann::json::parse(text);
     }
 
-    /// Writes summary.json. Python adds what the rows mean together, and draws them (one process).
+    /// Writes summary.json. Python adds the evaluation of all rows together, and draws them (one process).
     void
     conclude(const Study &study, const TradeoffReference &reference, const SweepCounts &counts, const SweepEnd &end)
     {

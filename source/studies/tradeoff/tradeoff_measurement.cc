@@ -24,13 +24,13 @@ namespace crawler
 {
   namespace
   {
-    /// A measurement takes at least this long; runs that are faster are repeated [s].
+    /// Shortest measurement [s]; faster runs are repeated.
     constexpr double shortest_measurement = 5e-3;
-    /// The first run of a setting counts as a measurement if it takes longer than this [s].
+    /// Duration [s] beyond which the first run of a setting counts as a measurement.
     constexpr double long_run = 0.1;
-    /// Bodies side by side.
+    /// Number of bodies side by side.
     constexpr std::size_t batch_size = 8;
-    /// The heap is looked at after each of so many steps, and then after every so many.
+    /// Number of steps after each of which the heap is examined, and interval in steps afterwards.
     constexpr unsigned long looks_at_heap = 64, steps_between_looks = 16;
 
     /// Processor time of this process [s].
@@ -40,7 +40,7 @@ namespace crawler
       return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
     }
 
-    /// Bytes of the heap that are in use; not a number where the C library does not say (it does with glibc).
+    /// Bytes of the heap in use; not a number where the C library does not tell (glibc does).
     double
     heap_bytes()
     {
@@ -52,7 +52,7 @@ namespace crawler
 #endif
     }
 
-    /// A setting as it is run.
+    /// Setting as it is run.
     struct Run
     {
       const Scene &scene;
@@ -60,14 +60,14 @@ namespace crawler
       bool is_batch;
       Numerics numerics = {};
 
-      /// One run on this level or mesh, or a batch of runs that are all alike, of which the first is returned.
+      /// Computes one run on this level or mesh, or a batch of identical runs, of which the first is returned.
       SimulationResult
       operator()(const std::function<bool()> &keep_going) const
       {
         const bool energy_balance = parameters.output.energy_balance;
         if (parameters.model != Model::nonlinear)
           return ReducedModel(scene, parameters.model).compute(parameters.accuracy, energy_balance, keep_going);
-        // A single run is that of crawler run, whose steps end where the last stride begins.
+        // Single runs are those of crawler run, whose steps end where the last stride begins.
         const auto gait                   = is_batch ? Simulation::GaitWish::none : Simulation::GaitWish::any;
         const Simulation::Options options = {.energy_balance = energy_balance, .gait = gait};
         if (!is_batch)
@@ -89,7 +89,7 @@ namespace crawler
       return gap(word_of(outcome.status), outcome.reason, outcome.message);
     }
 
-    /// The timing; false if it was interrupted.
+    /// Times the runs; returns false if it was interrupted.
     bool
     time_runs(TradeoffTexts &row, const Run &run, const double first_seconds, const std::function<bool()> &interrupted)
     {
@@ -97,7 +97,7 @@ namespace crawler
       const bool is_long    = first_seconds > long_run;
       std::vector<double> seconds(is_long ? 1 : 0, first_seconds / n_bodies);
       auto repetitions = static_cast<double>(seconds.size());
-      // Short runs are not asked anything: that would be a part of their cost.
+      // Short runs are not interrupted: the checks would be a part of their cost.
       const auto keep_going = is_long ? std::function<bool()>([&]() { return !interrupted(); }) : nullptr;
       while (seconds.size() < run.parameters.tradeoff.repetitions)
       {
@@ -123,7 +123,7 @@ namespace crawler
       return true;
     }
 
-    /// The row, without the entries. Throws what goes wrong.
+    /// Measures the row, without the entries. Failures are thrown.
     std::optional<TradeoffTexts>
     measured(Run run, const bool is_adaptive, const std::function<bool()> &interrupted)
     {
@@ -167,7 +167,7 @@ namespace crawler
         row["newton iterations"] = to_text(result.time.newton_iterations);
         row["most cells"]        = to_text(std::max(result.most_cells, run.numerics.n_cells));
       }
-      // A level that does not promise what was asked for has an answer all the same; its message says so.
+      // Levels that miss the requested accuracy have an answer all the same; its message says so.
       const bool breaks_promise = result.time.reason == "accuracy_not_met" && std::isfinite(result.displacement);
       if (result.time.status != Status::finished && !breaks_promise)
         return row;

@@ -13,13 +13,13 @@ namespace crawler
   namespace
   {
     constexpr double round_off = 1e-14;
-    /// An answer may take so many times the time limit of a run.
+    /// Longest time for an answer, in time limits of a run.
     constexpr double time_factor = 2.;
-    /// Values of Accuracy: from these on, by this factor, down to the loosest that is any use.
+    /// Values of Accuracy: the first, the factor from one to the next, and the loosest of use.
     constexpr double first_accuracy = 1e-12, first_of_check = 1e-10, next = 100., loosest = 1e-4, loosest_check = 1e-6;
     constexpr double coarse_accuracy = 1e-3;
 
-    /// Nonlinear model, and numerics that the program chooses.
+    /// Sets the nonlinear model, and numerics chosen by the program.
     Parameters
     with_free_numerics(const Parameters &parameters)
     {
@@ -43,8 +43,8 @@ namespace crawler
       return task;
     }
 
-    /// With the smallest Accuracy from @p accuracy to @p last that is reached. Without method if there is none; @p
-    /// reference then says why.
+    /// Finds the answer with the smallest Accuracy from @p accuracy to @p last that is reached. Without method if there
+    /// is none; @p reference then says why.
     TradeoffAnswer
     find_answer(const Parameters &parameters,
                 double accuracy,
@@ -71,7 +71,7 @@ namespace crawler
         if (outcome.status == "inverted")
           break;
         if (outcome.status == "finished" ||
-            task.is_out_of_time) // the run took too long, or the one that measures its error
+            task.is_out_of_time) // the run or the one that measures its error took too long
         {
           reference.status = "failed";
           reference.message =
@@ -82,13 +82,13 @@ namespace crawler
       return {};
     }
 
-    /// What Accuracy is relative to, where round-off does not count.
+    /// Size to which Accuracy is relative, where round-off does not count.
     double
     size_of_displacement(const Parameters &free, const double displacement, const std::function<bool()> &interrupted)
     {
       const Task task   = computed(free, coarse_accuracy, interrupted);
       const double size = task.computed.choice.wanted_error / coarse_accuracy, least = std::abs(displacement);
-      if (!task.error && size > 1.01 * least) // the deformation counts
+      if (!task.error && size > 1.01 * least) // set by the deformation
         return size;
       return least > 0. ? least : free.body.length;
     }

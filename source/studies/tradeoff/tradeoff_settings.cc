@@ -21,14 +21,14 @@ namespace crawler
   {
     using Texts = std::vector<std::string>;
 
-    /// First steps, relative to the duration, as numerics_choice.cc has them.
+    /// First steps, relative to the duration, as in numerics_choice.cc.
     constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
 
-    /// The largest Accuracy, and the largest number in the list Cells.
+    /// Largest Accuracy, and the largest number in the list Cells.
     constexpr double loosest_accuracy = 0.1, most_cells = 1e7;
 
-    /// The list of this entry: some of these words, or without words numbers below 1, or whole ones up to the largest;
-    /// numbers go from the coarsest mesh or the loosest tolerance on.
+    /// List of this entry: some of these words, or without words numbers below 1, or whole ones up to the largest;
+    /// numbers in order from the coarsest mesh or the loosest tolerance.
     Texts
     list_of(const std::string &entry, const std::string &text, const Texts &words, const double largest = 1.)
     {
@@ -61,7 +61,7 @@ namespace crawler
       return values;
     }
 
-    /// The lists of the section by the columns that they fill.
+    /// Lists of the section by the columns that they fill.
     std::map<std::string, Texts>
     read_lists(const TradeoffParameters &texts)
     {
@@ -79,7 +79,7 @@ namespace crawler
               {"tolerance", list_of("Tolerances", texts.tolerances, {})}};
     }
 
-    /// Why the program cannot do this; empty if it can.
+    /// Reason why the program cannot do this; empty if it can.
     std::string
     refusal(const TradeoffSetting &setting, const Scene &scene)
     {
@@ -103,7 +103,7 @@ namespace crawler
       return "";
     }
 
-    /// Each setting with each value.
+    /// Combines each setting with each value.
     std::vector<TradeoffSetting>
     combined(const std::vector<TradeoffSetting> &settings, const std::string &column, const Texts &values)
     {
@@ -117,7 +117,7 @@ namespace crawler
       return list;
     }
 
-    /// A level without a mesh: one setting, or several of different Accuracy.
+    /// Settings of a level without a mesh: one, or several of different Accuracy.
     std::vector<TradeoffSetting>
     reduced(const Parameters &parameters, const Texts &tolerances, const Scene &scene)
     {
@@ -217,7 +217,7 @@ namespace crawler
       return {};
     if (setting["model"] != "nonlinear")
       return {"Model=" + setting["model"], "Accuracy=" + setting["tolerance"]};
-    Texts list = {"Time/Step control=adaptive", "Time/Cycle stop=off"}; // its error is no matter of the setting
+    Texts list = {"Time/Step control=adaptive", "Time/Cycle stop=off"}; // its error is not part of the setting
     for (const auto &[column, entry] : setting_columns())
     {
       std::string value = setting[column.name];

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""From measured data to numbers of a scene: least squares, uncertainty, and what the data cannot tell (doc/fit.md)."""
+"""Estimation of numbers of a scene from measured data: least squares, uncertainty, and what is undetermined
+(doc/fit.md)."""
 from .. import _compiled
 from ..needs import InputError
 from ..results import parameters_of
@@ -12,8 +13,9 @@ __all__ = ["Data", "Fit", "Interrupted", "Model", "find", "prepared", "read_data
 
 
 def prepared(scene, settings, data=None, **reading):
-    """The Model of a scene (a file, its text or a dict) with its data, and notes on it. settings: ["Body/Length=2", ...]; data: a
-    name, Samples, a list of them, or None, which stands for Fit/Data; reading: options of measured.read_samples(). Raises InputError, FileError."""
+    """Model of a scene (a file, its text or a dict) with its data, and notes on it. settings: ["Body/Length=2", ...];
+    data: a name, Samples, a list of them, or None, which stands for Fit/Data; reading: options of
+    measured.read_samples(). Raises InputError, FileError."""
     scene = Scene(scene, settings)
     effective, notes, variables = _compiled().variables_of_fit(scene())
     parameters = parameters_of(effective)

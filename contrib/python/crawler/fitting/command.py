@@ -18,11 +18,11 @@ from .result import value_in_words
 DESCRIPTION = """Finds numbers of a parameter file, with their uncertainty, from measured data (section Fit; doc/fit.md). With several
 files all are fitted to the same data, and a table says which of them the data prefer."""
 
-GOOD = 0.01  # probability of chi-square, from which on another minimum could hardly fit better
+GOOD = 0.01  # probability of chi-square above which another minimum could hardly fit better
 
 
 def command_line():
-    """The options."""
+    """Parses the options."""
     parser = Parser(prog="crawler fit", description=DESCRIPTION, allow_abbrev=False)
     parser.add_argument("files", metavar="FILE", nargs="+", help="parameter file with a section Fit")
     parser.add_argument("--data", action="append", metavar="FILE", help="what was measured (repeatable, of data of several kinds; default: Fit/Data)")
@@ -38,7 +38,7 @@ def command_line():
 
 
 def path_of(name, options):
-    """The output folder of a parameter file."""
+    """Output folder of a parameter file."""
     stem = pathlib.Path(name).stem
     if len(options.files) > 1:
         return pathlib.Path(options.output or "output-comparison") / stem
@@ -46,7 +46,7 @@ def path_of(name, options):
 
 
 def lines_of(found):
-    """What the screen shows."""
+    """Lines for the screen."""
     goodness, width = found.goodness, max(map(len, found.variables))
     for name, one in found.variables.items():
         ends = one["interval_95"] or [None, None]
@@ -66,7 +66,7 @@ def lines_of(found):
 
 
 def origin_of(model, options, start):
-    """What every summary.json has: which data, how long it took since start (time.monotonic()) [s], versions, command."""
+    """Entries of every summary.json: the data, the time since start (time.monotonic()) [s], versions, command."""
     measured = options.data if options.data is not None else map(str.strip, model.parameters["Fit/Data"].split(";"))
     return {"measured": {"files": [os.path.abspath(name) for name in measured], "reading": reading_of(options)}, "seconds": time.monotonic() - start,
             "versions": _compiled().versions,
@@ -74,7 +74,8 @@ def origin_of(model, options, start):
 
 
 def found_and_written(name, folder, model, options, say):
-    """The Fit, whose files are in the folder then. Raises Stopped when it was interrupted; the files are there, too."""
+    """Finds the Fit and writes its files to the folder. Raises Stopped when interrupted, after writing the files,
+    too."""
     start = time.monotonic()
 
     def write(found):
@@ -99,7 +100,7 @@ def found_and_written(name, folder, model, options, say):
             say(line)
         raise Stopped(so_far.message) from None
     except (InputError, Failed):
-        folder.clear()  # the same again would end in the same way
+        folder.clear()  # a repetition would end in the same way
         raise
     finally:
         folder.leave()
@@ -107,7 +108,7 @@ def found_and_written(name, folder, model, options, say):
 
 @contextlib.contextmanager
 def naming(file):
-    """Sees to it that sentences on what is wrong name the parameter file."""
+    """Adds the name of the parameter file to error messages."""
     try:
         yield
     except (InputError, Failed) as error:
@@ -115,13 +116,13 @@ def naming(file):
 
 
 def prepared_by(name, options):
-    """The Model of a parameter file and notes on it. Raises InputError and FileError."""
+    """Model of a parameter file and notes on it. Raises InputError and FileError."""
     with naming(name):
         return prepared(name, options.set, options.data, **reading_of(options))
 
 
 def require_sense(options):
-    """Raises InputError where options contradict each other or mean nothing."""
+    """Raises InputError where options contradict each other or have no meaning."""
     if options.resume and options.overwrite:
         raise InputError("--resume and --overwrite contradict each other; one of them is expected")
     if options.workers < 1:
@@ -141,7 +142,7 @@ def require_sense(options):
 
 
 class Screen:
-    """Prints, unless it is to be quiet. A fit goes on where nobody reads it or there is no place for it."""
+    """Prints unless it is quiet. A fit goes on if its output has no reader or no space."""
 
     def __init__(self, quiet):
         self.quiet, self.problem = quiet, None
@@ -154,13 +155,13 @@ class Screen:
             self.problem = error
 
     def require_written(self):
-        """Raises the OSError of a text that is lost."""
+        """Raises the OSError of a text that was lost."""
         if self.problem is not None:
             raise self.problem
 
 
 def fitted(models, folders, comparison, options, say):
-    """{name of a parameter file: Fit}, whose files are there then."""
+    """Fits all models and writes their files: {name of a parameter file: Fit}."""
     fits = {}
     try:
         if comparison:
@@ -179,7 +180,7 @@ def fitted(models, folders, comparison, options, say):
 
 
 def main():
-    """Fits, writes and tells."""
+    """Fits, writes and reports."""
     start = time.monotonic()
     options = command_line().parse_intermixed_args(sys.argv[2:])
     say = Screen(options.quiet)

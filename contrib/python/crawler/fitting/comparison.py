@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Which of several scenes the data prefer: the folder of a comparison, in which each fit has a folder of its own."""
+"""Comparison of several scenes by the same data: a folder in which each fit has a folder of its own."""
 import csv
 import io
 import pathlib
@@ -10,19 +10,21 @@ from ..needs import FileError, InputError, write_whole
 from .folder import bytes_of, drawn, require_usable
 
 TABLE, SUMMARY, PAGES = "comparison.csv", "summary.json", ("comparison.png", "report.html")
-WEIGHED_BY = tuple(f"Fit/{name}" for name in ("Standard deviation", "Place deviation", "Origin", "First time"))  # what the data are worth
+# Entries that weigh the data.
+WEIGHED_BY = tuple(f"Fit/{name}" for name in ("Standard deviation", "Place deviation", "Origin", "First time"))
 
 
 class Comparison:
-    """The files of a comparison."""
+    """Files of a comparison."""
 
     def __init__(self, path, options):
-        """Writes nothing yet. Raises InputError if there is something that is not to be replaced or gone on with."""
+        """Constructor; writes nothing yet. Raises InputError if the folder has content that must not be replaced or
+        resumed."""
         self.path, self.files = path, options.files
         require_usable(path, "comparison", (TABLE,), options.resume, options.overwrite)
 
     def begin(self):
-        """Makes the folder, which tells from now on that the comparison has not ended. Raises FileError."""
+        """Makes the folder with a mark that the comparison has not ended. Raises FileError."""
         try:
             self.path.mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -33,7 +35,7 @@ class Comparison:
         self.note([])
 
     def note(self, finished):
-        """Writes which scenes are finished, in words, for readers of a comparison that was broken off."""
+        """Records in words which scenes are finished, for readers of a comparison that was interrupted."""
         there = f"finished: {', '.join(finished)}, each in a folder of its own" if finished else "none of them is finished"
         write_whole(self.path / SUMMARY, bytes_of({"status": "stopped", "reason": "signal", "comparison": [], "message":
                                                    f"the comparison of {', '.join(self.files)} has not ended ({there}); --resume goes on"}))
@@ -48,8 +50,8 @@ class Comparison:
             self.path.rmdir()
 
     def written(self, fits, origin):
-        """Lines for the screen; the files are there then. Scenes whose search did not end are left out of the table. fits: {name of a
-        parameter file: Fit}; origin: what summary.json has besides."""
+        """Writes the files and returns lines for the screen. Scenes whose search did not end are left out of the table.
+        fits: {name of a parameter file: Fit}; origin: further entries of summary.json."""
         rows = compared({name: found for name, found in fits.items() if found.status == "finished"})
         open_ends = [name for name, found in fits.items() if found.status != "finished"]
         message = f"the search did not end for {', '.join(open_ends)}: not in the comparison" if open_ends else ""
@@ -63,8 +65,8 @@ class Comparison:
 
 
 def require_comparable(models):
-    """Raises InputError unless all scenes are judged by the same numbers in the same way: only then are the likelihoods, and with
-    them the criteria, those of the same data. models: {name of a parameter file: Model}."""
+    """Raises InputError unless all scenes are judged by the same numbers in the same way: only then do the likelihoods,
+    and with them the criteria, refer to the same data. models: {name of a parameter file: Model}."""
     (first, one), *others = models.items()
     for name, other in others:
         for entry in WEIGHED_BY:
@@ -84,8 +86,8 @@ def _text(value):
 
 
 def compared(fits):
-    """Scenes in the order in which the data prefer them (Akaike), a list of dicts: their folder, chi-square, the criteria of Akaike
-    and Bayes, and by how much these are above the least."""
+    """Scenes in the order in which the data prefer them (Akaike), a list of dicts: folder, chi-square, the criteria of
+    Akaike and Bayes, and their differences to the least."""
     best = {key: min((found.information[key] for found in fits.values()), default=0.0) for key in ("aic", "bic")}
     return [{"scene": name, "folder": pathlib.Path(name).stem, "variables": len(found.variables), "chi_square": found.goodness.chi_square,
              "degrees_of_freedom": found.goodness.degrees_of_freedom, **found.information,
@@ -94,7 +96,7 @@ def compared(fits):
 
 
 def table_of(rows):
-    """The same as lines."""
+    """Rows of compared() as lines."""
     width = max(len(row["scene"]) for row in rows)
     yield f"{'scene':{width}}  variables  chi-square  AIC - least  BIC - least"
     for row in rows:

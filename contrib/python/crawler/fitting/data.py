@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What was measured, as a fit compares it with a run."""
+"""Measured data as a fit compares them with a run."""
 import dataclasses
 import math
 import os
@@ -9,9 +9,9 @@ import numpy as np
 from ..measured.samples import Samples, read_samples
 from ..needs import FileError, InputError
 
-CLOSE = 0.02  # outermost markers are at the ends of the body, but for this part of its length
-KINDS = {"x": "markers", "strain": "strain", "centre": "centre", "speed": "speed"}  # by the quantity of Samples
-COUNTED = ("markers", "centre")  # from an origin
+CLOSE = 0.02  # distance of the outermost markers from the ends of the body that counts as none, relative to its length
+KINDS = {"x": "markers", "strain": "strain", "centre": "centre", "speed": "speed"}  # kinds by the quantity of Samples
+COUNTED = ("markers", "centre")  # kinds that are measured from an origin
 WORDS = {"markers": "tracks of markers", "strain": "samples of strain", "centre": "the path of the centre of mass", "speed": "its speed"}
 
 
@@ -19,10 +19,11 @@ WORDS = {"markers": "tracks of markers", "strain": "samples of strain", "centre"
 class Series:
     """Numbers of one kind over time, and perhaps places; a gap is NaN.
 
-    kind: "markers", the x of markers [length]; "strain" [1]; "centre", the x of the centre of mass [length]; or "speed", of
-    that [length/time]. t: times of the run [time], increasing; places: on the body [length], of markers and strain, else empty;
-    values: array [time, place]. deviation: the standard deviation of a number, None if it is not known; relative: that of each number over
-    this one, [time, place], 1 where all have the same. names: of the places. notes: sentences on what a file has in another order.
+    kind: "markers", the x of markers [length]; "strain" [1]; "centre", the x of the centre of mass [length]; or
+    "speed", its velocity [length/time]. t: times of the run [time], increasing; places: on the body [length], of
+    markers and strain, else empty; values: array [time, place]. deviation: the standard deviation of a number, None if
+    it is unknown; relative: that of each number over this one, [time, place], 1 where all have the same. names: of the
+    places. notes: sentences on a different order in the file.
     """
     kind: str
     t: np.ndarray
@@ -38,27 +39,28 @@ class Series:
 
     @property
     def is_there(self):
-        """[time, place]: was something measured?"""
+        """[time, place]: True where there is a measurement."""
         return ~np.isnan(self.values)
 
 
 class Data:
-    """What was measured, a Series for each kind, and what is free besides the variables. All numbers one behind the other are [datum]."""
+    """Measured data, a Series for each kind, and the free constants besides the variables. Arrays of all numbers in
+    sequence are [datum]."""
 
     def __init__(self, series, has_origin=True, place_deviation=0.0):
-        """has_origin: is x of the run known where the data count it from? place_deviation: of the places of markers [length]; 0: they are
-        known, inf: they are free."""
+        """has_origin: True if x of the run has the origin of the data; place_deviation: of the places of markers
+        [length]; 0: they are known, inf: they are free."""
         self.series, self.has_origin, self.place_deviation = series, has_origin, place_deviation
         self.n = int(sum(one.is_there.sum() for one in series))
         self.values, self.relative = (self.flat([getattr(one, name) for one in series]) for name in ("values", "relative"))
         self.notes = [note for one in series for note in one.notes]
 
     def flat(self, arrays):
-        """[datum] of an array [time, place] for each series."""
+        """Values [datum] of an array [time, place] for each series."""
         return np.concatenate([np.broadcast_to(array, one.values.shape)[one.is_there] for one, array in zip(self.series, arrays)])
 
     def grids(self, numbers):
-        """An array [time, place] for each series, of numbers [datum]; gaps are NaN."""
+        """Arrays [time, place] for each series, of numbers [datum]; gaps are NaN."""
         parts = np.split(numbers, np.cumsum([one.is_there.sum() for one in self.series])[:-1])
         grids = [np.full(one.values.shape, np.nan) for one in self.series]
         for grid, one, part in zip(grids, self.series, parts):
@@ -67,12 +69,12 @@ class Data:
 
     @property
     def is_weighed(self):
-        """Is the deviation of each number known?"""
+        """True if the deviation of each number is known."""
         return all(one.deviation for one in self.series)
 
     @property
     def places(self):
-        """Of the markers; empty if there are none."""
+        """Places of the markers; empty if there are none."""
         return next((one.places for one in self.series if one.kind == "markers"), np.empty(0))
 
     @places.setter
@@ -83,12 +85,12 @@ class Data:
 
     @property
     def n_constants(self):
-        """How many numbers are free besides the variables: the origin, and places."""
+        """Number of free constants besides the variables: the origin, and places."""
         return (not self.has_origin) + (len(self.places) if self.place_deviation == math.inf else 0)
 
     def nuisance(self, stretch):
-        """How data [datum] change with the origin and the place of each marker, columns; and the rows that hold places fast.
-        A marker at s + d instead of s is at x + w d, stretch being w [time, marker]."""
+        """Derivatives of the data [datum] by the origin and the place of each marker, as columns; and the rows that
+        hold places. A marker at s + d instead of s is at x + w d, with stretch w [time, marker]."""
         columns = []
         if not self.has_origin:
             columns.append(self.flat([float(one.kind in COUNTED) for one in self.series]))
@@ -103,11 +105,11 @@ class Data:
 
 
 def read_data(data, parameters, **reading):
-    """The Data of files or of Samples, as section Fit of a scene says.
+    """Data of files or of Samples, according to section Fit of a scene.
 
-    data: a name, or Samples; of several kinds of data a list of them, or names separated by semicolons. parameters: all entries of the
-    scene. reading: options of measured.read_samples(). Raises InputError, also for a file that cannot be read, as for those of other
-    entries.
+    data: a name, or Samples; for several kinds of data a list of them, or names separated by semicolons. parameters:
+    all entries of the scene. reading: options of measured.read_samples(). Raises InputError, also for a file that
+    cannot be read, as for those of other entries.
     """
     parts = [one.strip() for one in data.split(";") if one.strip()] if isinstance(data, str) else list(data) if isinstance(data, (list, tuple)) else [data]
     read, kinds = [], {}
@@ -138,7 +140,7 @@ def read_data(data, parameters, **reading):
 
 
 def _read_file(name, reading, is_one_of_several):
-    """Its Samples. Where there are other files, options for markers do not disturb a path. Raises InputError."""
+    """Samples of a file. If there are other files, options for markers are ignored for a path. Raises InputError."""
     try:
         return read_samples(name, **reading)
     except FileError as error:
@@ -151,7 +153,7 @@ def _read_file(name, reading, is_one_of_several):
 
 
 def _shift_of(read, first):
-    """What makes times of the run of those in the data; all of them have one clock."""
+    """Shift from times in the data to times of the run; all data have one clock."""
     return 0.0 if first == "automatic" else float(first) - min(samples.t[0] for samples, _, _ in read)
 
 
@@ -164,7 +166,7 @@ def _times_of_run(t, end, name):
 
 
 def _places_of(samples, kind, parameters, name):
-    """Where on the body samples are, and, of markers, the standard deviation of that [length]. Raises InputError."""
+    """Places of samples on the body and, for markers, their standard deviation [length]. Raises InputError."""
     length = parameters["Body/Length"]
     if kind == "markers":
         places, free = _places_of_markers(samples, parameters, length, name)
@@ -179,8 +181,9 @@ def _places_of(samples, kind, parameters, name):
 
 
 def _deviations_of(read, text):
-    """(That of all numbers, that of each over it) for each of the data, (None, None) if it is not known. text: of the entry, with a number or
-    "automatic" for each. Raises InputError, also where several kinds of data cannot be weighed."""
+    """(Common deviation, relative deviation of each number) for each of the data, (None, None) if unknown. text: of the
+    entry, with a number or "automatic" for each. Raises InputError, also where several kinds of data cannot be
+    weighed."""
     words, names = [word.strip() for word in text.split(",")], [name for _, _, name in read]
     if words == ["automatic"]:
         words *= len(read)
@@ -196,7 +199,8 @@ def _deviations_of(read, text):
 
 
 def _deviation_of(samples, wanted, name):
-    """That of all numbers and, [time, place], that of each over it; (None, None) if it is not known. wanted: a number or "automatic"."""
+    """Common deviation and, [time, place], the relative one of each number; (None, None) if unknown. wanted: a number
+    or "automatic"."""
     try:
         given = None if wanted == "automatic" else float(wanted)
     except ValueError:
@@ -234,7 +238,7 @@ def _require_sound(samples, name):
 
 
 def _places_of_markers(samples, parameters, length, name):
-    """Where the markers are on the body, and the standard deviation of that [length]."""
+    """Places of the markers on the body, and their standard deviation [length]."""
     wanted, x, free = str(parameters["Fit/Markers at"]).strip(), samples.values, parameters["Fit/Place deviation"]
     if wanted == "first":
         whole = ~np.isnan(x[0])

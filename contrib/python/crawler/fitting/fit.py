@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The search for the best values of the variables of a scene."""
+"""Search for the best values of the variables of a scene."""
 import math
 
 import numpy as np
@@ -10,28 +10,29 @@ from .result import MOST_STEPS, NEAR, SHARE, Best, described, unfinished
 from .starts import best_of_starts, table_of_starts
 from .uncertainty import undetermined_directions
 
-LARGEST_ACCURACY, LEAST_ACCURACY = 1e-4, 3e-11  # of runs, whose differences are to be derivatives
+LARGEST_ACCURACY, LEAST_ACCURACY = 1e-4, 3e-11  # accuracies of runs whose differences are derivatives
 MOST_REFINEMENTS = 4
-CHANGE = 1e-3         # of chi-square, with data of known deviation, at which a search has ended
-MOST_MOVES, FAR_PLACE = 6, 1e-3  # of free places of markers; the latter in lengths of the body
-LEAST_NOISE = 1e-10   # relative to what the data vary; of data without noise
+CHANGE = 1e-3         # change of chi-square, with data of known deviation, that ends a search
+MOST_MOVES, FAR_PLACE = 6, 1e-3  # for free places of markers; the latter in lengths of the body
+LEAST_NOISE = 1e-10   # relative to the variation of the data; for data without noise
 
 
 class Problem:
-    """Residuals in scaled variables: 0 to 1 over the ranges, and the deviation of the data, as far as it is known, is 1."""
+    """Residuals in scaled variables: 0 to 1 over the ranges, with the deviation of the data, where known, scaled to
+    1."""
 
     def __init__(self, model, data):
         self.model, self.data = model, data
         self.width = model.high - model.low
         units = [one.deviation or float(np.nanstd(one.values - np.nanmean(one.values, axis=0))) or 1.0 for one in data.series]
         self.scales = data.relative * data.flat(units)  # [datum]
-        self.scale = units[0] if len(units) == 1 else 1.0  # of residuals that are told: several kinds in deviations
-        self.n_rows = len(data.places) if 0 < data.place_deviation < math.inf else 0  # that hold places fast
-        self.last = None  # scaled variables, values of the last run, and what the nuisance cannot change
-        self.least = (math.inf, None, data.places)  # sum of squares that was seen, with its scaled variables and places
+        self.scale = units[0] if len(units) == 1 else 1.0  # of reported residuals; in deviations for several kinds
+        self.n_rows = len(data.places) if 0 < data.place_deviation < math.inf else 0  # rows that hold places
+        self.last = None  # scaled variables, values of the last run, and the basis of the nuisance
+        self.least = (math.inf, None, data.places)  # least sum of squares so far, with its scaled variables and places
 
     def run(self, z):
-        """What the scene says [datum], and an orthonormal basis of what origin and places change."""
+        """Values of the scene [datum], and an orthonormal basis of the effects of origin and places."""
         if self.last is None or not np.array_equal(self.last[0], z):
             values, stretch = self.model(self.real(z))
             basis = None
@@ -44,33 +45,34 @@ class Problem:
         return self.last[1:]
 
     def real(self, z):
-        """The values of the variables."""
+        """Values of the variables."""
         return np.clip(self.model.low + np.asarray(z) * self.width, self.model.low, self.model.high)
 
     def scaled(self, values, basis):
-        """Differences [datum] as residuals, without what origin and places can take up; behind them those of the places."""
+        """Differences [datum] as residuals, without the part that origin and places can absorb; followed by those of
+        the places."""
         rest = np.concatenate([values / self.scales, np.zeros(self.n_rows)])
         return rest if basis is None else rest - basis @ (basis.T @ rest)
 
     def residuals(self, z):
-        """One for each datum, and for each place that is held."""
+        """Residuals, one for each datum, and for each place that is held."""
         values, basis = self.run(z)
         residuals = self.scaled(values - self.data.values, basis)
         self.see(float(residuals @ residuals), z)
         return residuals
 
     def see(self, squares, z):
-        """Notes the least sum of squares."""
+        """Records the least sum of squares."""
         if squares < self.least[0]:
             self.least = (squares, np.array(z), self.data.places)
 
     def go_to_least(self):
-        """Takes places to where they were at the least sum of squares that was seen; has any been?"""
+        """Restores the places of the least sum of squares so far; returns True if there is one."""
         self.data.places, self.last = self.least[2], None
         return self.least[0] < math.inf
 
     def jacobian(self, z, both_sides=False):
-        """[residual, variable], with origin and places where they are (Kaufman, BIT 15, 49, 1975)."""
+        """Jacobian [residual, variable], with origin and places fixed (Kaufman, BIT 15, 49, 1975)."""
         values, basis = self.run(z)
         columns = self.model.jacobian(self.real(z), None if both_sides else values) * self.width
         if not np.all(np.isfinite(columns)):
@@ -79,7 +81,7 @@ class Problem:
         return np.stack([self.scaled(one, basis) for one in np.moveaxis(columns, -1, 0)], axis=-1)
 
     def search(self, z):
-        """The least sum of squares from here: (sum, scaled variables, did it end in order?)."""
+        """Least sum of squares from here: (sum, scaled variables, True if the search ended in order)."""
         for _ in range(MOST_MOVES):
             if not np.all(np.isfinite(self.residuals(z))):
                 return math.inf, z, False
@@ -91,7 +93,7 @@ class Problem:
         return 2 * found.cost, z, found.status > 0
 
     def improved(self, z, jacobian):
-        """One more step, with derivatives by differences on both sides, where no limit is in the way."""
+        """Improves z by one more step, with central differences where no limit is in the way."""
         step = np.linalg.lstsq(jacobian, self.residuals(z), rcond=1e-6)[0]
         if np.any(z < NEAR) or np.any(z > 1 - NEAR) or np.any(z - step < 0) or np.any(z - step > 1):
             return z
@@ -99,20 +101,21 @@ class Problem:
         return z - step if after <= before else z
 
     def move_places(self, z):
-        """Takes free places to where they fit best; is that far?"""
+        """Moves free places to their best fit; returns True if any moved far."""
         data, length = self.data, self.model.parameters["Body/Length"]
         values, stretch = self.model(self.real(z))
         matrix, _ = data.nuisance(stretch)
         shifts = np.linalg.lstsq(matrix / self.scales[:, None], (data.values - values) / self.scales, rcond=1e-9)[0][-len(data.places):]
         before, data.places = data.places, np.clip(data.places + shifts, 0, length)
-        data.places = np.maximum.accumulate(data.places + 1e-9 * length * np.arange(len(shifts)))  # in their order
+        data.places = np.maximum.accumulate(data.places + 1e-9 * length * np.arange(len(shifts)))  # keeps their order
         data.places = np.minimum(data.places, length * (1 - 1e-9 * np.arange(len(shifts))[::-1]))
         self.last = None
         return np.max(np.abs(data.places - before)) > FAR_PLACE * length
 
 
 class Interrupted(KeyboardInterrupt):
-    """A fit was interrupted. so_far: a Fit with the best values up to then, without deviations; None before there are any."""
+    """Exception: a fit was interrupted. so_far: a Fit with the best values so far, without deviations; None before
+    there are any."""
 
     def __init__(self, so_far):
         super().__init__()
@@ -120,11 +123,11 @@ class Interrupted(KeyboardInterrupt):
 
 
 def find(model, progress=lambda text: None, kept=None, workers=1):
-    """The Fit of a Model to its data.
+    """Finds the Fit of a Model to its data.
 
-    progress: is told what happens; kept: a dict of finished starts, which are not searched again, and to which others are added;
-    workers: so many processes share the starts. Raises InputError if no start can be run, Failed where there are no derivatives,
-    Interrupted, and Stopped if one of several processes is killed.
+    progress: called with messages; kept: a dict of finished starts, which are not searched again, and to which others
+    are added; workers: number of processes that share the starts. Raises InputError if no start can be run, Failed
+    where there are no derivatives, Interrupted, and Stopped if one of several processes is killed.
     """
     if workers < 1:
         raise InputError(f'"workers" is {workers}, but a number of processes from 1 is expected')
@@ -150,7 +153,7 @@ def find(model, progress=lambda text: None, kept=None, workers=1):
 
 
 def _looked_at(problem, z):
-    """Where a search has ended, with one more step."""
+    """Best of a search from its end, with one more step."""
     data, jacobian = problem.data, problem.jacobian(z, both_sides=True)
     z = problem.improved(z, jacobian)
     residual = problem.residuals(z)
@@ -161,10 +164,10 @@ def _looked_at(problem, z):
 
 
 def _numerical_error(problem, z, jacobian):
-    """By how much the numerical error of the runs changes the variables: as a run a thirtieth as wrong tells, and as a
-    displacement would that is wrong by its bound at the end, and before in proportion to time."""
+    """Change of the variables by the numerical error of the runs: from a run with a thirtieth of the error, and from a
+    displacement that is wrong by its bound at the end, and before in proportion to time."""
     model, data = problem.model, problem.data
-    problem.last = None  # so that the bound is that of this run
+    problem.last = None  # the bound is then that of this run
     values, basis = problem.run(z)
     rate = model.bound / max(one.t[-1] for one in data.series) if any(one.t[-1] > 0 for one in data.series) else 0.0
     drift = data.flat([{"speed": rate, "strain": 0.0}.get(one.kind, rate * one.t[:, None]) for one in data.series])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The output folder of a fit: who may write there, what is kept for --resume, and the files at the end."""
+"""Output folder of a fit: its lock, the data kept for --resume, and the files at the end."""
 import fcntl
 import hashlib
 import json
@@ -17,15 +17,15 @@ from ..needs import FileError, InputError, write_whole
 from ..results import parameters_of
 
 PICTURE = pathlib.Path(__file__).absolute().parents[1] / "plot" / "fit.py"
-LOCK, INPUTS = "study.lock", "inputs.json"  # the latter: what the answer depends on besides parameters.prm
-EARLY = ("original.prm", "parameters.prm")  # are there before INPUTS
+LOCK, INPUTS = "study.lock", "inputs.json"  # the latter: inputs of the answer besides parameters.prm
+EARLY = ("original.prm", "parameters.prm")  # written before INPUTS
 OWN = (*EARLY, INPUTS, "fitted.prm", "residuals.csv", "summary.json", "fit.png", "report.html")
 FREE = ("Fit/Starts", "Fit/Data")  # entries that --resume does not compare; of data only the numbers count
 
 
 def require_usable(path, kind, marks, resume, overwrite):
-    """Raises InputError if a folder is not free, not that of a fit or comparison (kind), or not to be replaced. marks: its file that tells, and
-    others that are there before."""
+    """Raises InputError if a folder is not free, not that of a fit or comparison (kind), or not to be replaced. marks:
+    the file that identifies it, and others written before that one."""
     if path.exists() and not path.is_dir():
         raise InputError(f'"{path}" is a file, but a folder is expected')
     names = {file.name for file in path.iterdir()} - {LOCK} if path.exists() else set()
@@ -43,7 +43,7 @@ def require_usable(path, kind, marks, resume, overwrite):
 
 
 def is_finished(path):
-    """Has what was done in a folder come to its end?"""
+    """Returns True if the work in a folder has come to its end."""
     try:
         return json.loads((path / "summary.json").read_text(encoding="utf-8"))["status"] != "stopped"
     except (OSError, LookupError, TypeError, ValueError):
@@ -51,10 +51,11 @@ def is_finished(path):
 
 
 class Folder:
-    """A folder in which a fit is done."""
+    """Folder of a fit."""
 
     def __init__(self, path, resume, overwrite):
-        """Writes nothing yet. Raises InputError if there is something that is not to be replaced or gone on with."""
+        """Constructor; writes nothing yet. Raises InputError if the folder has content that must not be replaced or
+        resumed."""
         self.path, self.resume, self.overwrite, self.lock = pathlib.Path(path), resume, overwrite, None
         self.require_usable()
 
@@ -66,12 +67,12 @@ class Folder:
         require_usable(self.path, "fit", (INPUTS, *EARLY), self.resume, self.overwrite)
 
     def begin(self, name, model):
-        """Makes and locks the folder; the starts that are kept there. name: of the parameter file. Raises InputError if the
-        fit in it has another scene or other data."""
+        """Makes and locks the folder; returns the starts that are kept there. name: of the parameter file. Raises
+        InputError if the fit in it has another scene or other data."""
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             self.lock = _locked(self.path / LOCK)
-            self.require_usable()  # whoever had the lock may have written
+            self.require_usable()  # the previous owner of the lock may have written
             inputs = {"data": _digest(model.data), "files": _files_of(model.parameters)}
             if self.resume and (self.path / INPUTS).exists():
                 self.require_same(model, inputs)
@@ -89,7 +90,7 @@ class Folder:
             raise FileError(f'cannot write to "{self.path}": {error.strerror or error}') from None
 
     def require_same(self, model, inputs):
-        """Raises InputError if the scene or the data are not those of the fit that is here."""
+        """Raises InputError if the scene or the data differ from those of the fit in the folder."""
         try:
             effective = (self.path / "parameters.prm").read_text(encoding="utf-8")
             kept = json.loads((self.path / INPUTS).read_text(encoding="utf-8"))
@@ -109,7 +110,7 @@ class Folder:
         write_whole(self.path / "parameters.prm", model.effective.encode())
 
     def clear(self):
-        """Removes what a fit writes."""
+        """Removes the files of a fit."""
         for name in OWN:
             (self.path / name).unlink(missing_ok=True)
         for file in (self.path / "starts").glob("*.json*"):
@@ -118,7 +119,7 @@ class Folder:
             (self.path / "starts").rmdir()
 
     def leave(self):
-        """Gives the folder free; one in which nothing is goes."""
+        """Releases the folder; removes it if it is empty."""
         if self.lock is None:
             return
         (self.path / LOCK).unlink(missing_ok=True)
@@ -128,7 +129,7 @@ class Folder:
             self.path.rmdir()
 
     def write(self, found, settings, name):
-        """The files of a fit. settings: ["Body/Length=2", ...], of the parameter file name."""
+        """Writes the files of a fit. settings: ["Body/Length=2", ...], of the parameter file name."""
         again = " ".join(["crawler fit fitted.prm", *words_of(found["measured"]["reading"])])
         entries = {**dict(one.split("=", 1) for one in settings), **found.settings, "Fit/Data": "; ".join(found["measured"]["files"])}
         text = f"# The scene with the values that a fit found; the fit again: {again}\ninclude {os.path.abspath(name)}\n{to_prm(entries)}"
@@ -142,18 +143,18 @@ class Folder:
         self.write_summary(found)
 
     def write_summary(self, found):
-        """summary.json."""
+        """Writes summary.json."""
         write_whole(self.path / "summary.json", bytes_of(found))
 
 
 def drawn(path):
-    """Draws the picture of a folder; a sentence if there is none."""
+    """Draws the picture of a folder; returns an error message if there is none."""
     ended = subprocess.run([sys.executable, PICTURE, path], capture_output=True, text=True, check=False)
     return "" if ended.returncode == 0 else f"There is no picture: {ended.stderr.strip()}. Draw it later with: crawler plot {path}"
 
 
 class Starts(dict):
-    """Finished starts by their numbers, each in a file; those that are damaged are searched again."""
+    """Finished starts by their numbers, each in a file; damaged ones are searched again."""
 
     def __init__(self, folder, n_variables, n_places):
         super().__init__()
@@ -176,7 +177,7 @@ class Starts(dict):
 
 
 def bytes_of(content):
-    """Of a JSON file."""
+    """Bytes of a JSON file."""
     return (json.dumps(content, indent=2) + "\n").encode()
 
 
@@ -185,7 +186,7 @@ def _text(value):
 
 
 def _digest(data):
-    """Of all numbers that were measured, where they are, and their deviations."""
+    """Digest of all measured numbers, their places, and their deviations."""
     digest = hashlib.sha256()
     for one in data.series:
         digest.update(one.kind.encode())
@@ -202,7 +203,8 @@ def _files_of(parameters):
 
 
 def _locked(path):
-    """The lock of a folder in which one study writes at a time, as a descriptor. Raises InputError if another one has it."""
+    """Locks a folder, in which one study writes at a time; returns a descriptor. Raises InputError if it is locked
+    already."""
     while True:
         lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
         try:
@@ -215,4 +217,4 @@ def _locked(path):
             return lock  # a file system without locks
         if path.exists() and os.path.samestat(os.fstat(lock), os.stat(path)):
             return lock
-        os.close(lock)  # the other one has removed it meanwhile
+        os.close(lock)  # removed by the other owner meanwhile

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The numbers that a run gives where there are data, and their derivatives."""
+"""Values of a run at the data, and their derivatives."""
 import dataclasses
 import json
 
@@ -9,25 +9,25 @@ from .. import _compiled, _source
 from ..needs import InputError
 from ..results import parameters_of
 
-STEP = 1e-4  # of differences, relative to a value
+STEP = 1e-4  # step of differences, relative to a value
 LENGTH = "Body/Length"
-POINTS = 201  # on the body, of means over it
+POINTS = 201  # points on the body for means over it
 FIELDS = {"markers": ("displacement", "stretch"), "strain": ("stretch",), "centre": ("displacement",), "speed": ("velocity",)}
 
 
 @dataclasses.dataclass
 class Scene:
-    """A parameter file (or its text, or a dict) with settings, ["Body/Length=2", ...]."""
+    """Parameter file (or its text, or a dict) with settings, ["Body/Length=2", ...]."""
     scene: object
     settings: list
 
     def __call__(self, more=()):
-        """What the compiled part reads, with more settings."""
+        """Input of the compiled part, with more settings."""
         return _source(self.scene, [*self.settings, *more])
 
 
 class Model:
-    """A scene as a function of its variables. It can be sent to another process."""
+    """Scene as a function of its variables. It can be sent to another process."""
 
     def __init__(self, scene, effective, variables, data):
         """scene: a Scene; effective: its parameters.prm; variables: [(entry, from, to, start)]; data: Data."""
@@ -39,7 +39,7 @@ class Model:
         self.accuracy, self.n_runs, self.problem, self.bound = None, 0, "", 0.0
 
     def _require_seen(self):
-        """Raises InputError for variables that data cannot see, or with which a body ends before its data do."""
+        """Raises InputError for variables that do not affect the data, or with which a body ends before its data do."""
         if "Time/End time" in self.names:
             raise InputError('"Fit/Variables" has "Time/End time", but the data do not depend on it: all of them are measured before; another '
                              "variable is expected")
@@ -53,7 +53,7 @@ class Model:
                                  f"body; a range that begins at {last:g} or more is expected{advice}")
 
     def overrides(self, x):
-        """Entries with these values."""
+        """Settings of the entries with these values."""
         return [f"{name}={float(value)!r}" for name, value in zip(self.names, x)]
 
     def _answer(self, x, accuracy, times, places):
@@ -62,13 +62,13 @@ class Model:
                     f"Accuracy={accuracy!r}"]
         try:
             return _compiled().run(self.scene(settings), times.tolist(), places.tolist())
-        except InputError as error:  # a formula that is no friction with these constants, say
+        except InputError as error:  # e.g. a formula that is no friction with these constants
             self.problem = str(error)
             return None
 
     def __call__(self, x, accuracy=None):
-        """The numbers [datum], and the stretch [time, marker] if there are markers; NaN if the run does not finish, for which problem
-        has the reason."""
+        """Returns the values [datum], and the stretch [time, marker] if there are markers; NaN if the run does not
+        finish, in which case problem has the reason."""
         x, series = np.clip(x, self.low, self.high), self.data.series
         length = x[self.names.index(LENGTH)] if LENGTH in self.names else self.parameters[LENGTH]
         whole = np.linspace(0, length, POINTS) if any(one.kind in ("centre", "speed") for one in series) else []
@@ -95,7 +95,7 @@ class Model:
         return self.data.flat(values), stretch
 
     def jacobian(self, x, value=None):
-        """Derivatives [datum, variable]: differences on both sides, or, if value is the model at x, on one."""
+        """Derivatives [datum, variable]: central differences, or, if value is the model at x, one-sided ones."""
         columns = []
         for j, at in enumerate(x):
             step = min(STEP * max(abs(at), 1e-2 * (self.high[j] - self.low[j])), 0.25 * (self.high[j] - self.low[j]))
@@ -107,14 +107,14 @@ class Model:
                 down[j] = at
             sides = [(side[j], self(side)[0]) for side in (up, down) if side[j] != at]
             sides = [side for side in sides if np.all(np.isfinite(side[1]))]
-            if len(sides) < 2:  # at a limit, or the body inverts on the other side
+            if len(sides) < 2:  # at a limit, or inversion of the body on the other side
                 sides.append((at, value if value is not None else self(x)[0]))
             columns.append((sides[0][1] - sides[1][1]) / (sides[0][0] - sides[1][0]) if len(sides) == 2 else np.full(self.data.n, np.nan))
         return np.stack(columns, axis=-1)
 
 
 def _mean(values):
-    """Over the body, from equidistant points (Simpson's rule)."""
+    """Mean over the body, from equidistant points (Simpson's rule)."""
     weights = np.ones(values.shape[1])
     weights[1:-1:2], weights[2:-1:2] = 4, 2
     return (values @ (weights / weights.sum()))[:, None]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is said of a fit: values, deviations, intervals, what is not told, and whether the scene fits at all."""
+"""Report of a fit: values, deviations, intervals, undetermined combinations, and whether the scene fits at all."""
 import dataclasses
 import math
 
@@ -8,24 +8,25 @@ import numpy as np
 from ..results import Numbers
 from .uncertainty import LEVELS, Profile, correlation_in_time, covariance, curvature_bias, in_words, probability
 
-BIASED = 0.2          # bias, of the deviation, that is said
-SHARE = 0.1           # largest numerical error, of the statistical one
-MOST_STEPS = 1000     # of a search, which takes some hundred along a curved valley
-NEAR = 1e-3           # to a limit, in ranges
+BIASED = 0.2          # least bias that is reported, relative to the deviation
+SHARE = 0.1           # largest numerical error, relative to the statistical one
+MOST_STEPS = 1000     # most steps of a search, which takes some hundred along a curved valley
+NEAR = 1e-3           # distance to a limit that is near, in ranges
 UNLIKELY = 1e-3       # probability of chi-square below which the scene does not fit
-HOPELESS = 1e-6       # the same, below which nothing is said of what the data tell of its variables
+HOPELESS = 1e-6       # probability below which undetermined combinations are not reported either
 OUTLYING = 1e-4       # probability of a residual as large as the largest
-MUCH = 100            # chi-square per degree of freedom that no noise has
-ALIKE = 5             # correlation of residuals in time, in its own deviations, that is not by chance
+MUCH = 100            # chi-square per degree of freedom beyond any noise
+ALIKE = 5             # correlation of residuals in time, in its own deviations, that is not accidental
 
 
 class Fit(Numbers):
-    """What was found: the keys of summary.json (doc/fit.md). Besides: data, whose series are what was measured; model and residuals,
-    arrays [time, place] like the values of the data, for several kinds of data lists of them; covariance, an array [variable, variable]
-    in units of the entries; settings, the entries of the best scene."""
+    """Result of a fit: the keys of summary.json (doc/fit.md). Further attributes: data, whose series are the
+    measurements; model and residuals, arrays [time, place] like the values of the data, for several kinds of data lists
+    of them; covariance, an array [variable, variable] in units of the entries; settings, the entries of the best
+    scene."""
 
     def __init__(self, found, data, residuals, settings, covariance_of_values):
-        """residuals: [datum], data less run."""
+        """Constructor. residuals: [datum], data minus run."""
         super().__init__(found)
         model, residuals = data.grids(data.values - residuals), data.grids(residuals)
         self.data, self.model, self.residuals = data, *((model[0], residuals[0]) if len(model) == 1 else (model, residuals))
@@ -36,7 +37,7 @@ class Fit(Numbers):
 
 
 def value_in_words(one):
-    """Of a variable, as in summary.json: value, statistical deviation, numerical error."""
+    """Formats a variable of summary.json: value, statistical deviation, numerical error."""
     if one["determined"] is None:
         return f"{one['value']:.6g} (so far)"
     if not one["determined"]:
@@ -47,34 +48,34 @@ def value_in_words(one):
 
 @dataclasses.dataclass
 class Best:
-    """Where a search has ended, in scaled variables (0 to 1 over the ranges)."""
+    """End of a search, in scaled variables (0 to 1 over the ranges)."""
     z: np.ndarray           # [variable]
     jacobian: np.ndarray    # [residual, variable]
-    deviation: float        # of a residual
-    numerical: np.ndarray   # [variable], errors; NaN where they are not known
-    loose: np.ndarray       # [direction, variable], what the data do not tell
-    members: np.ndarray     # [direction, variable], which variables belong to it
+    deviation: float        # standard deviation of a residual
+    numerical: np.ndarray   # [variable], errors; NaN where unknown
+    loose: np.ndarray       # [direction, variable], undetermined directions
+    members: np.ndarray     # [direction, variable], variables that belong to it
 
     @property
     def involved(self):
-        """[variable]: does it belong to such a direction?"""
+        """[variable]: True if it belongs to such a direction."""
         return self.members.any(axis=0) if len(self.members) else np.zeros(len(self.z), dtype=bool)
 
     @property
     def spread(self):
-        """[variable], deviations."""
+        """Deviations [variable]."""
         return np.sqrt(np.diag(covariance(self.jacobian))) * self.deviation
 
     @property
     def worst(self):
-        """The largest numerical error, of the statistical one."""
+        """Largest numerical error, relative to the statistical one."""
         told = ~self.involved
         return float(np.max(self.numerical[told] / np.maximum(self.spread[told], 1e-300), initial=0))
 
 
 def unfinished(problem, starts, is_stopped):
-    """The Fit of a search that was interrupted (is_stopped) or did not end: the least sum of squares that was seen, with values and
-    without deviations, as derivatives say nothing of a minimum that was not reached."""
+    """Fit of a search that was interrupted (is_stopped) or did not end: the least sum of squares found, with values and
+    without deviations, since derivatives say nothing of a minimum that was not reached."""
     model, data = problem.model, problem.data
     squares, z, _ = problem.least
     values, residual = problem.real(z), problem.residuals(z)[:data.n]
@@ -95,7 +96,7 @@ def unfinished(problem, starts, is_stopped):
 
 
 def described(problem, best, starts):
-    """The Fit."""
+    """Fit with all its entries."""
     model, data = problem.model, problem.data
     values, residual = problem.real(best.z), problem.residuals(best.z)
     variables, goodness = _variables(problem, best, values), _goodness(problem, best, residual)
@@ -113,7 +114,7 @@ def described(problem, best, starts):
 
 
 def _untold(problem, best, variables, values):
-    """Sentences on what the data do not tell."""
+    """Sentences on undetermined combinations."""
     for direction, members in zip(best.loose, best.members):
         yield in_words(direction, members, problem.model.names, values, problem.width)
     for (name, one), is_involved in zip(variables.items(), best.involved):
@@ -122,7 +123,7 @@ def _untold(problem, best, variables, values):
 
 
 def _variables(problem, best, values):
-    """All that is said of each variable."""
+    """Entries of each variable."""
     model, spread, width, variables = problem.model, best.spread, problem.width, {}
     profile = Profile(lambda z: problem.residuals(z) / best.deviation, lambda z: problem.jacobian(z) / best.deviation, best.z,
                       best.jacobian / best.deviation)
@@ -135,7 +136,7 @@ def _variables(problem, best, values):
                "at_limit": "from" if at < NEAR else "to" if at > 1 - NEAR else ""}
         variables[name] = one
         ends, curve = profile.interval(j, spread[j]) if is_told else (None, None)
-        if is_told and ends["interval_95"] == [None, None]:  # chi-square rises less within the range than its curvature says
+        if is_told and ends["interval_95"] == [None, None]:  # chi-square rises slower than its curvature
             one.update(value=None, determined=False)
         elif is_told:
             one["deviation"] = float(spread[j] * width[j])
@@ -147,7 +148,7 @@ def _variables(problem, best, values):
 
 
 def _goodness(problem, best, residual):
-    """Does the scene fit the data?"""
+    """Goodness of fit of the scene to the data."""
     data, chi_square, grids = problem.data, float(residual @ residual) / best.deviation ** 2, problem.data.grids(residual[:problem.data.n] / best.deviation)
     freedom, units = data.n - len(best.z) - data.n_constants, data.grids(problem.scales / data.relative)
     return {"n_data": data.n, "n_variables": len(best.z), "n_constants": data.n_constants, "chi_square": chi_square,
@@ -160,14 +161,15 @@ def _goodness(problem, best, residual):
 
 
 def _largest(series, grid):
-    """The largest of residuals [time, place] in deviations, the time of the run, and the name of the marker or s of the place."""
+    """Largest of the residuals [time, place] in deviations, its time of the run, and the name of the marker or s of its
+    place."""
     j, i = np.unravel_index(np.nanargmax(np.abs(grid)), grid.shape)
     place = None if not len(series.places) else series.names[i] if series.kind == "markers" and len(series.names) > i else f"{series.places[i]:.6g}"
     return {"deviations": float(grid[j, i]), "t": float(series.t[j]), "place": place, "kind": series.kind}
 
 
 def _does_not_fit(goodness):
-    """Whether the scene does not fit the data at all, as a sentence with the worst of them; nothing if it may."""
+    """Sentence about a scene that does not fit the data at all, with the worst residual; None if it may fit."""
     chi_square, freedom, p_value = (goodness[key] for key in ("chi_square", "degrees_of_freedom", "probability"))
     if p_value is not None and p_value < UNLIKELY:
         units = ' (units? see "--unit-of-s" and "--unit-of-t")' if chi_square > MUCH * freedom else ""
@@ -178,14 +180,14 @@ def _does_not_fit(goodness):
 
 
 def _largest_in_words(goodness):
-    """The largest residual, where it is."""
+    """Largest residual and its place in words."""
     one = goodness["largest_residual"]
     place = {"markers": f"marker {one['place']}, ", "strain": f"s = {one['place']}, "}.get(one["kind"], f"the {one['kind']}, " if len(goodness["series"]) > 1 else "")
     return f"the largest residual is {abs(one['deviations']):.3g} deviations, at {place}t = {one['t']:.6g} of the run"
 
 
 def _notes(best, variables, goodness, data):
-    """Sentences on what is perhaps not meant."""
+    """Sentences on possible mistakes."""
     yield from _does_not_fit(goodness)
     yield from data.notes
     for name, one in variables.items():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Searches from several starts, in this process or in others. What a start finds depends on nothing but the start, so that the
-result is the same on any number of processes, and of a fit that was interrupted."""
+"""Searches from several starts, in this process or in others. The result of a start depends on the start only, so that
+it is the same on any number of processes, and for a fit that was interrupted."""
 import concurrent.futures
 import math
 import multiprocessing
@@ -16,9 +16,10 @@ from ..needs import InputError, Stopped
 
 
 def best_of_starts(problem, kept, workers, progress):
-    """The best of all starts as (scaled variables, did it end in order?); places of the data are those of this start then.
+    """Best of all starts: (scaled variables, True if it ended in order); places of the data are those of this start
+    then.
 
-    kept: {number: what search_from() gives} of starts that are finished; the others are added to it.
+    kept: {number: result of search_from()} of starts that are finished; the others are added to it.
     """
     model, places = problem.model, problem.data.places
     points = first_points(model, int(model.parameters["Fit/Starts"]), int(model.parameters["Fit/Seed"]))
@@ -43,18 +44,19 @@ def best_of_starts(problem, kept, workers, progress):
 
 
 def first_points(model, n, seed):
-    """Where n searches start, in scaled variables: at the values of the scene, and at random ones. More starts begin with these."""
+    """Initial points of n searches, in scaled variables: the values of the scene, and random ones. A larger n begins
+    with the same ones."""
     random = np.random.default_rng(seed)
     return [(model.start - model.low) / (model.high - model.low), *(random.random(len(model.start)) for _ in range(n - 1))]
 
 
 def wanted_of(problem, kept):
-    """The finished ones of the starts that the scene asks for, in their order."""
+    """Finished starts among those that the scene asks for, in their order."""
     return [one for number, one in sorted(kept.items()) if number < int(problem.model.parameters["Fit/Starts"])]
 
 
 def search_from(problem, number, z, places):
-    """One start: numbers, texts and lists that a JSON file keeps exactly."""
+    """Searches from one start; returns numbers, texts and lists that a JSON file keeps exactly."""
     model = problem.model
     problem.data.places, problem.last, before = places, None, model.n_runs
     squares, z, ended = problem.search(z)
@@ -63,7 +65,8 @@ def search_from(problem, number, z, places):
 
 
 def table_of_starts(problem, kept):
-    """[{start, residuals, reason, values}] of finished starts: residuals is the root of their mean square, None if there is no run."""
+    """Table [{start, residuals, reason, values}] of finished starts: residuals is their root mean square, None if there
+    is no run."""
     return [{"start": one["start"], "residuals": None if one["reason"] else _root_mean_square(problem, one["squares"]), "reason": one["reason"],
              "values": dict(zip(problem.model.names, problem.real(one["z"]).tolist()))} for one in wanted_of(problem, kept)]
 
@@ -73,7 +76,7 @@ def _root_mean_square(problem, squares):
 
 
 def _see(problem, found):
-    """Tells the problem what a start found."""
+    """Passes the result of a start to the problem."""
     before = problem.data.places
     problem.data.places = np.array(found["places"])
     problem.see(found["squares"], found["z"])
@@ -81,7 +84,7 @@ def _see(problem, found):
 
 
 def _searched_here(problem, missing, _workers):
-    """What search_from() gives, one after the other."""
+    """Yields the results of search_from(), one after the other."""
     places = problem.data.places
     for number, z in missing.items():
         yield search_from(problem, number, z, places)
@@ -89,10 +92,11 @@ def _searched_here(problem, missing, _workers):
 
 
 def _searched_by_others(problem, missing, workers):
-    """The same by other processes, in the order in which they end."""
+    """Yields results of searches in other processes, in the order in which they end."""
     with concurrent.futures.ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _begin_worker, (type(problem), problem.model)) as pool:
         try:
-            main, sys.modules["__main__"] = sys.modules["__main__"], types.ModuleType("__main__")  # they are not to begin with a user's script
+            # Workers import __main__: an empty one keeps them from running a user's script.
+            main, sys.modules["__main__"] = sys.modules["__main__"], types.ModuleType("__main__")
             try:
                 futures = [pool.submit(_search_in_worker, number, z) for number, z in missing.items()]
             finally:
@@ -109,14 +113,14 @@ def _searched_by_others(problem, missing, workers):
 
 
 def _begin_worker(kind, model):
-    """Ctrl-C is for the process that has started this one, and this one ends with it."""
+    """Ignores Ctrl-C, which is for the parent process, and ends the worker with the parent."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=lambda: (multiprocessing.parent_process().join(), os._exit(1)), daemon=True).start()
     _search_in_worker.problem = kind(model, model.data)
 
 
 def _search_in_worker(number, z):
-    """search_from() with the problem of this process, whose places are moved by a search."""
+    """Calls search_from() with the problem of this process, whose places are moved by a search."""
     problem = _search_in_worker.problem
     places = problem.data.places
     try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the data tell about each variable: covariance, what they cannot tell, and intervals by profile likelihood.
+"""Information of the data on each variable: covariance, undetermined combinations, and intervals by profile likelihood.
 
 Seber and Wild, Nonlinear Regression (1989), chapters 3 and 5. Variables are scaled to their ranges here, [0, 1] each, and
 residuals by the standard deviation of the data.
@@ -10,40 +10,40 @@ import numpy as np
 from scipy import stats
 from scipy.optimize import least_squares
 
-WIDE = 0.5          # a standard deviation in ranges beyond which the data do not tell a value
-PART = 0.01         # of a direction, from which on a variable may belong to it
+WIDE = 0.5          # standard deviation in ranges beyond which a value is undetermined
+PART = 0.01         # part of a direction beyond which a variable may belong to it
 LEVELS = {"interval_68": 1.0, "interval_95": 1.959963984540054}  # standard deviations of a normal distribution
-STEP = 0.5          # standard deviations, of second differences
-FAR = 2.0           # standard deviations at which the profile is looked at
+STEP = 0.5          # step of second differences, in standard deviations
+FAR = 2.0           # standard deviations at which the profile is evaluated
 ROUGH = 0.25        # relative difference of a profile from a parabola beyond which it is followed further
-CURVE = 11          # points at one side of a profile that is nearly a parabola
-MOST_LOOKS = 15     # at one side of a profile
+CURVE = 11          # points on one side of a profile that is nearly a parabola
+MOST_LOOKS = 15     # most evaluations on one side of a profile
 
 
 def undetermined_directions(jacobian):
-    """The directions in which the variables may change by more than WIDE of their ranges within one standard deviation:
-    [direction, variable], and which variables belong to each: [direction, variable]. Those do whose own deviation is mostly
-    due to it."""
+    """Directions in which the variables may change by more than WIDE of their ranges within one standard deviation:
+    [direction, variable], and which variables belong to each: [direction, variable]. A variable belongs to a direction
+    that causes most of its deviation."""
     _, sizes, directions = np.linalg.svd(jacobian, full_matrices=True)
     sizes = np.maximum(np.concatenate([sizes, np.zeros(directions.shape[0] - len(sizes))]), 1e-9 * sizes.max(initial=1.0))
-    deviations = np.abs(directions) / sizes[:, None]  # of variables, by each direction
+    deviations = np.abs(directions) / sizes[:, None]  # deviations of variables, by each direction
     members = (np.abs(directions) > PART) & (deviations > 0.5 * np.linalg.norm(deviations, axis=0))
     loose = sizes < max(1 / WIDE, 1e-8 * sizes.max())
     return directions[loose], members[loose]
 
 
 def covariance(jacobian):
-    """Of the variables, by Gauss and Newton; directions that the data do not tell are wide, but finite."""
+    """Covariance of the variables, by Gauss and Newton; undetermined directions are wide, but finite."""
     _, sizes, directions = np.linalg.svd(jacobian, full_matrices=False)
     return (directions.T / np.maximum(sizes, 1e-9 * sizes.max(initial=1.0)) ** 2) @ directions
 
 
 def curvature_bias(change, jacobian, deviation, z):
-    """By how much the mean of the best values is beside the truth, to second order [variable] (Box, J. R. Stat. Soc. B 33, 171,
-    1971): -(J'J)^-1 J'c/2, where c has the second differences of the model along the axes of the covariance. NaN if there is no run,
-    a value is at its limit, or something is not told.
+    """Bias of the best values in the mean, to second order [variable] (Box, J. R. Stat. Soc. B 33, 171, 1971):
+    -(J'J)^-1 J'c/2, where c has the second differences of the model along the axes of the covariance. NaN if there is
+    no run, a value is at its limit, or some direction is undetermined.
 
-    change(x): of the model from z to x, as scaled residuals; jacobian: there; deviation: of a residual.
+    change(x): change of the model from z to x, as scaled residuals; jacobian: at z; deviation: of a residual.
     """
     inverse, curvature = covariance(jacobian), np.zeros(len(jacobian))
     sizes, axes = np.linalg.eigh(inverse)
@@ -56,7 +56,7 @@ def curvature_bias(change, jacobian, deviation, z):
 
 
 def in_words(direction, members, names, values, widths):
-    """What may change together without a change of the data, as a sentence."""
+    """Describes in a sentence which variables may change together without a change of the data."""
     change = direction * widths
     parts = [(name, dx, value) for name, dx, value, is_part in zip(names, change, values, members) if is_part]
     if len(parts) == 1:
@@ -78,18 +78,18 @@ def _and(names):
 
 
 class Profile:
-    """The least chi-square with one variable held fast: found by steps of the others with the derivatives at the best values,
+    """Least chi-square with one variable fixed: found by steps of the others with the derivatives at the best values,
     and, where it is no parabola, by searches."""
 
     def __init__(self, residuals, jacobian, x, slopes):
-        """residuals(x), jacobian(x): of scaled residuals, NaN where there is no run; x: the best values; slopes: the
-        derivatives there."""
+        """Constructor. residuals(x), jacobian(x): of scaled residuals, NaN where there is no run; x: the best values;
+        slopes: the derivatives there."""
         self.residuals, self.jacobian, self.x, self.slopes = residuals, jacobian, x, slopes
         self.least = float(np.sum(residuals(x) ** 2))
 
     def interval(self, j, deviation):
-        """{name: [low, high]} in scaled variables for LEVELS; an end is None where the range ends before. And the profile itself:
-        pairs of the variable, increasing, and the rise of chi-square."""
+        """Intervals {name: [low, high]} in scaled variables for LEVELS; an end is None where the range ends before.
+        Also the profile itself: pairs of the variable, increasing, and the rise of chi-square."""
         ends, curve = {name: [None, None] for name in LEVELS}, [(self.x[j], 0.0)]
         for side in (-1, 1):
             reach = (self.x[j] if side < 0 else 1 - self.x[j]) / deviation
@@ -100,7 +100,8 @@ class Profile:
         return ends, sorted(curve)
 
     def _ends(self, j, unit, reach):
-        """How many units off chi-square has risen by the square of each level, and pairs of units and the root of the rise."""
+        """Distances in units at which chi-square has risen by the square of each level, and pairs of units and the root
+        of the rise."""
         z = min(FAR, reach)
         root = self._root_near(j, unit, z) if z > 0 else 0.0
         if z == 0 or not abs(root / z - 1) <= ROUGH:
@@ -114,7 +115,8 @@ class Profile:
         return ends, [(one, one * (1 + a * one)) for one in np.linspace(0, min(1.25 * FAR, reach), CURVE)]
 
     def _guess(self, j, at, x):
-        """The variables with j there, and the others best if the residuals at x change as at the best values."""
+        """Guess of the variables with number j fixed at this value, and the others best if residuals change as at the
+        best values."""
         others = np.arange(len(x)) != j
         x = x.copy()
         x[others] -= np.linalg.lstsq(self.slopes[:, others], self.slopes[:, j] * (at - x[j]), rcond=1e-9)[0]
@@ -136,7 +138,7 @@ class Profile:
         return math.sqrt(max(best - self.least, 0.0))
 
     def _look(self, points, j, unit, z):
-        """Adds the point there, searched from the nearest one; its root of the rise."""
+        """Evaluates the profile there, from the nearest point, and adds it; returns its root of the rise."""
         near = min(points, key=lambda point: abs(point[0] - z))[2]
         x, others = self._guess(j, self.x[j] + z * unit, near)
         if not np.all(np.isfinite(self.residuals(x))):
@@ -159,7 +161,7 @@ class Profile:
         return root
 
     def _searched(self, level, points, j, unit, reach):
-        """Where the root of the rise has this size, between points that were seen or are looked at."""
+        """Distance at which the root of the rise has this size, between known or new points."""
         for _ in range(MOST_LOOKS):
             above = next((point for point in points if point[1] >= level), None)
             below = [point for point in points if point[1] < level and (above is None or point[0] < above[0])][-1]
@@ -179,7 +181,7 @@ class Profile:
 
 
 def correlation_in_time(residuals):
-    """Of residuals [time, place] that are neighbours in time."""
+    """Correlation of residuals [time, place] that are neighbours in time."""
     first, second = residuals[:-1], residuals[1:]
     both = ~np.isnan(first) & ~np.isnan(second)
     n, size = int(both.sum()), float(np.nanmean(residuals ** 2))
@@ -187,5 +189,5 @@ def correlation_in_time(residuals):
 
 
 def probability(chi_square, freedom):
-    """Of a chi-square at least as large, if the scene is right."""
+    """Probability of a chi-square at least as large, if the scene is right."""
     return float(stats.chi2.sf(chi_square, freedom))

@@ -26,7 +26,7 @@ Multi-Worm Tracker (doc/measured_data.md)."""
 
 
 def command_line():
-    """The options."""
+    """Parses the options."""
     parser = Parser(prog="crawler table", description=DESCRIPTION, allow_abbrev=False)
     parser.add_argument("input", metavar="IN", help="measured samples or tracks")
     parser.add_argument("output", metavar="OUT", help="the table to be written, NAME.csv")
@@ -55,7 +55,7 @@ def command_line():
 
 
 def require_files(options):
-    """Raises InputError for names of files that no samples are needed to refuse."""
+    """Raises InputError for names of files that can be refused without samples."""
     if getattr(options, "copies", 64) < 8:
         raise InputError(f'"--copies" is {options.copies}, but at least 8 are expected')
     if getattr(options, "seed", 0) < 0:
@@ -73,21 +73,21 @@ def require_files(options):
 
 
 def write_columns(path, names, columns, digits):
-    """Columns of numbers, each with so many digits."""
+    """Writes columns of numbers, each with its number of digits."""
     lines = [",".join(names), *(",".join(f"{value:.{n}g}" for value, n in zip(row, digits)) for row in zip(*columns))]
     write_whole(pathlib.Path(path), ("\n".join(lines) + "\n").encode())
 
 
 def write_table(path, s, t, values, names):
-    """A row for each point that is no gap; values: [time, place]."""
+    """Writes a row for each point that is no gap; values: [time, place]."""
     there = ~np.isnan(values.ravel())
     columns = [column[there] for column in (np.tile(s, len(t)), np.repeat(t, len(s)), values.ravel())]
     write_columns(path, names, columns, (15, 15, 10))
 
 
 def displacements(scene, overrides, entry, tables):
-    """The rows of a sweep of the scene over tables, for which it reads each after the other, a dict of texts for each; and
-    the table that the scene itself names. Raises InputError and FileError with the program's sentence."""
+    """Rows of a sweep of the scene over tables, read one after the other, a dict of texts for each; and the table that
+    the scene itself names. Raises InputError and FileError with the message of the program."""
     with tempfile.TemporaryDirectory(prefix="crawler-table-") as folder:
         names = [os.path.join(folder, f"{k}.csv") for k in range(len(tables))]
         for name, table in zip(names, tables):
@@ -113,8 +113,8 @@ def _prepared(copy, prepare_copy):
 
 
 def uncertainty(options, samples, table, prepare_copy):
-    """In words, how uncertain the noise makes the displacement of a scene: copies of the samples get noise of the same size,
-    are prepared in the same way, and the scene is computed with each."""
+    """Describes the uncertainty of the displacement of a scene by the noise: copies of the samples get noise of the
+    same size, are prepared in the same way, and the scene is computed with each."""
     n, generator = getattr(options, "copies", 64), np.random.default_rng(getattr(options, "seed", 1))
     noisy = (dataclasses.replace(samples, values=samples.values + table.noise * generator.standard_normal(samples.values.shape))
              for _ in range(n))

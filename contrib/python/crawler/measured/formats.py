@@ -27,7 +27,7 @@ class Tracks:
 
 
 def chosen_animal(names, wanted, name):
-    """Which of the animals of a file is read. Raises InputError if there are several and none is named."""
+    """Name of the animal that is read. Raises InputError if there are several and none is named."""
     names = list(dict.fromkeys(names))
     if wanted and wanted not in names:
         raise InputError(f'"--animal" is "{wanted}", but "{name}" has {", ".join(names)}')
@@ -38,7 +38,7 @@ def chosen_animal(names, wanted, name):
 
 
 def tracks_of(sheet, animal):
-    """The Tracks of a sheet in the format of a tracker, or None if it is in none of these."""
+    """Tracks of a sheet in the format of a tracker, or None if it is in none of these."""
     for read in (_deeplabcut, _sleap, _tracker, _fimtrack, _spine, _pairs):
         tracks = read(sheet, animal)
         if tracks is not None:
@@ -86,7 +86,7 @@ def _sleap(sheet, animal):
 
 
 def _tracker(sheet, _animal):
-    """The names of masses stand above pairs of x and y."""
+    """Tracks of Tracker: the names of masses stand above pairs of x and y."""
     if len(sheet.head) < 2 or [cell.lower() for cell in sheet.head[-1][:3]] != ["t", "x", "y"]:
         return None
     masses, names = sheet.head[-2:]
@@ -99,7 +99,7 @@ def _tracker(sheet, _animal):
 
 
 def _fimtrack(sheet, animal):
-    """A row for each quantity and frame, a column for each larva; from tail to head."""
+    """Tracks of FIMTrack: a row for each quantity and frame, a column for each larva; from tail to head."""
     pattern = re.compile(r"(head|tail|spinepoint_\d+)_(x|y)\((\d+)\)")
     found = [(match, r) for r, row in enumerate(sheet.rows) if (match := pattern.fullmatch(row[0]))]
     if not found or not sheet.head:
@@ -117,7 +117,7 @@ def _fimtrack(sheet, animal):
 
 
 def _spine(sheet, animal):
-    """Date, animal, time and pairs of x and y without names, as Choreography of the Multi-Worm Tracker writes them."""
+    """Tracks of Choreography of the Multi-Worm Tracker: date, animal, time and pairs of x and y without names."""
     width = len(sheet.rows[0])
     if sheet.head or width < 3 + 2 * 4 or width % 2 == 0 or not re.fullmatch(r"\d{8}_\d{6}", sheet.rows[0][0]):
         return None
@@ -129,7 +129,7 @@ def _spine(sheet, animal):
 
 
 def _pairs(sheet, _animal):
-    """Columns t, x1, y1, x2, y2, ... or head_x, head_y, ..., as WormLab and spreadsheets have them."""
+    """Tracks in columns t, x1, y1, x2, y2, ... or head_x, head_y, ..., as in files of WormLab and spreadsheets."""
     if not sheet.head:
         return None
     markers = []

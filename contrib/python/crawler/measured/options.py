@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Options of command lines that say how a file of samples or tracks is read: of crawler table and crawler fit."""
+"""Command-line options for reading a file of samples or tracks: of crawler table and crawler fit."""
 import argparse
 
 TEXT, NUMBER, WHOLE = {"metavar": "TEXT"}, {"metavar": "NUMBER", "type": float}, {"metavar": "WHOLE NUMBER", "type": int}
@@ -17,26 +17,26 @@ READING = (("quantity", TEXT, "m, strain, stretch or markers (default: by the na
 
 
 def add_options(parser, options):
-    """Options that are not there unless they are set."""
+    """Adds options that are absent unless they are set."""
     for name, kind, help_text in options:
         parser.add_argument(f"--{name}", help=help_text, default=argparse.SUPPRESS, **kind)
 
 
 def add_reading_options(parser):
-    """Those of read_samples()."""
+    """Adds the options of read_samples()."""
     add_options(parser, READING)
 
 
 def parts_of(options, names):
-    """Those of the options that have these names."""
+    """Options with these names."""
     return {name: value for name, value in vars(options).items() if name in names}
 
 
 def reading_of(options):
-    """The arguments of read_samples() that are set."""
+    """Arguments of read_samples() that are set."""
     return parts_of(options, {name.replace("-", "_") for name, _, _ in READING})
 
 
 def words_of(reading):
-    """What reading_of() gives, as words of a command line."""
+    """Result of reading_of() as words of a command line."""
     return [word for name, value in reading.items() for word in (f"--{name.replace('_', '-')}", str(value))]

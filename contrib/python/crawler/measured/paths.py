@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The path or the speed of the centre of mass, a column beside t: what crawler fit reads besides samples along the body."""
+"""Path or speed of the centre of mass, a column beside t: data of crawler fit besides samples along the body."""
 import numpy as np
 
 from ..needs import InputError
@@ -7,12 +7,12 @@ from .units import unit_factor
 
 PATHS = {"centre": ("centre", "center", "centre of mass", "center of mass"), "speed": ("speed", "velocity")}  # names of columns
 DEVIATIONS = ("deviation", "standard deviation", "sigma")
-TIMES, ALONG = ("t", "time"), ("s", "marker", "track_id", "id")  # names of columns; with one of the latter it is no path
+TIMES, ALONG = ("t", "time"), ("s", "marker", "track_id", "id")  # names of columns; the latter exclude a path
 
 
 def path_in(sheet):
-    """(kind, t, values [time, 1], their deviations or None, unit of values, unit of t) of a sheet; None if it has no such column. Raises InputError if its times
-    do not grow."""
+    """Returns (kind, t, values [time, 1], their deviations or None, unit of values, unit of t) of a sheet; None if it
+    has no such column. Raises InputError if its times do not increase."""
     names = [one.lower() for one in sheet.names]
     found = [(kind, i) for kind, known in PATHS.items() for i, one in enumerate(names) if one in known]
     if not found or len(names) < 2 or set(names) & set(ALONG):
@@ -30,7 +30,8 @@ def path_in(sheet):
 
 
 def factors_of_path(kind, unit, unit_t, unit_of_s, unit_of_t):
-    """By what values and times are multiplied. unit: of the values, of a speed as mm/s; unit_of_s, unit_of_t: what is wanted, or ""."""
+    """Factors of values and times. unit: of the values, of a speed e.g. mm/s; unit_of_s, unit_of_t: the wanted units,
+    or ""."""
     length, _, time = unit.partition("/")
     factor_s = unit_factor(length.strip(), unit_of_s, "--unit-of-s") if unit_of_s else 1.0
     if not unit_of_t:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""From samples with gaps and noise to full tables: gaps filled, noise smoothed, cycles averaged, tracks turned into strain."""
+"""Preparation of full tables from samples with gaps and noise: gaps filled, noise smoothed, cycles averaged, tracks
+turned into strain."""
 import dataclasses
 import math
 
@@ -11,14 +12,14 @@ from .samples import LEAST, Samples
 from .splines import SmoothingSpline, periodic_spline
 from .units import number_of
 
-MOST_POINTS = 20000000  # of a table
+MOST_POINTS = 20000000  # points of a table
 MUCH_OF_NOISE, LEAST_CYCLES, LEAST_PHASES, LEAST_REMAINDERS, USUAL_PLACES, MOST_LAGS = 5, 1.25, 8, 8, 33, 65536
 
 
 @dataclasses.dataclass
 class Table:
-    """What a scene reads: quantity "m" or "strain", places s, times t, full values [time, place]; the period (or None), of
-    which the last samples are the first ones; the noise of a sample; and in words what was changed."""
+    """Table for a scene: quantity "m" or "strain", places s, times t, full values [time, place]; the period (or None),
+    of which the last samples are the first ones; the noise of a sample; and the changes in words."""
     quantity: str
     s: np.ndarray
     t: np.ndarray
@@ -30,11 +31,11 @@ class Table:
 
 @dataclasses.dataclass
 class _Filled:
-    """What was filled in, and what the smoothing has taken away."""
+    """Record of filled values, and of the part that the smoothing has removed."""
     n: int = 0
     longest: int = 0
-    along_body: np.ndarray = 0  # at each place, filled from the places beside
-    largest: float = 0.0        # of the samples
+    along_body: np.ndarray = 0  # number at each place, filled from the places beside
+    largest: float = 0.0        # largest of the samples
     square: float = 0.0
     n_samples: int = 0
 
@@ -43,7 +44,7 @@ class _Filled:
         self.longest = max([self.longest, *runs])
 
     def see_change(self, samples, curves):
-        """Samples and what the smoothing has made of them; NaN where there are none."""
+        """Records the change of samples by the smoothing; NaN where there are none."""
         there = ~np.isnan(samples) & ~np.isnan(curves)
         self.square += np.sum((samples - curves)[there]**2)
         self.n_samples += there.sum()
@@ -51,8 +52,8 @@ class _Filled:
 
 
 def estimated_noise(samples):
-    """The standard deviation of the noise of samples, from what polynomials through neighbours in time leave over. Smooth
-    waves leave the less the more neighbours there are, and noise the same: the smallest of orders 3 to 8 is taken."""
+    """Standard deviation of the noise of samples, from the residuals of polynomials through neighbours in time. Smooth
+    waves leave less residual with more neighbours, but noise the same: the smallest of orders 3 to 8 is taken."""
     found = []
     for order in range(3, 9):
         if found and (len(samples.t) - order) * len(samples.s) < LEAST_REMAINDERS:
@@ -69,8 +70,8 @@ def estimated_noise(samples):
 
 
 def prepare(samples, settings, period=None):
-    """The Table of Samples. @p period: one that is known already. Raises InputError where a gap is too large, where there
-    is no period, and where its ends differ by more than the noise."""
+    """Makes the Table of Samples. @p period: one that is known already. Raises InputError where a gap is too large,
+    where there is no period, and where its ends differ by more than the noise."""
     is_list = not isinstance(settings.markers_at, str)
     settings = dataclasses.replace(settings, period=f"{period:.17g}" if period else str(settings.period or ""), markers_at=",".join(f"{float(s):.17g}" for s in
                                    settings.markers_at) if is_list else settings.markers_at)
@@ -103,7 +104,7 @@ def prepare(samples, settings, period=None):
     points_s, smooth_s = (0, 0) if is_tracks else (settings.points_s, settings.smooth_s)
     table = _resampled(table, smooth_s, points_s, points_t)
     if is_tracks and settings.markers_at == "first" and not settings.period:
-        # The shape in the first frame is that without strain, after the smoothing, too.
+        # Zero strain is the shape in the first frame, after the smoothing, too.
         table.values = (1 + table.values) / (1 + table.values[0]) - 1
     if settings.period:
         n = len(table.t) - 1
@@ -117,7 +118,7 @@ def prepare(samples, settings, period=None):
 
 
 def strain_of_tracks(tracks, settings, words):
-    """The strain dx/ds - 1 of tracks x_i(t) without gaps, at equally spaced places over the body, by a spline over the
+    """Strain dx/ds - 1 of tracks x_i(t) without gaps, at equally spaced places over the body, by a spline over the
     material coordinates of the markers for each time. Raises InputError."""
     s = _material_coordinates(tracks, settings)
     wrong = np.flatnonzero(np.diff(s) <= 0)
@@ -165,7 +166,7 @@ def _material_coordinates(tracks, settings):
 
 
 def _whole_cycles(tracks, wanted):
-    """The number of frames in as many whole cycles as there are; all frames if there is no period."""
+    """Number of frames in the largest number of whole cycles; all frames if there is no period."""
     shape = dataclasses.replace(tracks, values=tracks.values - tracks.values.mean(axis=1, keepdims=True))
     duration = tracks.t[-1] - tracks.t[0]
     period = duration if wanted == "whole" else find_period(shape) if wanted == "find" else number_of(wanted)
@@ -190,7 +191,7 @@ def _gaps_in(is_there):
 
 
 class _Series:
-    """One place over time (or all places at a time): a spline through the samples that are there, NaN in gaps that are too
+    """Place over time (or all places at a time): a spline through the samples that exist, NaN in gaps that are too
     large to be filled."""
 
     def __init__(self, t, y, width, most, filled):
@@ -217,7 +218,7 @@ class _Series:
 
 
 def _without_gaps(samples, width, most, filled, is_smoothed=True):
-    """The samples with all gaps filled, those in time first; smoothed with the width if asked for."""
+    """Samples with all gaps filled, those in time first; smoothed with the width if requested."""
     values = samples.values.copy()
     whole = ~np.any(np.isnan(values), axis=0)
     if whole.any() and is_smoothed:
@@ -230,7 +231,7 @@ def _without_gaps(samples, width, most, filled, is_smoothed=True):
 
 
 def _filled_along_body(samples, measured, most, filled):
-    """What is still missing, from the places beside it. Raises InputError if that is not enough."""
+    """Samples with the remaining gaps filled from the places beside. Raises InputError if these do not suffice."""
     values = samples.values.copy()
     filled.along_body = filled.along_body + np.isnan(values).sum(axis=0)
     for j in np.flatnonzero(np.any(np.isnan(values), axis=1)):
@@ -242,7 +243,8 @@ def _filled_along_body(samples, measured, most, filled):
 
 
 def _refuse_gap(samples, i, t, most):
-    """Says where the gap is that cannot be filled: that in the measured samples next to the time t."""
+    """Raises InputError with the place of a gap that cannot be filled: the one in the measured samples next to the time
+    t."""
     gaps = _gaps_in(~np.isnan(samples.values[:, i]))
     begin, end = min(gaps, key=lambda gap: np.abs(samples.t[gap[0]:gap[1]] - t).min())
     is_marker = samples.quantity == "x"
@@ -256,7 +258,7 @@ def _refuse_gap(samples, i, t, most):
 
 
 def _without_ragged_ends(tracks, most, words):
-    """Tracks from the first to the last frame that has all markers, if no more than so many are left out at an end."""
+    """Tracks from the first to the last frame with all markers, leaving out at most @p most at an end."""
     complete = ~np.any(np.isnan(tracks.values), axis=1)
     begin, end = 0, len(tracks.t)
     while begin + LEAST < end and begin < most and not complete[begin]:
@@ -270,8 +272,8 @@ def _without_ragged_ends(tracks, most, words):
 
 
 def find_period(samples):
-    """The shortest time after which samples without gaps repeat themselves, by the mean square difference of the samples and
-    those later on; the duration must be at least 1.25 times as long. None if nothing repeats."""
+    """Shortest time after which samples without gaps repeat, by the mean square difference of the samples and later
+    ones; the duration must be at least 1.25 times as long. None if nothing repeats."""
     begin, duration = samples.t[0], samples.t[-1] - samples.t[0]
     curves = SmoothingSpline(samples.t, samples.values, 0)
     n = min(4 * (len(samples.t) - 1), MOST_LAGS)
@@ -303,7 +305,7 @@ def find_period(samples):
 
 
 def _period_of(full, wanted, words):
-    """The period wanted, or the one that is there."""
+    """Period from the settings, or the one found."""
     begin, end = full.t[0], full.t[-1]
     if wanted == "whole":
         return end - begin
@@ -323,7 +325,7 @@ def _period_of(full, wanted, words):
 
 
 def _one_period(samples, settings, period, noise, words, filled):
-    """One period from all cycles, the mean of which is taken at equal phases."""
+    """Averages all cycles at equal phases to one period."""
     begin, end = samples.t[0], samples.t[-1]
     n = settings.points_t - 1 if settings.points_t else max(LEAST_PHASES, round(period / np.median(np.diff(samples.t))))
     phases = begin + period * np.arange(n) / n
@@ -346,7 +348,7 @@ def _one_period(samples, settings, period, noise, words, filled):
 
 
 def _periodic_series(phases, period, means, counts, settings, filled):
-    """A periodic spline through the means of a place, NaN in gaps that are too large to be filled."""
+    """Periodic spline through the means of a place, NaN in gaps that are too large to be filled."""
     is_there = ~np.isnan(means)
     if is_there.sum() < LEAST:
         return lambda t: np.full(np.shape(t), np.nan)
@@ -370,7 +372,7 @@ def _periodic_series(phases, period, means, counts, settings, filled):
 
 
 def _require_agreement(samples, rest, counts, period, noise, words):
-    """The cycles must agree within the noise where there is little more than one of them, and roughly if there are more."""
+    """Requires cycles to agree within the noise if there is little more than one, and roughly if there are more."""
     n = np.sum(np.maximum(counts - 1, 0))
     scatter = math.sqrt(np.nansum(np.where(counts > 1, rest, 0)**2) / n) if n else 0.0
     spread, largest = np.nanstd(samples.values), np.nanmax(np.abs(samples.values))
@@ -387,7 +389,7 @@ def _require_agreement(samples, rest, counts, period, noise, words):
 
 
 def _resampled(samples, smooth_s, n_s, n_t):
-    """Smoothing and equal steps along the body, and equal steps in time."""
+    """Smooths and resamples: equal steps along the body and in time."""
     s = np.linspace(samples.s[0], samples.s[-1], n_s) if n_s else samples.s
     t = np.linspace(samples.t[0], samples.t[-1], n_t) if n_t else samples.t
     values = samples.values

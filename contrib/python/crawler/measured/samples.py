@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Samples on a grid over body and time, from sheets, tracks and HDF5 files, in the units that are wanted."""
+"""Samples on a grid over body and time, from sheets, tracks and HDF5 files, in the wanted units."""
 import dataclasses
 import math
 import pathlib
@@ -14,11 +14,11 @@ from .paths import factors_of_path, path_in
 from .sheet import read_sheet
 from .units import number_of, unit_factor, unit_of
 
-LEAST, MOST_GAPS = 4, 20  # places and times of a spline; times as many points of the grid as samples
-HEADS, TAILS = ("head", "nose", "snout", "anterior"), ("tail", "posterior")  # names of markers that say which end they are
-LARGEST = 1e100  # of a number, whose square must be one
+LEAST, MOST_GAPS = 4, 20  # least number of places and times of a spline; most points of the grid per sample
+HEADS, TAILS = ("head", "nose", "snout", "anterior"), ("tail", "posterior")  # names of markers at the ends
+LARGEST = 1e100  # largest number, so that its square is finite
 QUANTITIES = ("m", "strain", "stretch", "markers")
-# The names of columns that are understood, the best first.
+# Names of columns that are understood, the best first.
 ROLES = {"s": ("s", "arc length"), "t": ("t", "time", "position_t", "timestamp", "frame", "slice n°", "slice"),
          "m": ("m", "stress", "force", "active stress", "active_stress"), "strain": ("strain",), "stretch": ("stretch",),
          "marker": ("marker", "track_id", "track n°", "track", "id"), "x": ("x", "position", "position_x", "coord_x"),
@@ -28,13 +28,13 @@ FRAMES = ("frame", "timestamp", "slice", "slice n°")
 
 @dataclasses.dataclass
 class Samples:
-    """What was measured at all points of a grid; a gap is NaN.
+    """Measurements at all points of a grid; a gap is NaN.
 
     quantity: "m" (active stress [force]), "strain" [1], "x" (the places of markers [length], from tail to head), "centre" (the path of the
     centre of mass [length]) or "speed" (of that [length/time]); s: places [length], or the numbers of the markers, increasing, one
     number for centre and speed; t: times [time], increasing; values: array [time, place];
-    names: of the markers. notes: sentences on markers and times that the file has in another order. deviation: the standard deviation of
-    each value, an array [time, place], in the unit of the values; None if it is not known.
+    names: of the markers. notes: sentences on markers and times in another order in the file. deviation: the standard
+    deviation of each value, an array [time, place], in the unit of the values; None if it is unknown.
     """
     quantity: str
     s: np.ndarray
@@ -47,13 +47,13 @@ class Samples:
 
 def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", unit_of_m="", shift_s="", shift_t="",
                  animal="", head="", confidence=0.0, decimal="", words=None):
-    """The Samples of a file, in the units wanted.
+    """Reads the Samples of a file, in the wanted units.
 
     path: a table as text, or HDF5 of SLEAP, Tierpsy or with s, t and m or strain. quantity: "m", "strain", "stretch" or
     "markers" (default: by the names). columns: other names, "t=Frame time, x=X". unit_of_s, unit_of_t, unit_of_m: a
-    factor (1/30), as a number or text, or a unit. shift_s, shift_t: a number, or "first". animal: which one is read.
-    head: the marker at the head. confidence: markers that are less certain are gaps. decimal: "comma" or "point", where a
-    comma may be both. words: a list, gets what was done, in sentences. Raises InputError and FileError.
+    factor (1/30), as a number or text, or a unit. shift_s, shift_t: a number, or "first". animal: name of the one that
+    is read. head: the marker at the head. confidence: markers with less are gaps. decimal: "comma" or "point", where a
+    comma may be both. words: a list that receives reports in sentences. Raises InputError and FileError.
     """
     words, notes = [] if words is None else words, []
     unit_of_s, unit_of_t, unit_of_m, shift_s, shift_t = (str(one) for one in (unit_of_s, unit_of_t, unit_of_m, shift_s, shift_t))
@@ -112,7 +112,7 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
 
 
 def _samples_of_path(found, sheet, unit_of_s, unit_of_t, shift_t, words, others):
-    """Samples of what path_in() has found. others: {option: value} that only samples along a body have."""
+    """Samples of a result of path_in(). others: {option: value} that only samples along a body have."""
     kind, t, values, deviation, unit, unit_t = found
     for option, value in others.items():
         if value:
@@ -128,7 +128,7 @@ def _samples_of_path(found, sheet, unit_of_s, unit_of_t, shift_t, words, others)
 
 
 def bytes_of(path):
-    """What a file has. Raises FileError."""
+    """Bytes of a file. Raises FileError."""
     if path.exists() and not path.is_file():
         raise FileError(f'"{path}" is {"a folder" if path.is_dir() else "a device"}, but a file is expected')
     try:
@@ -138,7 +138,7 @@ def bytes_of(path):
 
 
 def _factor_of_values(column, unit, wanted, name):
-    """By what values are multiplied. Strain and stretch have the unit 1, into which per cent are turned."""
+    """Factor of the values. Strain and stretch have the unit 1, to which per cent are converted."""
     if column == "m" or number_of(wanted) is not None:
         return unit_factor(unit, wanted, "--unit-of-m") if wanted else 1.0
     base, size = unit_of(unit or "1") or ("", 0)
@@ -160,7 +160,8 @@ def _require_possible(samples, name):
 
 
 def _converted(values, name, factor, shift, words):
-    """Multiplied and shifted; without the last digits, which round-off of large or single-precision numbers has made."""
+    """Values multiplied and shifted, without the last digits: these are round-off of large or single-precision
+    numbers."""
     if factor != 1:
         words.append(f"{name} multiplied by {factor:g}")
     result = values * factor
@@ -176,15 +177,15 @@ def _converted(values, name, factor, shift, words):
 
 
 def _units_of(sheet, tracks):
-    """Units of places and times, as far as the names have them."""
+    """Units of places and times, as far as the names contain them."""
     if tracks.format != "pairs of x and y":
         return "", "", ""
     return sheet.units[-1], sheet.units[0], ""
 
 
 def _generic(sheet, quantity, renamed):
-    """Tracks, or (s, t, values, column), of a table with a column for each quantity, or with one for each place, time or
-    marker; and the units of s (or x), t and values."""
+    """Tracks, or (s, t, values, column), of a table with a column for each quantity, or with one for each place, time
+    or marker; and the units of s (or x), t and values."""
     if not sheet.head:
         raise InputError(f'"{sheet.name}" has no line of {len(sheet.rows[0])} names above its numbers, but one is expected, as '
                          "t;s;m or t;0;0.25;0.5 or t;x1;x2;x3")
@@ -207,7 +208,7 @@ def _generic(sheet, quantity, renamed):
 
 
 def _roles(sheet, renamed):
-    """Which column has what: {"t": 0, ...}."""
+    """Roles of the columns: {"t": 0, ...}."""
     names, roles = sheet.names, {}
     lower = [name.lower() for name in names]
     for role, known in ROLES.items():
@@ -233,7 +234,7 @@ def _roles(sheet, renamed):
 
 
 def _wide(sheet, quantity, first):
-    """A column for each place or marker (first is "t"), or for each time (first is "s")."""
+    """Reads a column for each place or marker (first is "t"), or for each time (first is "s")."""
     names, units = sheet.names, sheet.units
     is_tracked = quantity == "markers" or (not quantity and first == "t" and names[1].lower().startswith(("x", "marker")))
     along = sheet.times(0) if first == "t" else sheet.column(0)
@@ -270,7 +271,7 @@ def _place(sheet, i, first):
 
 
 def _long_tracks(sheet, roles):
-    """A row for each marker and time."""
+    """Reads a row for each marker and time."""
     keys = [row[roles["marker"]] for row in sheet.rows]
     numbers = [sheet.number(key) for key in keys]
     is_numbered = all(number is not None and not np.isnan(number) for number in numbers)
@@ -284,7 +285,7 @@ def _long_tracks(sheet, roles):
 
 
 def _on_grid(sheet, s, t, values, lines, kind, names=None):
-    """Different places and times, sorted, and the values [time, place]. Round-off makes no different ones."""
+    """Different places and times, sorted, and the values [time, place]. Differences by round-off do not count."""
     lines = np.asarray(lines)
     for name, axis in ((kind, s), ("t", t)):
         if np.any(missing := np.isnan(axis)):
@@ -314,8 +315,7 @@ def _on_grid(sheet, s, t, values, lines, kind, names=None):
 
 
 def note_fallen_times(t, falls, notes, lines=None):
-    """Adds a sentence to the notes if times, as the file has them, are smaller than the ones before them. falls: [time - 1], where;
-    lines: of the file."""
+    """Adds a sentence to the notes if times in the file decrease. falls: [time - 1], where; lines: of the file."""
     if not np.any(falls):
         return
     t_before, t_here = t[:-1][falls], t[1:][falls]
@@ -329,7 +329,7 @@ def note_fallen_times(t, falls, notes, lines=None):
 
 
 def _distinct(values):
-    """The different numbers, sorted, and the index of each value among them."""
+    """Different numbers, sorted, and the index of each value among them."""
     order = np.argsort(values, kind="stable")
     steps = np.diff(values[order]) > 1e-9 * (values.max() - values.min())
     index = np.empty(len(values), dtype=int)
@@ -344,8 +344,8 @@ def _require_increasing(samples, name):
 
 
 def _along_body(tracks, head, confidence, name, words, notes):
-    """Samples of markers from tail to head: places along the body, of which the head has the largest. notes: gets what is put in
-    another order."""
+    """Samples of markers from tail to head: places along the body, the largest at the head. notes: receives changes of
+    order."""
     x, y, names = tracks.x.copy(), tracks.y, list(tracks.names)
     if tracks.format not in ("wide", "long"):
         words.append(f"{tracks.format}: {len(names)} markers, {', '.join(names[:12])}{', ...' if len(names) > 12 else ''}")
@@ -381,7 +381,7 @@ def _along_body(tracks, head, confidence, name, words, notes):
 
 
 def _shorter_chain(x, y):
-    """The order of the markers along the longest axis of all, if the chain in their own order is much longer: numbers of
+    """Order of the markers along the longest axis of all, if the chain in their own order is much longer: numbers of
     tracks need not follow the body. None if their own order is good."""
     mean = np.array([np.nanmean(x, axis=0), np.nanmean(y, axis=0)])
     middle = mean - mean.mean(axis=1, keepdims=True)
@@ -393,7 +393,7 @@ def _shorter_chain(x, y):
 
 
 def _between_times(t, x):
-    """Gaps between measured times filled by splines, x [time, marker]: only so that other markers can be measured from there."""
+    """Fills gaps between measured times by splines, x [time, marker]: only as a reference for the other markers."""
     x = x.copy()
     for column in x.T:
         there = np.flatnonzero(~np.isnan(column))
@@ -425,7 +425,7 @@ def _arc_lengths(t, x, y, words):
 
 
 def _from_tail_to_head(x, names, head, words, notes):
-    """The markers in the order of their places; with the head at the largest x."""
+    """Markers in the order of their places; with the head at the largest x."""
     together = ~np.any(np.isnan(x), axis=1)
     order = np.argsort(np.nanmean(x[together] if together.any() else x, axis=0), kind="stable")
     if not np.array_equal(order, np.arange(len(names))):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How samples become a table."""
+"""Settings of the conversion of samples into a table."""
 import dataclasses
 import math
 import numbers
@@ -13,18 +13,18 @@ NAMES = {int: "whole number", float: "number", str: "text"}
 
 @dataclasses.dataclass
 class Settings:
-    """How samples become a table; the names are those of the options of crawler table."""
+    """Settings of the conversion of samples into a table; the names are those of the options of crawler table."""
     gap: int = 3                # samples in a row that may be filled
     smooth_s: float = 0.0       # widths of the smoothing [length], [time]
     smooth_t: float = 0.0
     period: str = ""            # none; "find"; "whole": the duration; or a number
-    cycles: int = 1             # how often a period is repeated
+    cycles: int = 1             # number of repetitions of a period
     noise: float = None         # standard deviation of a sample
     points_s: int = 0           # equally spaced points of the table; 0: those of the samples
     points_t: int = 0
     markers_at: str = "first"   # places of markers: in the first frame, in the "mean" of all, or a list of numbers
-    first_marker: float = 0.0   # place of the first one, unless there is a list [length]
-    length: float = None        # of the body; else that up to the last marker
+    first_marker: float = 0.0   # place of the first marker, unless there is a list [length]
+    length: float = None        # length of the body; else that up to the last marker
     ends: str = "hold"          # strain beyond the outermost markers: "hold" or "linear"
 
     def require_for_markers(self):
@@ -34,7 +34,7 @@ class Settings:
                 raise InputError(f'"--{name.replace("_", "-")}" is for markers, which these samples have not')
 
     def require_sound(self):
-        """Raises InputError for what no samples are needed to refuse."""
+        """Raises InputError for settings that can be refused without samples."""
         for field in dataclasses.fields(self):
             value, kind = getattr(self, field.name), {int: numbers.Integral, float: numbers.Real, str: str}[field.type]
             if not isinstance(value, kind) and not (value is None and field.default is None):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tables as text, as instruments, trackers and spreadsheets write them: the cells, and the numbers that they mean."""
+"""Tables as text, written by instruments, trackers and spreadsheets: the cells, and their meaning as numbers."""
 import csv
 import dataclasses
 import datetime
@@ -22,32 +22,32 @@ FOREIGN = ((b"\xff\xfe", "text in UTF-16"), (b"\xfe\xff", "text in UTF-16"), (b"
 
 
 def is_gap(cell):
-    """Nothing was measured."""
+    """Returns True if nothing was measured."""
     return cell.lower() in GAPS
 
 
 @dataclasses.dataclass
 class Sheet:
-    """The cells of a file as text: rows of names (head) above rows of samples, all with the same number of columns.
+    """Cells of a file as text: rows of names (head) above rows of samples, all with the same number of columns.
 
-    Cells are turned into numbers when they are used, so that columns nobody asks for may hold anything.
+    Cells are converted to numbers at their use, so that unused columns may contain anything.
     """
-    name: str     # of the file, for messages
+    name: str     # name of the file, for messages
     head: list    # [row][column], may be empty
     rows: list    # [row][column]
-    lines: list   # the number of each row in the file, from 1
-    comma: str    # what a comma in a number is: "decimal", "thousands" or "" (none)
-    words: list   # what was found, for the report
-    notes: list   # what stands in another order than it should
+    lines: list   # line number of each row in the file, from 1
+    comma: str    # meaning of a comma in a number: "decimal", "thousands" or "" (none)
+    words: list   # findings, for the report
+    notes: list   # reports of a different order
 
     @property
     def names(self):
-        """The names of the columns, from the first row of the head, without units."""
+        """Names of the columns, from the first row of the head, without units."""
         return [split_unit(cell)[0] for cell in self.head[0]] if self.head else []
 
     @property
     def units(self):
-        """The units of the columns, behind the names or in a row of their own; those that are not there are empty."""
+        """Units of the columns, behind the names or in a row of their own; missing ones are empty."""
         units = [split_unit(cell)[1] for cell in self.head[0]] if self.head else []
         for row in self.head[1:]:
             is_units = len(self.head) == 2 or all(cell[:1] in ("", "(", "[") for cell in row)
@@ -55,11 +55,11 @@ class Sheet:
         return units
 
     def label(self, column):
-        """The name of a column, for messages."""
+        """Name of a column, for messages."""
         return (self.names[column] if self.head else "") or f"column {column + 1}"
 
     def number(self, cell):
-        """What a cell means; NaN for a gap, None for something else."""
+        """Number in a cell; NaN for a gap, None for anything else."""
         cell = cell.replace("\N{MINUS SIGN}", "-")
         if is_gap(cell):
             return np.nan
@@ -74,7 +74,7 @@ class Sheet:
         return float(cell) if NUMBER.fullmatch(cell) else None
 
     def column(self, i):
-        """The numbers of a column, array [row] with NaN for gaps. Raises InputError that names the first other cell."""
+        """Numbers of a column, array [row] with NaN for gaps. Raises InputError that names the first other cell."""
         cells = [row[i] for row in self.rows]
         if not self.comma and not any("_" in cell for cell in cells):
             try:
@@ -109,14 +109,14 @@ class Sheet:
         return np.round(np.array(clock) - clock[0], 9)
 
     def wrong_cell(self, line, cell, i, n_more=1):
-        """The sentence about a cell that is no number."""
+        """Error message about a cell that is no number."""
         more = f" (and {n_more - 1} more rows have no number there)" if n_more > 1 else ""
         return (f'row {line} of "{self.name}" has "{cell}" under {self.label(i)}, but a number'
                 f'{" with a decimal comma" if self.comma == "decimal" else ""} (or nothing or NaN for a gap) is expected{more}')
 
 
 def text_of(data, name):
-    """The text of a file. Raises InputError that says what it is instead."""
+    """Text of a file. Raises InputError that says what it is instead."""
     for magic, kind in FOREIGN:
         if data.startswith(magic):
             raise InputError(f'"{name}" is {kind}, but a table as text in UTF-8 is expected')
@@ -129,7 +129,7 @@ def text_of(data, name):
 
 
 def cells_of(line, separator):
-    """The cells of a line, without blanks and quotes around them."""
+    """Cells of a line, without blanks and quotes around them."""
     if separator == " ":
         parts = line.split()
     else:
@@ -138,12 +138,12 @@ def cells_of(line, separator):
 
 
 def separator_of(line):
-    """The first of semicolon, tab and comma that stands in a line, else blanks."""
+    """Separator: the first of semicolon, tab and comma in a line, else blanks."""
     for separator in (";", "\t"):
         if separator in line:
             return separator
     parts = line.split()
-    # Numbers between blanks may have decimal commas: "0,5 1,25".
+    # Blanks may separate numbers with decimal commas: "0,5 1,25".
     if "," not in line or (len(parts) > 1 and all(DECIMAL_COMMA.fullmatch(part) or NUMBER.fullmatch(part) or is_gap(part)
                                                   for part in parts)):
         return " "
@@ -151,8 +151,8 @@ def separator_of(line):
 
 
 def meaning_of_commas(rows, separator, name, decimal):
-    """Whether commas in numbers stand before decimals or group thousands ("1,000"); @p decimal, "comma" or "point", says it
-    if it is given. Raises InputError if both can be."""
+    """Returns whether commas in numbers stand before decimals or group thousands ("1,000"); @p decimal, "comma" or
+    "point", decides if it is given. Raises InputError if both are possible."""
     if decimal not in ("", "comma", "point"):
         raise InputError(f'"--decimal" is "{decimal}", but "comma" or "point" is expected')
     if decimal:
@@ -183,9 +183,9 @@ def meaning_of_commas(rows, separator, name, decimal):
 
 
 def read_sheet(data, name, decimal=""):
-    """The Sheet of the bytes of a file: columns between semicolons, tabs, commas or blanks; decimals with a point or,
-    unless commas separate the columns, a comma; comments that begin with #, % or //; titles above the names.
-    Raises InputError with the number of the line."""
+    """Reads the Sheet of the bytes of a file: columns between semicolons, tabs, commas or blanks; decimals with a point
+    or, unless commas separate the columns, a comma; comments that begin with #, % or //; titles above the names. Raises
+    InputError with the number of the line."""
     lines, comment, forced = [], "", None
     for number, line in enumerate(text_of(data, name).splitlines(), 1):
         shown = line.strip()
@@ -205,7 +205,7 @@ def read_sheet(data, name, decimal=""):
     whole = [cells for _, cells in rows if len(cells) == width]
     sheet = Sheet(name, [], [], [], meaning_of_commas(whole[1:] or whole, separator, name, decimal), [], [])
 
-    # The columns of numbers are those of the last rows; samples begin where all of them have numbers.
+    # Columns of numbers are those of the last rows; samples begin where all of them have numbers.
     last = whole[max(-20, 1 - len(whole)):] if len(whole) > 1 else whole
     def value(cell):
         return 0.0 if CLOCK.fullmatch(cell) else sheet.number(cell)
@@ -235,14 +235,14 @@ def read_sheet(data, name, decimal=""):
 
 
 def _read_head(sheet, rows, width, numeric, comment):
-    """The rows of names and units; titles, of which one cell only is filled or which have other numbers of cells, are not
-    among them; without any, a comment may have the names."""
+    """Rows of names and units, without titles: rows with a single filled cell or other numbers of cells; if there are
+    none, a comment may have the names."""
     n_titles = 0
     for number, cells in rows:
         if len(cells) != width or sum(cell != "" for cell in cells) < min(2, width):
             n_titles += 1
             continue
-        # Names may be places, but units have no numbers among them: this is a row of samples.
+        # Numbers may be names (places), but not units: this is a row of samples.
         is_number = [i for i in numeric if not is_gap(cells[i]) and sheet.number(cells[i]) is not None]
         if sheet.head and is_number and cells[0].lower() not in ("bodyparts", "individuals"):
             wrong = next(i for i in numeric if sheet.number(cells[i]) is None)
@@ -255,7 +255,8 @@ def _read_head(sheet, rows, width, numeric, comment):
 
 
 def _drop_empty_columns(sheet, width):
-    """Columns at the end that have neither name nor cell, as many programs write a separator behind the last one."""
+    """Removes columns at the end that have neither name nor cell: many programs write a separator behind the last
+    one."""
     keep = width
     while keep > 1 and not any(row[keep - 1] for row in sheet.head + sheet.rows):
         keep -= 1

@@ -8,7 +8,7 @@ from scipy.sparse.linalg import spsolve
 
 
 def _fitted(x, y, width, weights, is_periodic):
-    """Values f at the knots x that make sum w (y - f)^2 + lambda int f''^2 dx smallest, lambda = (width/2 pi)^4/h with the
+    """Values f at the knots x that minimise sum w (y - f)^2 + lambda int f''^2 dx, lambda = (width/2 pi)^4/h with the
     mean step h; f is natural (f'' = 0 at the ends) or periodic (the last knot is the first of the next period)."""
     h = np.diff(x)
     n = len(h) if is_periodic else len(x)
@@ -28,8 +28,8 @@ def _fitted(x, y, width, weights, is_periodic):
 
 
 def periodic_spline(x, y, width, weights):
-    """A smoothing spline of a period, CubicSpline; x: knots [n], of which the last is the first one of the next period; y,
-    weights: [n]. Width 0 goes through y."""
+    """Smoothing spline of a period, CubicSpline; x: knots [n], of which the last is the first one of the next period;
+    y, weights: [n]. Width 0 interpolates y."""
     y = np.append(y[:-1], y[0])
     values = _fitted(x, y, width, weights, True) if width > 0 else y
     return CubicSpline(x, values, bc_type="periodic")
@@ -43,7 +43,7 @@ class _Polynomial:
 
     @classmethod
     def nearest(cls, x, y, degree):
-        """The one nearest to samples y [n] or [n, m]."""
+        """Polynomial nearest to samples y [n] or [n, m]."""
         middle, size = (x[0] + x[-1]) / 2, (x[-1] - x[0]) / 2
         return cls(polynomial.polyfit((x - middle) / size, y, degree), middle, size)
 
@@ -54,12 +54,13 @@ class _Polynomial:
 
 
 class SmoothingSpline:
-    """The smoothing splines of samples y [n] or [n, m] at knots x [n >= 4]: f(x) or f(x, order of the derivative), [..., m].
+    """Smoothing splines of samples y [n] or [n, m] at knots x [n >= 4]: f(x) or f(x, order of the derivative), [...,
+    m].
 
     From many equally spaced samples a wave of the length P is kept to the part 1/(1 + (width/P)^4): waves of the length
-    width are halved. Width 0 goes through the samples. The functional asks for f'' = 0 at the ends; so that waves are not
-    flattened there, the nearest polynomial (degree 1 + length/width, 3 to 9) is taken away before and added again, and of
-    the rest a cubic whose f'' at the ends is that of the samples within a width of them.
+    width are halved. Width 0 interpolates the samples. The functional requires f'' = 0 at the ends; so that waves are
+    not flattened there, the nearest polynomial (degree 1 + length/width, 3 to 9) is subtracted before and added again,
+    and from the rest a cubic whose f'' at the ends is that of the samples within a width of them.
     """
 
     def __init__(self, x, y, width):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Units behind names of columns, and the factors that turn them into others."""
+"""Units behind names of columns, and the conversion factors between them."""
 import re
 
 from ..needs import InputError
@@ -26,7 +26,7 @@ def unit_of(name):
 
 
 def number_of(text):
-    """A number, or a fraction like 1/30; None for anything else, as 1_000, which Python would take."""
+    """Number, or a fraction like 1/30; None for anything else, e.g. 1_000, which Python would accept."""
     try:
         parts = [float(part) for part in str(text).replace("_", "x").split("/")]
         return parts[0] if len(parts) == 1 else parts[0] / parts[1] if len(parts) == 2 else None
@@ -35,8 +35,8 @@ def number_of(text):
 
 
 def unit_factor(found, wanted, option):
-    """By what numbers in the unit @p found are multiplied: a number wanted (also 1/30), or what turns them into the unit
-    wanted. Raises InputError for the option."""
+    """Factor of numbers in the unit @p found: a number wanted (also 1/30), or the conversion factor to the unit wanted.
+    Raises InputError for the option."""
     number = number_of(wanted)
     if number is not None:
         if number == 0 or number != number or abs(number) == float("inf"):

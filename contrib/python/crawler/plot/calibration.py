@@ -16,7 +16,7 @@ import numpy as np
 
 
 def read(path):
-    """The runs with a reported error and a reference that is good enough to judge it."""
+    """Runs with a reported error and a reference that is accurate enough to judge it."""
     rows = read_rows(existing(path, "the table of build/tests/calibration"))
     if not rows or "reported_error" not in rows[0]:
         raise InputError(f"{path} is not a table of build/tests/calibration")
@@ -31,7 +31,8 @@ def read(path):
 
 
 def draw(table):
-    """Left: reported over true error, both relative to the displacement. Right: how the ratio is distributed."""
+    """Draws on the left the reported over the true error, both relative to the displacement; on the right the
+    distribution of their ratio."""
     n_runs, judged = read(table)
     accuracies = sorted({row[0] for row in judged}, reverse=True)
     figure, (left, right) = plt.subplots(1, 2, figsize=(7.5, 4.4), layout="constrained", width_ratios=(1.15, 1))

@@ -22,7 +22,7 @@ LABELS = {"markers": "place $x$ of markers [length]", "strain": NAMES["strain"],
 
 
 def draw_data(axes, t, place, data, model, kind):
-    """Data as dots, the run as lines."""
+    """Draws data as dots, the run as lines."""
     places = np.unique(place)
     for k, at in enumerate(places[np.unique(np.linspace(0, len(places) - 1, MOST_LINES).round().astype(int))]):
         here = place == at
@@ -37,7 +37,7 @@ def draw_data(axes, t, place, data, model, kind):
 
 
 def draw_residuals(axes, t, place, residuals):
-    """What is left, over place and time."""
+    """Draws the residuals over place and time."""
     places, times = np.unique(place), np.unique(t)
     axes.set_title("residuals: data less run")
     if len(places) == 1:
@@ -55,7 +55,7 @@ def draw_residuals(axes, t, place, residuals):
 
 
 def draw_variables(axes, variables):
-    """Each in its range."""
+    """Draws each variable in its range."""
     for row, (name, one) in enumerate(reversed(variables.items())):
         low, width = one["from"], one["to"] - one["from"]
         axes.plot([0, 1], [row, row], color="0.8", linewidth=6, solid_capstyle="butt")
@@ -85,7 +85,8 @@ def data_of(folder, *names):
 
 
 def comparison_of(folder, rows):
-    """Left bars of the criteria of Akaike and Bayes, less the least; right the residuals of each scene over time."""
+    """Draws on the left bars of the criteria of Akaike and Bayes, minus the least; on the right the residuals of each
+    scene over time."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 2.6 + 0.5 * len(rows)), layout="constrained")
     for k, key in enumerate(("aic", "bic")):
         bars = left.barh(np.arange(len(rows)) + 0.36 * k - 0.18, [row[f"{key}_less_least"] for row in rows], 0.36, color=COLOURS[k], label=key.upper())

@@ -20,7 +20,7 @@ COLUMNS = 4
 
 
 def run(program, parameters, folder):
-    """The output folder of one example."""
+    """Runs one example; returns its output folder."""
     output = folder / parameters.stem
     result = subprocess.run([program, "run", parameters, "--output", output, "--quiet"], capture_output=True, text=True,
                             check=False)
@@ -30,7 +30,7 @@ def run(program, parameters, folder):
 
 
 def draw_panel(figure, axes, name, folder):
-    """The body on the ground over time, with five of its points."""
+    """Draws the body on the ground over time, with five of its points."""
     mesh = draw_body(axes, Kymograph(folder, "stretch", "displacement"), parts=4)
     displacement = read_summary(folder, "the output folder of a run")["displacement"]
     axes.set_title(f"{name}\n$D$ = {displacement:.3g}", fontsize=8)

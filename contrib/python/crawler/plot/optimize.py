@@ -27,28 +27,28 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 UNITS = {"displacement": "length", "speed": "length/time", "cost of transport": "force", "merit": "1",
          "periodic merit": "1"}
 OBJECTIVES = {"displacement": "displacement $D$", "speed": "speed $U$"}  # with their symbols
-ADMISSIBLE = 1e-5               # violation of a limit, relative to it, or Tolerance
-MOST_NAMES, LONGEST = 7, 32     # in a legend
+ADMISSIBLE = 1e-5               # admissible violation of a limit, relative to it, unless Tolerance is larger
+MOST_NAMES, LONGEST = 7, 32     # names, and characters of a name, in a legend
 
 
 def short(value):
-    """Of an entry."""
+    """Short text of a value."""
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def varied(optima):
-    """The entries in which the cases differ, but for variables."""
+    """Entries in which the cases differ, except variables."""
     return [name for name in optima[0]["case"] if name not in optima[0]["variables"]
             and any(one["case"][name] != optima[0]["case"][name] for one in optima)]
 
 
 def in_words(one, names):
-    """These entries of a case."""
+    """Values of these entries in a case."""
     return ", ".join(f"{name.rsplit('/', 1)[-1]} {short(one['case'][name])}" for name in names)
 
 
 class Optimisation:
-    """What is in the output folder."""
+    """Content of the output folder."""
 
     def __init__(self, folder):
         expected = "the output folder of crawler optimize"
@@ -62,7 +62,7 @@ class Optimisation:
         self.objective = summary["optimize"]["objective"]
         self.direction = parameters.values.get("Optimize/Direction")
         admissible = max(ADMISSIBLE, number(parameters.values["Optimize/Tolerance"]))
-        # Of (case, start): (evaluation, objective), and the number of evaluations.
+        # Pairs (evaluation, objective) by (case, start), and the number of evaluations.
         self.starts, self.excessive, self.lengths = (collections.defaultdict(kind) for kind in (list, list, int))
         for row in rows:
             key = int(float(row["case"])), int(float(row["start"]))
@@ -75,7 +75,7 @@ class Optimisation:
             raise InputError(f"{folder / 'results.csv'} has no gait that keeps to all limits; there is nothing to draw")
 
     def quality(self, value, case):
-        """The larger, the better. Of costs those in the wrong direction are worst."""
+        """Quality of an objective: the larger, the better. Costs in the wrong direction are worst."""
         own = next((one["case"] for one in self.optima if one["number"] == case), {})
         sign = -1 if own.get("Optimize/Direction", self.direction) == "backward" else 1
         if self.objective == "cost of transport":
@@ -83,11 +83,11 @@ class Optimisation:
         return sign * value
 
     def cases(self):
-        """The numbers of those that have a gait."""
+        """Numbers of the cases that have a gait."""
         return [one["number"] for one in self.optima]
 
     def words(self, case):
-        """What distinguishes a case: what differs between the cases and is no variable."""
+        """Description of a case: the entries that differ between the cases and are no variables."""
         own = next((one for one in self.optima if one["number"] == case), None)
         if own is None:
             return f"case {case}"
@@ -106,10 +106,10 @@ class Optimisation:
 
 
 def draw_progress(axes, optimisation):
-    """Dots and the best so far."""
+    """Draws the evaluations as dots, and the best so far."""
     cases = optimisation.cases()
     several, names = len(cases) > 1, 0
-    values = []  # of the lines
+    values = []  # values of the lines
     for points in optimisation.excessive.values():
         axes.plot(*zip(*points), ".", color="0.75", markersize=2.5, markeredgewidth=0, zorder=1, rasterized=True)
     for key, points in sorted(optimisation.starts.items()):
@@ -137,7 +137,7 @@ def draw_progress(axes, optimisation):
         if last and one["objective"] is not None:
             axes.plot(last, one["objective"], marker="*", markersize=11, color=COLOURS[which % len(COLOURS)],
                       markeredgecolor="black", markeredgewidth=0.6, linestyle="none", clip_on=False, zorder=5)
-    # Dots far off the lines would hide how these rise.
+    # Dots far off the lines would hide their rise.
     low, high = min(values), max(values)
     margin = 0.1 * (high - low) or 0.1 * abs(high) or 1
     axes.set(xscale="log", xlim=(0.9, 1.3 * max(10, *optimisation.lengths.values())),
@@ -154,7 +154,7 @@ def draw_progress(axes, optimisation):
 
 
 def draw_gait(figure, panels, gait, title):
-    """Strain and active stress."""
+    """Draws strain and active stress."""
     for axes, name in zip(panels, ("strain", "active_stress")):
         mesh = draw_field(axes, gait, name)
         axes.set_title(f"{axes.get_title()} {title}")
@@ -162,9 +162,9 @@ def draw_gait(figure, panels, gait, title):
 
 
 def axis_of_cases(optima):
-    """What the cases are drawn over: name, values, whether logarithmic, and the curve to which each belongs (no name: there
-    are none). That is the number with most values, if each case has its own, or if all combinations of these and of what
-    else varies are there."""
+    """Axis over which the cases are drawn: name, values, True if logarithmic, and the curve to which each belongs (no
+    name: there are none). The axis is the number with most values, if each case has its own, or if all combinations of
+    these and of the other varied entries exist."""
     names = varied(optima)
 
     def values_of(name):
@@ -184,7 +184,7 @@ def axis_of_cases(optima):
 
 
 def draw_cases(axes, optimisation, shown):
-    """The best gaits, the bound, and which part of it they reach."""
+    """Draws the best gaits, the bound, and which part of it they reach."""
     optima = optimisation.optima
     name, places, is_logarithmic, curves = axis_of_cases(optima)
     known = [(x, i, one) for i, (x, one) in enumerate(zip(places, optima)) if x is not None and one.get("objective")]

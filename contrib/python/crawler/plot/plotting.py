@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the scripts of this folder share: the files of crawler, times, names of axes, colours, and how pictures are
-written. It is no script of its own; needs.py says how scripts end.
+"""Common parts of the scripts of this folder: the files of crawler, times, names of axes, colours, and how pictures are
+written. This file is no script itself; needs.py describes how scripts end.
 """
 import argparse
 import csv
@@ -13,14 +13,14 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 from needs import FileError, InputError, Parser, need, run_script, script, write_whole  # noqa: E402, F401
 
-# Those of Okabe and Ito, safe for colour-blind readers, with a line and a marker each for grey print.
+# Colours of Okabe and Ito, safe for colour-blind readers, with a line and a marker each for grey print.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 LINES = ("-", "--", "-.", ":", "-", "--", "-.")
 DOTS = ("o", "s", "^", "D", "v", "P", "X")
 INK = "0.15"                                # dark grey
 SIZES, SIGNED = "cividis", "PuOr_r"         # colour maps: of positive numbers, of numbers of both signs
 
-# Name and symbol (doc/theory.md, "Nomenclature") and unit of what pictures show.
+# Name, symbol (doc/theory.md, "Nomenclature") and unit of the fields in pictures.
 NAMES = {"s": "material coordinate $s$ [length]", "t": "time $t$ [time]", "position": r"position $\zeta$ [length]",
          "displacement": "displacement $D$ [length]", "stretch": "stretch $w$ [1]", "strain": "strain $w-1$ [1]",
          "active_stress": "active stress $m$ [force]", "work": "work $W$ [force length]"}
@@ -33,13 +33,14 @@ SYMBOLS = {"Body/Length": "L", "Body/Elastic modulus": "k", "Body/Friction coeff
 
 
 def root_folder():
-    """That with the folder prm: of the source code or of an installed program."""
+    """Folder that contains prm: of the source code or of an installed program."""
     here = pathlib.Path(__file__).resolve()
     return next((folder for folder in here.parents if (folder / "prm").is_dir()), here.parents[2])
 
 
 def parser(doc, output="", time=False):
-    """A command line that begins with a folder. @p output describes the picture; @p time: options for a part of the run."""
+    """Parser of a command line that begins with a folder. @p output describes the picture; @p time: options for a part
+    of the run."""
     own = Parser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
     own.add_argument("folder", type=pathlib.Path, metavar="OUTPUT_FOLDER")
     if output:
@@ -53,8 +54,8 @@ def parser(doc, output="", time=False):
 
 
 def picture_of(options, name):
-    """Where the picture goes: the name asked for, or in the folder this one; a part of the run has a name of its own, so
-    that the picture of the whole stays."""
+    """Path of the picture: the name given, or this one in the folder; a part of the run has a name of its own, so that
+    the picture of the whole run is kept."""
     if options.output:
         return options.output
     stem, suffix = name.rsplit(".", 1)
@@ -67,7 +68,7 @@ def picture_of(options, name):
 
 
 def existing(path, what):
-    """The path of a file, which must exist. @p what is expected where it does not."""
+    """Path of a file, which must exist. @p what: description of the file, for the error message."""
     if not path.parent.is_dir():
         raise InputError(f"{path.parent} is not a folder; {what} is expected")
     if not path.is_file():
@@ -76,12 +77,12 @@ def existing(path, what):
 
 
 def number(text):
-    """What is not known is not a number."""
+    """Converts a text to a number; NaN if it is unknown."""
     return float(text) if text not in ("", None) else float("nan")
 
 
 def read_rows(path):
-    """The rows of a CSV file, as dictionaries."""
+    """Rows of a CSV file, as dictionaries."""
     try:
         with open(path, newline="", encoding="utf-8") as file:
             return list(csv.DictReader(file))
@@ -90,7 +91,7 @@ def read_rows(path):
 
 
 def read_summary(folder, what):
-    """summary.json of a folder, as a dictionary."""
+    """Content of summary.json of a folder, as a dictionary."""
     path = existing(folder / "summary.json", what)
     try:
         return json.loads(path.read_text(encoding="utf-8"))
@@ -99,7 +100,7 @@ def read_summary(folder, what):
 
 
 def results():
-    """The module crawler.results, which reads the files of folders; it needs numpy."""
+    """Module crawler.results, which reads the files of folders; it needs numpy."""
     folder = str(pathlib.Path(__file__).resolve().parents[2])
     if folder not in sys.path:
         sys.path.append(folder)
@@ -108,7 +109,7 @@ def results():
 
 
 class Parameters:
-    """The entries of a file parameters.prm, by their full names as "Body/Length"."""
+    """Entries of a file parameters.prm, by their full names, e.g. "Body/Length"."""
 
     def __init__(self, path):
         entries = results().entries_of(path.read_text(encoding="utf-8"))
@@ -116,7 +117,7 @@ class Parameters:
                                                      for part in ("value", "unit"))
 
     def number(self, name):
-        """The value of an entry."""
+        """Value of an entry."""
         try:
             return float(self.values[name])
         except (KeyError, ValueError):
@@ -124,7 +125,7 @@ class Parameters:
 
 
 def unit_names(folder):
-    """What the user of a study calls length, time and force (section Units); itself where that is not known."""
+    """Names of the user for length, time and force in a study (section Units); these words where unknown."""
     path = folder / "parameters.prm"
     known = Parameters(path).values if path.is_file() else {}
     names = {word: known.get(f"Units/{word.capitalize()}", word) for word in ("length", "time", "force")}
@@ -133,12 +134,12 @@ def unit_names(folder):
 
 
 def with_own_units(text, names):
-    """A text with units in brackets, "time $t$ [time]", with those of the user."""
+    """Text with units in brackets, "time $t$ [time]", replaced by those of the user."""
     return re.sub(r"\[[^\[\]]*\]", lambda unit: re.sub(r"[a-z]+", lambda word: names.get(word[0], word[0]), unit[0]), text)
 
 
 def label(entry, unit, short=None):
-    """The name of an axis: the last words of an entry or result, its symbol and its unit."""
+    """Name of an axis: the last words of an entry or result, its symbol and its unit."""
     words = short or entry.split("/")[-1].replace("_", " ").replace(".", ", ")
     symbol = f" ${SYMBOLS[entry]}$" if entry in SYMBOLS else ""
     return words + symbol + (f" [{unit}]" if unit else "")
@@ -160,13 +161,13 @@ class Kymograph:
         self.s, self.t = self.length * arrays["places"], self.duration * arrays["times"]
 
     def __getitem__(self, name):
-        """A field. The position is that of the points on the ground, the strain the stretch minus 1."""
+        """Field by name. The position is that of the points on the ground, the strain the stretch minus 1."""
         if name == "position":
             return self.s + self.fields["displacement"]
         return self.fields["stretch"] - 1 if name == "strain" else self.fields[name]
 
     def last_stride(self):
-        """Begin and end of it."""
+        """Begin and end of the last stride."""
         period = (read_summary(self.folder, "the output folder of a finished run").get("gait") or {}).get("period")
         if not period:
             raise InputError(f"{self.folder} has no stride (gait/period in summary.json is null); --from and --to choose a "
@@ -174,7 +175,7 @@ class Kymograph:
         return max(self.t[-1] - period, 0.0), self.t[-1]
 
     def keep(self, begin, end, last_stride=False):
-        """Keeps the times of the command line; returns begin and end. None is the begin or end of the run."""
+        """Keeps the times of the command line; returns begin and end. None stands for the begin or end of the run."""
         if last_stride and (begin is not None or end is not None):
             raise InputError("--last-stride is there besides --from or --to, but one of the two ways is expected")
         if last_stride:
@@ -194,7 +195,7 @@ class Kymograph:
 
 
 def colour_limits(field, name):
-    """Colour map and limits of a field of this name; those of both signs are symmetric."""
+    """Colour map and limits of a field of this name; limits of fields of both signs are symmetric."""
     if name in ("stretch", "position"):
         low, high = float(field.min()), float(field.max())
         margin = 0 if high > low else 0.01 * abs(high) or 1.0
@@ -204,7 +205,7 @@ def colour_limits(field, name):
 
 
 def draw_field(axes, kymograph, name):
-    """A field over s and t, with its axes named; returns what a colour bar needs."""
+    """Draws a field over s and t, with its axes named; returns the input of a colour bar."""
     field = kymograph[name]
     mesh = axes.pcolormesh(kymograph.s, kymograph.t, field, shading="gouraud", rasterized=True,
                            **colour_limits(field, name))
@@ -213,7 +214,8 @@ def draw_field(axes, kymograph, name):
 
 
 def draw_body(axes, kymograph, name="stretch", parts=8):
-    """The body on the ground over time, coloured by a field, and some of its points; returns what a colour bar needs."""
+    """Draws the body on the ground over time, coloured by a field, and some of its points; returns the input of a
+    colour bar."""
     import numpy as np
     field, position = kymograph[name], kymograph["position"]
     times = np.broadcast_to(kymograph.t[:, None], position.shape)

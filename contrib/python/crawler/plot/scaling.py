@@ -32,7 +32,7 @@ TABLE = root_folder() / "prm" / "studies" / "scaling.csv"
 
 
 def draw_measured(panel):
-    """The paper's fit to measured earthworms, and the scatter of these that its r^2 stands for."""
+    """Draws the paper's fit to measured earthworms, and the scatter that corresponds to its r^2."""
     masses, slope, r_squared = np.array([0.012, 8.5]), 0.33, 0.66
     scatter = np.exp(slope * np.log(masses[1] / masses[0]) / np.sqrt(12) * np.sqrt(1 / r_squared - 1))
     speeds = 3.8 * masses**slope
@@ -43,8 +43,8 @@ def draw_measured(panel):
 
 
 def draw(options):
-    """Reads, fits and draws; returns the figure and the laws: of (family, y) factor, exponent and
-    by how many per cent this is off."""
+    """Reads, fits and draws; returns the figure and the laws: for (family, y) factor, exponent and its deviation from
+    theory in per cent."""
     worms, results = read_rows(options.table), read_rows(options.folder / "results.csv")
     if not worms or len(worms) != len(results) or any(row.get("status") != "finished" for row in results):
         raise InputError("a finished sweep over all rows of the table is expected")

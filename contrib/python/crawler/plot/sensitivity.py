@@ -19,7 +19,7 @@ import numpy as np
 
 
 def read_table(path):
-    """The columns of a CSV file, without its header."""
+    """Columns of a CSV file, without its header."""
     try:
         return np.array([[float(value) for value in row.values()] for row in read_rows(path)]).T
     except (TypeError, ValueError) as error:
@@ -27,7 +27,7 @@ def read_table(path):
 
 
 def draw_pushes(figure, axes, options, n):
-    """Where and when the active stress pushes, on n nodes."""
+    """Draws the sensitivity to the active stress over place and time, on n nodes."""
     places, times, pushes = (np.reshape(column, (-1, n)) for column in read_table(options.folder / "sensitivity_stress.csv"))
     if options.begin is not None or options.end is not None or options.last_stride:
         run = Kymograph(options.folder)
@@ -55,7 +55,7 @@ def draw(options):
         raise InputError(f"no sensitivity is known: {reason}")
     known = [(name, one["elasticity"]) for name, one in entries.items() if one["elasticity"] is not None][:10][::-1]
     s, modulus, friction = read_table(folder / "sensitivity_body.csv")
-    with_stress = (folder / "sensitivity_stress.csv").is_file()  # not for very many steps
+    with_stress = (folder / "sensitivity_stress.csv").is_file()  # missing for very many steps
 
     figure, panels = plt.subplots(1, 3 if with_stress else 2, figsize=(13 if with_stress else 8.4, 4.2),
                                   layout="constrained", width_ratios=(1, 1.1, 1.25)[:3 if with_stress else 2])

@@ -26,7 +26,7 @@ import textwrap
 from plotting import COLOURS, DOTS, LINES, SIGNED, SIZES, InputError, need, parser, run_script, save
 from plotting import label as axis_label
 
-os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")  # a sweep under way may be looked at
+os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")  # keeps a sweep in progress readable
 need("numpy", "h5py", "matplotlib")
 import h5py
 import matplotlib.pyplot as plt
@@ -34,17 +34,17 @@ import numpy as np
 from matplotlib import colors, patches, ticker
 from matplotlib.path import Path
 
-# What became of points without a value: grey, hatch, marker in line plots.
+# Styles of points without a value: grey, hatch, marker in line plots.
 MARKS = (("0.88", "////", "x"), ("0.72", "....", "+"), ("0.80", "\\\\\\\\", "1"), ("0.60", "xxxx", "2"),
          ("0.94", "++", "3"), ("0.50", "oo", "4"))
 STATUS_COLOURS = {"finished": "#FFFFFF", "inverted": "#E69F00", "failed": "#D55E00", "stopped": "#CC79A7",
                   "not": "0.75", "refused": "#56B4E9", "silent": "#D40000"}
-WORDS = ("status", "outcome")  # columns that say what became of the points
+WORDS = ("status", "outcome")  # columns with the outcome of the points
 MOST_LINES, MOST_PANELS = 60, 4  # lines in a picture; small pictures in a row or column
 
 
 class Sweep:
-    """The table of a sweep; columns are read when they are needed. The points may be narrowed by where()."""
+    """Table of a sweep; columns are read when they are needed. The points may be narrowed by where()."""
 
     def __init__(self, folder):
         path = folder / "results.h5"
@@ -65,22 +65,23 @@ class Sweep:
         self.chosen = np.flatnonzero(np.isfinite(described["index"][()]))
         if len(self.chosen) == 0:
             raise InputError(f'"{path}" has no rows')
-        self.axes.sort(key=settings[max(settings.find("set Axes"), 0):].find)  # as in the file
+        self.axes.sort(key=settings[max(settings.find("set Axes"), 0):].find)  # in the order of the file
 
     def column(self, name):
-        """The values of the chosen points; texts as bytes."""
+        """Values of the chosen points; texts as bytes."""
         return self.data[name][()][self.chosen]
 
     def is_number(self, name):
-        """Whether a column holds numbers."""
+        """Returns True if a column holds numbers."""
         return self.data[name].dtype.kind == "f"
 
     def varying(self):
-        """The axes with more than one value among the chosen points."""
+        """Axes with more than one value among the chosen points."""
         return [axis for axis in self.axes if len(np.unique(self.column(axis))) > 1]
 
     def find(self, name, among, what):
-        """The one column whose name is, or ends with, this; a whole name before the end of another, also of texts."""
+        """Returns the only column whose name is, or ends with, this; a whole name before the end of another, also of
+        texts."""
         whole = name if name in self.data else next((own for own in self.data if own.lower() == name.lower()), None)
         if whole in among:
             return whole
@@ -123,7 +124,7 @@ class Sweep:
         self.chosen = self.chosen[mine]
 
     def label(self, name, unit=True):
-        """The last words of a name, more if an axis has the same ones; with its symbol and unit."""
+        """Last words of a name, more if an axis has the same ones; with its symbol and unit."""
         parts = name.split("/")
         short = "/".join(parts[-1:])
         for n in range(1, len(parts) + 1):
@@ -135,17 +136,17 @@ class Sweep:
 
 
 class Marks:
-    """What became of each chosen point that has no value to be drawn: an index into names, or -1."""
+    """Outcome of each chosen point that has no value to be drawn: an index into names, or -1."""
 
     def __init__(self, sweep, values, column):
         self.alone = column in WORDS
         status, reason = sweep.column(column if self.alone else "status"), sweep.column("reason")
-        if column == "outcome":  # has its reason in it
+        if column == "outcome":  # contains its reason
             reason = np.zeros_like(reason)
         finished = status == b"finished"
         known = np.isfinite(values)
         self.note = ""
-        if not (known & finished).any() and known.any():  # as inversion.t
+        if not (known & finished).any() and known.any():  # e.g. inversion.t
             finished = known
             self.note = "values of points that did not finish"
         self.drawn = finished & known
@@ -163,33 +164,33 @@ class Marks:
         self.counts = [np.count_nonzero(self.of == i) for i in range(len(self.names))]
 
     def face(self, i):
-        """The colour of cells."""
+        """Colour of cells."""
         return STATUS_COLOURS.get(self.names[i].split(" ")[0].strip(":"), "white") if self.alone else MARKS[i % len(MARKS)][0]
 
     def hatch(self, i):
-        """The hatch of cells."""
+        """Hatch of cells."""
         return "" if self.alone and self.names[i].startswith("finished") else MARKS[i % len(MARKS)][1]
 
     def ink(self, i):
-        """The colour of points."""
+        """Colour of points."""
         return self.face(i) if self.alone and not self.names[i].startswith("finished") else "0.45"
 
     def marker(self, i):
-        """Of points."""
+        """Marker of points."""
         return "o" if self.alone and self.names[i].startswith("finished") else MARKS[i % len(MARKS)][2]
 
     def in_words(self):
-        """For a message."""
+        """Description for a message."""
         return ", ".join(f"{count} {name}" for count, name in zip(self.counts, self.names))
 
 
 def as_text(value):
-    """Attributes and texts are bytes."""
+    """Converts a value to text; attributes and texts are bytes."""
     return value.decode(errors="replace") if isinstance(value, bytes) else str(value)
 
 
 def nearest(name, among):
-    """The four names that are most like this one, as a whole or by their last words."""
+    """Returns the four names most similar to this one, as a whole or by their last words."""
     def likeness(column):
         ends = [column[match.end():] for match in re.finditer("^|[/._]", column)]
         return max(difflib.SequenceMatcher(None, name.lower(), end.lower()).ratio() for end in ends)
@@ -197,7 +198,8 @@ def nearest(name, among):
 
 
 def is_logarithmic(values):
-    """Whether these positive numbers, in order, spread evenly by their ratios rather than by their differences."""
+    """Returns True if these positive numbers, in order, are spread more evenly by their ratios than by their
+    differences."""
     if len(values) < 3 or values[0] <= 0 or values[-1] < 3 * values[0]:
         return False
     even = np.linspace(0, 1, len(values))
@@ -207,7 +209,7 @@ def is_logarithmic(values):
 
 
 class Axis:
-    """The values of an axis and their places in a picture: numbers as they are, words one after the other."""
+    """Values of an axis and their places in a picture: numbers as they are, words one after the other."""
 
     def __init__(self, sweep, name):
         self.name, self.label, self.is_number = name, sweep.label(name), sweep.is_number(name)
@@ -221,7 +223,7 @@ class Axis:
         self.at = self.values if self.is_number else np.arange(len(self.values), dtype=float)
 
     def texts(self):
-        """The values as words, without what paths have in common."""
+        """Values as words, without common parts of paths."""
         if self.is_number:
             return [f"{value:.4g}" for value in self.values]
         texts = [as_text(value) for value in self.values]
@@ -229,7 +231,7 @@ class Axis:
         return short if len(set(short)) == len(texts) and all(text.endswith(".prm") for text in texts) else texts
 
     def edges(self):
-        """Of the cells around the values."""
+        """Edges of the cells around the values."""
         at = np.log(self.at) if self.log else self.at
         if len(at) == 1:
             half = 0.5 if self.log or at[0] == 0 else 0.1 * abs(at[0])
@@ -240,7 +242,7 @@ class Axis:
         return np.exp(edges) if self.log else edges
 
     def draw(self, axes, which, long):
-        """Scale, ticks and, if long, the label of the "x" or "y" axis of a picture."""
+        """Draws scale, ticks and, if long, the label of the "x" or "y" axis of a picture."""
         direction = getattr(axes, which + "axis")
         if self.log:
             getattr(axes, f"set_{which}scale")("log")
@@ -253,7 +255,7 @@ class Axis:
 
 
 def norm_of(values, scale):
-    """Colour map and norm."""
+    """Returns colour map and norm."""
     low, high = values.min(), values.max()
     log = scale == "log" or (scale == "auto" and low > 0 and high > 1000 * low)
     if low < 0 < high:
@@ -269,7 +271,7 @@ def norm_of(values, scale):
 
 
 def hatch_cells(axes, x_edges, y_edges, mask, face, hatch):
-    """The cells of the mask, with a hatch; cells side by side in a row at once."""
+    """Hatches the cells of the mask; cells side by side in a row at once."""
     vertices, codes = [], []
     for row in range(mask.shape[0]):
         steps = np.diff(np.concatenate(([0], mask[row].astype(int), [0])))
@@ -283,7 +285,7 @@ def hatch_cells(axes, x_edges, y_edges, mask, face, hatch):
 
 
 def heat_map(axes, x, y, mine, values, marks, look):
-    """Every point a cell; without a value grey, with a hatch that says why."""
+    """Draws every point as a cell; without a value in grey, with a hatch for the reason."""
     shape = (len(y.values), len(x.values))
     place = y.index[mine] * shape[1] + x.index[mine]
     if len(np.unique(place)) < len(place):
@@ -307,7 +309,7 @@ def heat_map(axes, x, y, mine, values, marks, look):
 
 
 def scatter(axes, x, y, mine, values, marks, look):
-    """Every point a dot; without a value a grey mark that says why."""
+    """Draws every point as a dot; without a value as a grey mark for the reason."""
     drawn = mine & marks.drawn
     at = (x.at[x.index], y.at[y.index])
     size = float(np.clip(8000 / max(mine.sum(), 1), 1, 30))
@@ -322,7 +324,8 @@ def scatter(axes, x, y, mine, values, marks, look):
 
 
 def power_law(x, y):
-    """Factor and exponent of y = factor * x^exponent; None unless two points or more have positive x and y of one sign."""
+    """Factor and exponent of y = factor * x^exponent; None unless two points or more have positive x and y of one
+    sign."""
     if len(x) < 2 or x.min() <= 0 or x.min() == x.max() or not (y.min() > 0 or y.max() < 0):
         return None
     power, shift = np.polyfit(np.log(x), np.log(np.abs(y)), 1)
@@ -330,9 +333,9 @@ def power_law(x, y):
 
 
 def lines(axes, x, mine, values, errors, marks, other, look, options, panel):
-    """A line for each value of the axis other (or one), with gaps where points have no value.
+    """Draws a line for each value of the axis other (or one), with gaps where points have no value.
 
-    Returns the power laws: which line (other and panel in words), the law or None, the least size of its values.
+    Returns the power laws: the line (other and panel in words), the law or None, the smallest magnitude of its values.
     """
     laws = []
     keys = range(len(other.values)) if other else [None]
@@ -362,7 +365,7 @@ def lines(axes, x, mine, values, errors, marks, other, look, options, panel):
                 axes.errorbar(at, y, bar, fmt="none", ecolor=colour, elinewidth=0.8, capsize=2.5)
             else:
                 axes.fill_between(at, y - bar, y + bar, color=colour, alpha=0.25, linewidth=0)
-    for i in range(len(marks.names)):  # on the lower edge, where no value is
+    for i in range(len(marks.names)):  # on the lower edge, free of values
         at = np.unique(x.at[x.index[mine & (marks.of == i)]])
         axes.plot(at, np.full(len(at), 0.03 * i), transform=axes.get_xaxis_transform(), linestyle="",
                   marker=marks.marker(i), color="0.35", markersize=5, clip_on=False)
@@ -371,7 +374,8 @@ def lines(axes, x, mine, values, errors, marks, other, look, options, panel):
 
 
 def scale_lines(axes, values, fitted):
-    """A logarithmic scale of values; of both signs: linear below the least of the lines with a fit, else of most values."""
+    """Sets a logarithmic scale of values; for both signs: linear below the least of the lines with a fit, else of most
+    values."""
     if values.min() > 0:
         axes.set_yscale("log")
         return
@@ -383,11 +387,11 @@ def scale_lines(axes, values, fitted):
     powers = 10 ** np.arange(decade, most + 1)[::int(1 + (most - decade) // 6)]
     axes.yaxis.set_major_locator(ticker.FixedLocator(np.concatenate((-powers[::-1], [0.], powers))))
     axes.yaxis.set_minor_locator(ticker.NullLocator())
-    axes.margins(y=0.05)  # of this scale
+    axes.margins(y=0.05)  # margins of this scale
 
 
 def tell_laws(laws, x, value):
-    """Prints the power laws and, in a sentence, which lines have none."""
+    """Prints the power laws and, in a sentence, the lines that have none."""
     without = [line for line, law, _ in laws if law is None]
     needed = f'two points or more with a positive axis and values "{value}" of one sign'
     if len(without) == len(laws):
@@ -400,7 +404,7 @@ def tell_laws(laws, x, value):
 
 
 def spread(axis, most, what):
-    """Some of the values of an axis, evenly spread, all if they are few."""
+    """Returns some of the values of an axis, evenly spread, all if they are few."""
     n = len(axis.values)
     if n <= most:
         return list(range(n))
@@ -410,7 +414,7 @@ def spread(axis, most, what):
 
 
 def choose(sweep, options):
-    """The axes x, y (or None) and those of the small pictures, from the command line and the design."""
+    """Chooses the axes x, y (or None) and those of the small pictures, from the command line and the design."""
     varying = sweep.varying()
     if not sweep.axes:
         raise InputError("the table has no axes")
@@ -434,7 +438,7 @@ def choose(sweep, options):
 
 
 def title_of(sweep, options, x, y, marks):
-    """What does not vary, and how the other axes do."""
+    """Title: values of the axes that do not vary, names of others that do, and the note on marks."""
     words = []
     for axis in sweep.axes:
         values = np.unique(sweep.column(axis))
@@ -451,7 +455,7 @@ def title_of(sweep, options, x, y, marks):
 
 
 def draw(sweep, options):
-    """The whole picture."""
+    """Draws the whole picture."""
     if not options.value:
         is_map = "verdict" in sweep.data and len(sweep.varying()) > 1 and not (options.lines or options.fit)
         options.value = "outcome" if is_map else "displacement"
@@ -540,11 +544,11 @@ def draw(sweep, options):
     if mesh is not None:
         bar = figure.colorbar(mesh, ax=panels, label=sweep.label(options.value))
         if look[0] == SIGNED and not options.dots:
-            bar.ax.axhline(0., color="black", linewidth=1)  # as the line in the map
+            bar.ax.axhline(0., color="black", linewidth=1)  # same line as in the map
     elif line_look:
         figure.colorbar(plt.cm.ScalarMappable(line_look[1], line_look[0]), ax=panels, label=y.label)
     n_lines = len(panels[0][0].get_legend_handles_labels()[1]) if as_lines else 0
-    if options.fit and 0 < n_lines < 20:  # the laws differ from picture to picture: each has its legend, below
+    if options.fit and 0 < n_lines < 20:  # laws differ between pictures: each has its legend, below
         columns = 1 if small else 2
         size = (size[0], size[1] + 0.16 * -(-n_lines // columns) * len(high))
         figure.set_size_inches(size)

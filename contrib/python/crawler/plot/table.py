@@ -18,7 +18,7 @@ KINDS = {"m": "active_stress", "strain": "strain"}
 
 
 def grid(path, first):
-    """Columns, and the values over t and s or marker; what is missing is not a number."""
+    """Columns, and the values over t and s or marker; missing ones are NaN."""
     rows = read_rows(existing(path, "a table of crawler table"))
     names = list(rows[0]) if rows else []
     if len(names) != 3 or names[0] not in first or names[1] != "t":
@@ -34,7 +34,7 @@ def grid(path, first):
 
 
 def draw_map(axes, s, t, values, name, limits):
-    """A field; what is missing stays grey."""
+    """Draws a field; missing values stay grey."""
     axes.set_facecolor("0.75")
     mesh = axes.pcolormesh(s, t, np.ma.masked_invalid(values), shading="nearest", rasterized=True, **limits)
     axes.set(xlabel=NAMES["s"], ylabel=NAMES["t"])
@@ -42,7 +42,7 @@ def draw_map(axes, s, t, values, name, limits):
 
 
 def draw(path):
-    """The three parts of the picture."""
+    """Draws the three parts of the picture."""
     names, s, t, values = grid(path, ("s",))
     if names[2] not in KINDS:
         raise InputError(f'{path} has the column "{names[2]}", but m or strain is expected')

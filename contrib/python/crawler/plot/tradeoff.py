@@ -13,7 +13,7 @@ import collections
 from plotting import INK, InputError, need, parser, results, run_script, save
 
 need("numpy", "matplotlib")
-results()  # where the package is
+results()  # adds the folder of the package to the path
 import matplotlib.pyplot as plt
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -21,7 +21,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 
 from crawler.tradeoff import complete, number, pareto_front, read_rows
 
-# What computes: colour. Names are (formulation, mesh, engine) of the table.
+# Colour of each way to compute. Names are (formulation, mesh, engine) of the table.
 WAYS = {("position", "uniform", "fused"): ("position, fused engine", "#0072B2"),
         ("position", "uniform", "batch"): ("position, batch of 8, per body", "#009E73"),
         ("position", "uniform", "petsc"): ("position, PETSc", "#E69F00"),
@@ -30,11 +30,11 @@ WAYS = {("position", "uniform", "fused"): ("position, fused engine", "#0072B2"),
 # Rungs of the model that need no mesh: name, colour, marker.
 RUNGS = {"perturbation": ("perturbation, closed form", "#000000", "*"),
          "kinematic": ("kinematic, quadrature", "#7F7F7F", "X")}
-MARKERS = ("o", "s", "^", "D", "v", "P", "<", ">")  # one for each integrator
+MARKERS = ("o", "s", "^", "D", "v", "P", "<", ">")  # marker of each integrator
 
 
 class Tradeoff:
-    """The rows of tradeoff.csv, and the summary."""
+    """Rows of tradeoff.csv, and the summary."""
 
     def __init__(self, folder):
         self.rows, self.summary = read_rows(folder), complete(folder)
@@ -54,12 +54,12 @@ class Tradeoff:
 
 
 def envelope(points):
-    """Of points (time, error) those that no other one beats, the cheapest first."""
+    """Points (time, error) that no other one dominates, the cheapest first."""
     return [points[i] for i in pareto_front(*zip(*points))]
 
 
 def way_of(row):
-    """The name and the colour of what computed a row."""
+    """Name and colour of the way that computed a row."""
     if row["model"] in RUNGS:
         return RUNGS[row["model"]][:2]
     name = (row["formulation"], row["mesh"], row["engine"])
@@ -67,8 +67,8 @@ def way_of(row):
 
 
 def draw_ways(axes, tradeoff):
-    """All settings as dots, and for each integrator of each way the best of them with a marker; returns the handles for
-    the ways and for the integrators."""
+    """Draws all settings as dots, and for each integrator of each way the best of them with a marker; returns the
+    handles for the ways and for the integrators."""
     groups = collections.defaultdict(list)
     for row in tradeoff.finished:
         groups[way_of(row), row["integrator"]].append((number(row["seconds"]), number(row["shown error"])))
@@ -89,7 +89,7 @@ def draw_ways(axes, tradeoff):
 
 
 def draw_fronts(axes, tradeoff):
-    """Steps: what a budget of time buys. Returns the handles of the legend."""
+    """Draws the fronts as steps: the error for a budget of time. Returns the handles of the legend."""
     handles = []
     for batch, style, name in ((False, "-", "Pareto front of single runs"), (True, (0, (4, 2)), "... of batches")):
         points = tradeoff.front(batch)
@@ -100,7 +100,7 @@ def draw_fronts(axes, tradeoff):
 
 
 def draw_bar(axes, tradeoff):
-    """The errors that cannot be told from 0."""
+    """Draws the errors that cannot be told from 0."""
     bar = (tradeoff.summary.get("reference") or {}).get("relative_bar")
     if not bar:
         return []

@@ -1,2 +1,3 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""crawler report: a page for browsers of the folder of any other command. It has what files say, and computes nothing."""
+"""crawler report: a page for browsers of the folder of any other command. The page contains the content of files, and
+computes nothing."""

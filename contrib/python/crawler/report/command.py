@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The command line of crawler report, and the page with its data: page.html with page.css and scripts of this folder."""
+"""Command line of crawler report, and the page with its data: page.html with page.css and scripts of this folder."""
 import json
 import os
 import pathlib
@@ -13,9 +13,9 @@ from .folder import data_of_fit, fits_within, parameters_in, run_in, runs_within
 
 HERE = pathlib.Path(__file__).resolve().parent
 SCRIPTS = ("base.js", "plot.js", "body.js", "run.js", "explorer.js", "fit.js", "studies.js")
-TIMES, FEWEST_TIMES = 640, 64  # of all kymographs of a page together, and of each
+TIMES, FEWEST_TIMES = 640, 64  # times of all kymographs of a page together, and least number of each
 
-# What a folder may be: its kind, a file or folder that only it has, its table, and the group in it.
+# Kinds of folders: name, a file or folder that only this kind has, its table, and the group in it.
 KINDS = (("tradeoff", "tradeoff.h5", "tradeoff.h5", "tradeoff"),
          ("comparison", "comparison.csv", "comparison.csv", None), ("fit", "inputs.json", "residuals.csv", None), 
          ("optimisation", "starts.h5", "results.h5", "optimize"),
@@ -25,7 +25,7 @@ KINDS = (("tradeoff", "tradeoff.h5", "tradeoff.h5", "tradeoff"),
 
 
 def kind_of(folder):
-    """One of KINDS. Raises InputError if the folder is none of a command."""
+    """Entry of KINDS for a folder. Raises InputError if it is not that of a command."""
     expected = "the output folder of a run, sweep, tradeoff, optimisation, fit or comparison of fits is expected"
     if not os.path.isdir(folder):
         raise InputError(f'"{folder}" is {"a file" if os.path.exists(folder) else "not there"}, but {expected}')
@@ -37,7 +37,7 @@ def kind_of(folder):
 
 
 def program():
-    """What the program says of itself: its versions, and key, unit and meaning of each number of a run."""
+    """Description of the program by itself: its versions, and key, unit and meaning of each number of a run."""
     name = os.environ.get("CRAWLER_PROGRAM", "crawler")
     try:
         return json.loads(subprocess.check_output([name, "parameters", "--format", "results"]))
@@ -46,7 +46,7 @@ def program():
 
 
 def reasons():
-    """The user guide's table of reasons and advice; nothing where the guide is not installed."""
+    """Reasons and advice from the table of the user guide; nothing where the guide is not installed."""
     root = HERE.parents[3]  # the source code, or share/ of an installed program
     for guide in (root / "doc/user_guide.md", root / "doc/crawler/doc/user_guide.md"):
         if guide.is_file():
@@ -55,7 +55,7 @@ def reasons():
 
 
 def data_of(folder, kind):
-    """All that the page of a folder knows. Raises InputError where a file is damaged."""
+    """Data of the page of a folder. Raises InputError where a file is damaged."""
     name, _, table, group = kind
     effective = text_of(folder / "parameters.prm") or ""
     entries, own = entries_of(effective), program()
@@ -79,7 +79,7 @@ def data_of(folder, kind):
 
 
 def page_of(data):
-    """The page as bytes. No text of the data can end its script, as "<" is escaped."""
+    """Page as bytes. No text of the data can end its script, as "<" is escaped."""
     words = json.dumps(data, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")
     page = text_of(HERE / "page.html").replace("{{styles}}", text_of(HERE / "page.css"))
     page = page.replace("{{scripts}}", "".join(text_of(HERE / name) for name in SCRIPTS)).replace("{{data}}", words)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the files of a folder say, as a page has it: dicts and lists that JSON knows, None for what is not there. All raise
+"""Content of the files of a folder for a page: dicts and lists for JSON, None for what is missing. All functions raise
 InputError if a file is damaged."""
 import json
 import math
 import os
 import re
 
-os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")  # a study under way may be looked at
+os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")  # keeps a study in progress readable
 import h5py
 import numpy as np
 
@@ -14,11 +14,11 @@ from ..needs import FileError, InputError
 from ..results import parameters_of, read_columns, read_kymograph
 from .numbers import DIGITS, Column, fields_of, plain, some
 
-MOST_STEPS, MOST_ROWS, MOST_BYTES = 2000, 100000, 9000000  # of a run; of a table, so that the page stays below 10 MB
+MOST_STEPS, MOST_ROWS, MOST_BYTES = 2000, 100000, 9000000  # limits of a run; of a table: page < 10 MB
 
 
 def text_of(path):
-    """The text of a file; None if there is none."""
+    """Text of a file; None if there is none."""
     return path.read_text(encoding="utf-8", errors="replace") if path.is_file() else None
 
 
@@ -32,7 +32,7 @@ def summary_in(folder):
 
 
 def parameters_in(folder, effective, entries):
-    """The entries that are not at their defaults, {entry, value, default, unit, meaning}, and the texts of the files, that
+    """Entries that are not at their defaults, {entry, value, default, unit, meaning}, and the texts of the files, that
     of parameters.prm, @p effective, without comments."""
     bare = "".join(line + "\n" for line in effective.splitlines() if line.strip() and not line.strip().startswith("#"))
     return {"entries": [{"entry": name, **entry} for name, entry in entries.items() if entry["value"] != entry["default"]],
@@ -40,14 +40,15 @@ def parameters_in(folder, effective, entries):
 
 
 def units_of(entries):
-    """What the user calls the units: {length, time, force, energy}."""
+    """Names of the user for the units: {length, time, force, energy}."""
     names = {word: entries.get(f"Units/{word.title()}", {"value": word})["value"] for word in ("length", "time", "force")}
     energy = f"{names['force']} {names['length']}"
     return {**names, "energy": energy if any(word != name for word, name in names.items()) else "energy"}
 
 
 def curves_in(path):
-    """The columns of a CSV file with numbers over time or body, of many rows some; None if there is no such file."""
+    """Columns of a CSV file with numbers over time or body, a selection if there are many rows; None if there is no
+    such file."""
     if not path.is_file():
         return None
     columns = []
@@ -58,7 +59,8 @@ def curves_in(path):
 
 
 def run_in(folder, title, most_times):
-    """A run: summary, body, statistics, kymograph (of about @p most_times times), ground, sensitivities along the body."""
+    """Data of a run: summary, body, statistics, kymograph (of about @p most_times times), ground, sensitivities along
+    the body."""
     values = parameters_of(text_of(folder / "parameters.prm") or "")
     run = {"title": title, "summary": summary_in(folder),
            "length": values.get("Body/Length", 1), "end_time": values.get("Time/End time", 1),
@@ -77,7 +79,8 @@ def run_in(folder, title, most_times):
 
 
 def data_of_fit(path):
-    """Tables of what was measured, as table_in() gives them, one for each kind of data: time, place, data, the best run, and the residuals."""
+    """Tables of measured data, as in table_in(), one for each kind of data: time, place, data, the best run, and the
+    residuals."""
     columns = read_columns(path)
     if list(columns) != ["kind", "t", "place", "data", "model", "residual"] or not all(isinstance(columns[name], np.ndarray) for name in columns if name != "kind"):
         raise InputError(f'"{path}" is damaged: the columns kind, t, place, data, model and residual are expected')
@@ -94,14 +97,15 @@ def data_of_fit(path):
 
 
 def fits_within(folder, summary):
-    """What a comparison says of each fit: {its folder: status, variables and notes of its summary.json}; none where that is gone."""
+    """Results of each fit in a comparison: {its folder: status, variables and notes of its summary.json}; none if that
+    is missing."""
     folders = [row["folder"] for row in summary.get("comparison", [])]
     return {name: {key: value for key, value in (summary_in(folder / name) or {}).items() if key in ("status", "variables", "notes")}
             for name in folders}
 
 
 def runs_within(folder, inner):
-    """The runs within a study, as "points/5" or "best-2": its optima, or in the folder @p inner the points whose fields
+    """Runs within a study, e.g. "points/5" or "best-2": its optima, or in the folder @p inner the points whose fields
     were kept, by their numbers."""
     pattern, found = r"()(\d{1,8})" if inner else r"best(-(\d{1,8}))?", []
     for path in (folder / inner).glob("*/summary.json"):
@@ -112,8 +116,8 @@ def runs_within(folder, inner):
 
 
 def rank_of(name, meaning, is_text, names):
-    """Which columns matter most where there is no place for all: what was varied and how it ended; the displacement and
-    other numbers with error bounds; the rest; the bounds of these, and messages."""
+    """Rank of a column for tables too large for all: first varied entries and status; then the displacement and other
+    numbers with error bounds; the rest; the bounds of these, and messages."""
     if meaning.startswith("axis of the ") or meaning == "variable":
         return 0
     if name in ("message", "explanation") or name.startswith(("errors.", "sensitivities.")):
@@ -124,8 +128,8 @@ def rank_of(name, meaning, is_text, names):
 
 
 def table_in(path, group):
-    """The table of a study: its columns (those whose meaning begins with "axis" or is "variable" are what was varied), and
-    the names of those that were left out because they would make the page too large; of very many rows some, evenly."""
+    """Table of a study: its columns (those whose meaning begins with "axis" or is "variable" were varied), and the
+    names of those left out because they would make the page too large; of very many rows an even selection."""
     try:
         with h5py.File(path, "r") as file:
             columns = [(*(data.attrs[word].decode() for word in ("name", "unit", "description")), data)
@@ -134,7 +138,7 @@ def table_in(path, group):
             columns.sort(key=lambda one: rank_of(one[0], one[2], one[3].dtype.kind == "S", names))
             n = len(columns[0][3])
             stride = -(-n // MOST_ROWS) or 1
-            # What has no divisor in common with the number of rows does not take the same value of an axis each time.
+            # Strides coprime to the number of rows do not take the same value of an axis each time.
             while stride > 1 and math.gcd(stride, n) != 1:
                 stride += 1
             table, free = {"all_rows": n, "rows": -(-n // stride), "columns": [], "left_out": []}, MOST_BYTES

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Numbers as a page has them: lists for JSON with as many digits as it shows, None for what is not known."""
+"""Numbers for a page: lists for JSON with as many digits as it shows, None for unknown ones."""
 import numpy as np
 
-DIGITS = 6  # significant ones of curves and of large tables
-COLOURS, STEPS = 256, 20000  # of a picture; of a field, from the least to the largest value that pictures show
+DIGITS = 6  # significant digits of curves and of large tables
+COLOURS, STEPS = 256, 20000  # number of colours of a picture; of steps of a field, from its least to its largest value
+                             # in pictures
 
 
 def plain(values, digits=None):
-    """Numbers with so many significant digits (None: all)."""
+    """Rounds numbers to @p digits significant digits (None: all)."""
     values = np.asarray(values, dtype=float)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         if digits is not None:
@@ -20,12 +21,12 @@ def plain(values, digits=None):
 
 
 def some(n, most):
-    """Indices of about @p most of n rows: every so many, and the last one."""
+    """Indices of about @p most of n rows: equally spaced, and the last one."""
     return sorted({*range(0, n, -(-n // most) or 1), *range(n - 1, n)})
 
 
 class Column:
-    """A column of a table: values [row], numbers or texts, of which a page shows so many digits (None: all)."""
+    """Column of a table: values [row], numbers or texts, of which a page shows @p digits digits (None: all)."""
 
     def __init__(self, name, unit, meaning, values, digits=None):
         self.head = {"name": name, "unit": unit, "meaning": meaning}
@@ -34,11 +35,11 @@ class Column:
         self.different, self.first, self.codes = np.unique(self.values, return_index=True, return_inverse=True)
         n, few = len(self.values), len(self.different)
         self.has_codes = self.is_text or few <= max(1, n / 8)
-        self.size = n * (len(str(few)) + 1 if self.has_codes else (digits or 17) + 4)  # about [byte]
+        self.size = n * (len(str(few)) + 1 if self.has_codes else (digits or 17) + 4)  # approximate size [byte]
 
     def json(self):
-        """{name, unit, meaning, values}; where few values repeat {..., values, codes}: these, in the order in which they
-        come, and the index of each row among them."""
+        """Dict {name, unit, meaning, values}; where few values repeat {..., values, codes}: these values in the order
+        of their first occurrence, and the index of each row among them."""
         if not self.has_codes:
             return {**self.head, "values": plain(self.values, self.digits)}
         order = np.argsort(self.first)
@@ -50,17 +51,17 @@ class Column:
 
 
 def is_line_between(axis, values, shown):
-    """Is every other row what a line between its neighbours gives, to a colour? @p axis [row], @p values [row, ...],
-    @p shown: what pictures show of them."""
+    """Returns True if every other row is, to a colour, the linear interpolation of its neighbours. @p axis [row], @p
+    values [row, ...], @p shown: range of values in pictures."""
     part = ((axis[1:-1:2] - axis[:-2:2]) / (axis[2::2] - axis[:-2:2]))[:, None]
     line = (1 - part) * values[:-2:2] + part * values[2::2]
     return np.all(np.abs(np.clip(values[1:-1:2], *shown) - np.clip(line, *shown)) <= (shown[1] - shown[0]) / COLOURS)
 
 
 def fields_of(kymograph, most_times):
-    """{places, times, fields: {name: {shown, step, values}}}, of the arrays of results.read_kymograph(): what pictures
-    show (two numbers), and values [time, place], one after the other, as multiples of step. Times and places that lines
-    between the others give are left out."""
+    """Dict {places, times, fields: {name: {shown, step, values}}}, of the arrays of results.read_kymograph(): the range
+    in pictures (two numbers), and values [time, place], in sequence, as multiples of step. Times and places that linear
+    interpolation of the others reproduces are left out."""
     fields = {name: values for name, values in kymograph.items() if values.ndim == 2 and np.isfinite(values).any()}
     shown = {name: kymograph.get(f"shown_{name}", (np.nanmin(field), np.nanmax(field))) for name, field in fields.items()}
     axes = [kymograph["times"], kymograph["places"]]

@@ -22,11 +22,11 @@ namespace crawler
 
     std::string design      = "grid";
     std::string axes        = "";
-    unsigned int n_points   = 100; ///< of a random or Latin hypercube design
+    unsigned int n_points   = 100; ///< points of a random or Latin hypercube design
     unsigned int seed       = 1;
     std::string keep_fields = "";
     bool cross_check        = false;
-    double refinement       = 10.;          ///< of the cross-check
+    double refinement       = 10.;          ///< refinement of the cross-check
     std::optional<double> point_time_limit; ///< [s]
     std::optional<double> time_limit;       ///< [s]
 
@@ -48,7 +48,7 @@ namespace crawler
     std::string tolerances      = "logspace(-2, -10, 5)";
     unsigned int repetitions    = 3;
     double run_time_limit       = 10.;   ///< [s]
-    double time_limit           = 3600.; ///< of all [s]
+    double time_limit           = 3600.; ///< limit of all runs together [s]
 
     void
     add_parameters(Declarations &declarations);
@@ -63,7 +63,7 @@ namespace crawler
     std::optional<double> work, positive_work, dissipation, smallest_strain, largest_strain, mean_square_strain,
       largest_stress, largest_stress_rate;
     unsigned int n_starts = 1, seed = 1;
-    double spread                = 0.2; ///< of the starts, in ranges of the variables
+    double spread                = 0.2; ///< spread of the starts, in ranges of the variables
     double tolerance             = 1e-6;
     unsigned int most_iterations = 50;
     std::optional<double> time_limit; ///< [s]

@@ -15,7 +15,7 @@ namespace crawler
     std::string path;
     double deviation;     ///< standard deviation, in units of the entry or as a part of it; 0 if the entry is not
                           ///< uncertain
-    bool is_part = false; ///< of the value of the entry
+    bool is_part = false; ///< deviation is a part of the value of the entry
 
     double
     standard_deviation(const double value) const

@@ -7,14 +7,14 @@
 
 namespace crawler
 {
-  /// 0, 1/n, ... 1, and both sides of some breaks.
+  /// Fractions 0, 1/n, ... 1, and both sides of some breaks.
   std::vector<double>
   equal_parts(std::size_t n, const std::vector<double> &breaks = {});
 
   /**
-   * The smallest and the largest stretch in each of some equal boxes of body and duration. The extremes of a whole run
-   * have kinks as functions of a gait where one crest becomes higher than another; those in small boxes hardly have,
-   * so that an optimiser can go along a limit that holds many of them.
+   * Smallest and largest stretch in each of some equal boxes of body and duration. The extremes of a whole run have
+   * kinks as functions of a gait where one crest becomes higher than another; those in small boxes hardly do, so that
+   * an optimiser can move along a limit at which many of them lie.
    */
   class ExtremesInBoxes
   {
@@ -25,14 +25,15 @@ namespace crawler
       std::vector<double> in_space, in_time;
     };
 
-    /// For runs of about so many strides.
+    /// Number of boxes in time for runs of about this number of strides.
     static std::size_t
     boxes_in_time(double strides);
 
     /// @p n_time boxes in time.
     ExtremesInBoxes(std::size_t n_time, double strides, const Breaks &breaks = {});
 
-    /// Where and when a kymograph is wanted to tell them: parts of length and duration, and both sides of breaks.
+    /// Points and times at which a kymograph is needed to find them: parts of length and duration, and both sides of
+    /// breaks.
     const std::vector<double> &
     points() const
     {
@@ -44,12 +45,12 @@ namespace crawler
       return times_;
     }
 
-    /// In all boxes, the smallest, then the largest, of a run that was seen there; sharpened between points and times
-    /// that no break separates.
+    /// Extremes in all boxes, first the smallest, then the largest, of a run with this @p stretch at points and times;
+    /// refined between points and times that no break separates.
     std::vector<StretchPlace>
     find(const std::vector<double> &stretch) const;
 
-    /// Of a run of which only the extremes are known: the others are as if there were no strain.
+    /// Extremes of a run of which only these two are known: the others are set to zero strain.
     std::vector<StretchPlace>
     place(const StretchPlace &smallest, const StretchPlace &largest) const;
 

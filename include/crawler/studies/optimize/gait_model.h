@@ -11,21 +11,21 @@
 
 namespace crawler
 {
-  /// What objective and limits of a gait are made of, in the user's units.
+  /// Numbers of which objective and limits of a gait are made, in the user's units.
   enum class GaitNumber
   {
     displacement,
-    work,          ///< of the active stress over the duration
-    positive_work, ///< the same
-    mean_square,   ///< of the strain
+    work,          ///< stress work over the duration
+    positive_work, ///< positive stress work over the duration
+    mean_square,   ///< mean square of the strain
     speed,
     friction_time, ///< T/(gamma L): the merit is D/sqrt(W T/(gamma L))
     dissipation,
-    efficiency ///< part of what any gait with its energy and strains could; not differentiated
+    efficiency ///< relative to the best of all gaits with its energy and strains; not differentiated
   };
   inline constexpr std::size_t n_gait_numbers = 8;
 
-  /// A value for each of them.
+  /// Value for each gait number.
   template <typename Value>
   struct ByGaitNumber : std::array<Value, n_gait_numbers>
   {
@@ -43,23 +43,23 @@ namespace crawler
     }
   };
 
-  /// Numbers that are limited at many places, and their derivatives by the variables: [place][variable].
+  /// Values that are limited at many places, and their derivatives by the variables: [place][variable].
   struct LimitedValues
   {
     std::vector<double> values;
-    std::shared_ptr<const std::vector<double>> jacobian; ///< if it was asked for
+    std::shared_ptr<const std::vector<double>> jacobian; ///< null unless requested
   };
 
-  /// What a gait gives.
+  /// Numbers of a gait.
   struct GaitValues
   {
-    std::string problem;              ///< in words; empty if all is well
-    std::string problem_of_gradients; ///< the same, of the derivatives alone
+    std::string problem;              ///< in words; empty if there is none
+    std::string problem_of_gradients; ///< problem of the derivatives alone
     ByGaitNumber<double> numbers{};
-    ByGaitNumber<std::vector<double>> gradients; ///< by the variables, if they were asked for
-    std::vector<bool> by_differences; ///< for which variables the gradients are differences of gaits; empty: for none
-    std::vector<bool> strain_by_differences;   ///< the same of the extreme strains
-    LimitedValues strain, stress, stress_rate; ///< of what is limited
+    ByGaitNumber<std::vector<double>> gradients; ///< by the variables, if requested
+    std::vector<bool> by_differences;            ///< variables whose gradients are differences of gaits; empty: none
+    std::vector<bool> strain_by_differences;     ///< variables whose gradients of the extreme strains are differences
+    LimitedValues strain, stress, stress_rate;   ///< values that are limited
 
     /// Throws InputError if the start has a problem.
     void
@@ -72,7 +72,7 @@ namespace crawler
     }
   };
 
-  /// Which of them are wanted.
+  /// Selection of the numbers and values of a gait.
   struct GaitWishes
   {
     ByGaitNumber<bool> numbers{};
@@ -85,32 +85,32 @@ namespace crawler
   public:
     virtual ~GaitModel() = default;
 
-    /// A gait that cannot be computed (the body inverts, a formula has no value) has a problem. Of the strains those of
-    /// @p places have derivatives for sure, and the smallest and the largest. Throws Interrupted.
+    /// A gait that cannot be computed (the body inverts, a formula has no value) has a problem. Derivatives of the
+    /// strain are certain to exist only at @p places and for the smallest and the largest strain. Throws Interrupted.
     virtual GaitValues
     evaluate(const std::vector<double> &x, bool with_gradients, const std::vector<std::size_t> &places = {}) = 0;
 
-    /// Looks at a result more closely: makes the grid finer if it was too coarse there. Returns whether it did, so that
-    /// the optimum is to be looked for once more.
+    /// Checks a result more closely and refines the grid if it was too coarse. Returns true if it did: then the optimum
+    /// is to be searched once more.
     virtual bool
     refine(const std::vector<double> &x) = 0;
 
-    /// The smallest and the largest strain over body and duration, between the places where they are limited, too.
+    /// Smallest and largest strain over body and duration, also between the places where they are limited.
     virtual std::pair<double, double>
     extreme_strains(const std::vector<double> &x) = 0;
 
-    /// How exact the numbers are, relative: the optimiser cannot come closer.
+    /// Relative accuracy of the numbers: the optimiser cannot come closer.
     virtual double
     noise() const
     {
       return 0.;
     }
 
-    /// In words, for the log.
+    /// Description of the model in words, for the log.
     virtual std::string
     description() const = 0;
 
-    /// The computation was stopped from outside.
+    /// Exception: the computation was stopped from outside.
     struct Interrupted
     {
     };

@@ -15,12 +15,12 @@
 
 namespace crawler
 {
-  /// A limit, and what it costs.
+  /// Limit with its multiplier.
   struct GaitLimit
   {
     std::string name;  ///< its entry in section Optimize
     double value;      ///< in the user's units
-    double multiplier; ///< by how much the objective would become better for one unit more
+    double multiplier; ///< gain of the objective for one unit more
 
     void
     exchange(Archive &archive)
@@ -29,15 +29,15 @@ namespace crawler
     }
   };
 
-  /// What each evaluation gave: a row of the table.
+  /// Record of an evaluation: a row of the table.
   struct GaitRecord
   {
     std::vector<double> x;
-    double objective; ///< in the user's units, not a number if there is a problem
+    double objective; ///< in the user's units; not a number if there is a problem
     ByGaitNumber<double> numbers;
-    double violation; ///< of the limit that is violated most, relative to it
+    double violation; ///< largest violation of a limit, relative to it
     std::string problem;
-    std::string worst_limit{}; ///< its name; empty: all limits are kept
+    std::string worst_limit{}; ///< name of the limit violated most; empty: all are kept
 
     void
     exchange(Archive &archive)
@@ -47,15 +47,15 @@ namespace crawler
   };
 
   /**
-   * The optimisation as the optimiser sees it: minimise f(y) subject to lower <= c(y) <= upper and 0 <= y <= 1, all of
-   * size 1. y are the variables in their ranges; f is the objective over its size at the start, with the sign that
-   * makes it small; c are the limited numbers, each over its limit.
+   * Optimisation as seen by the optimiser: minimise f(y) subject to lower <= c(y) <= upper and 0 <= y <= 1, all of
+   * order 1. y are the variables in their ranges; f is the objective over its magnitude at the start, with the sign
+   * that is to be minimised; c are the limited numbers, each over its limit.
    */
   class GaitProblem
   {
   public:
-    /// @p closer: has the limits that are kept to, while records tell what of the wanted ones has been exceeded.
-    /// Throws InputError if the start has a problem; GaitModel::Interrupted, as soon as @p stops says so.
+    /// @p closer has tighter limits for the optimiser, while records tell by how much the wanted ones are violated.
+    /// Throws InputError if the start has a problem; GaitModel::Interrupted as soon as @p stops returns true.
     GaitProblem(GaitModel &model,
                 const OptimizeParameters &parameters,
                 const std::vector<Variable> &variables,
@@ -63,7 +63,7 @@ namespace crawler
                 std::function<bool()> stops,
                 const OptimizeParameters *closer = nullptr);
 
-    /// Of the numbers that objective and limits are made of.
+    /// Selection of the numbers in objective and limits.
     static GaitWishes
     wishes(const OptimizeParameters &parameters);
 
@@ -71,11 +71,12 @@ namespace crawler
     {
       double objective;
       std::vector<double> gradient, constraints;
-      std::vector<std::vector<double>> rows;                          ///< of the Jacobian: those of limited works
-      std::vector<std::shared_ptr<const std::vector<double>>> blocks; ///< the others, unscaled
-      std::string problem; ///< of gait or derivatives, in words: what is here is no optimum
+      std::vector<std::vector<double>> rows;                          ///< rows of the Jacobian of the limited works
+      std::vector<std::shared_ptr<const std::vector<double>>> blocks; ///< other rows, unscaled
+      std::string problem; ///< problem of gait or derivatives, in words: this point is no optimum
     };
-    /// Of the strains those have derivatives that pull: whose @p forces, one for each constraint, are not 0.
+    /// Returns the problem at y. Derivatives of strains are computed for active constraints only: those with @p forces,
+    /// one for each constraint, other than 0.
     const Point &
     at(const std::vector<double> &y, bool with_gradients, const std::vector<double> &forces = {});
 
@@ -95,13 +96,13 @@ namespace crawler
       return upper_;
     }
 
-    /// The Jacobian of c at the point times a vector, and its transpose.
+    /// Products of the Jacobian of c at the point, and of its transpose, with a vector.
     void
     apply_jacobian(const Point &point, const std::vector<double> &v, std::vector<double> &result) const;
     void
     apply_transposed(const Point &point, const std::vector<double> &v, std::vector<double> &result) const;
 
-    /// Of the objective.
+    /// Scale of the objective.
     double
     scale() const
     {
@@ -113,14 +114,15 @@ namespace crawler
     std::vector<double>
     to_y(const std::vector<double> &x) const;
 
-    /// The best of some evaluations: of those that keep to all limits, or else the one that exceeds them least.
+    /// Returns the best of some evaluations: of those that keep to all limits, or else the one with the least
+    /// violation.
     static const GaitRecord &
     best_of(std::span<const GaitRecord> records, const OptimizeParameters &parameters, double admissible);
 
-    /// The latest evaluation at @p y, or a new one.
+    /// Returns the latest evaluation at @p y, or a new one.
     const GaitRecord &
     record(const std::vector<double> &y);
-    /// The latest evaluation elsewhere than at @p y; at y if there is none.
+    /// Returns the latest evaluation elsewhere than at @p y; at y if there is none.
     const GaitRecord &
     latest_beside(const std::vector<double> &y) const;
     const std::vector<GaitRecord> &
@@ -129,16 +131,16 @@ namespace crawler
       return records_;
     }
 
-    /// How much better the objective would become, relative to its size, if what the limits leave unused were worth
-    /// what their multipliers say: 0 at an optimum.
+    /// Estimates the relative gain of the objective if the slack of the limits were worth their multipliers: 0 at an
+    /// optimum.
     double
     unused_limits(const std::vector<double> &y, const std::vector<double> &multipliers);
 
-    /// The limits, by the multipliers of c.
+    /// Limits with their multipliers, by the multipliers of c.
     std::vector<GaitLimit>
     limits(const std::vector<double> &multipliers) const;
 
-    /// Violation of a limit, relative to it.
+    /// Admissible violation of a limit, relative to it.
     double
     admissible() const
     {
@@ -155,14 +157,14 @@ namespace crawler
     struct BlockLimit
     {
       LimitedValues GaitValues::*values;
-      std::string lower_name, upper_name; ///< empty: there is none
+      std::string lower_name, upper_name; ///< empty: no such limit
       double lower, upper, scale;
       double wanted_lower, wanted_upper;
     };
 
     double
     objective(const GaitValues &values, std::vector<double> *gradient) const;
-    /// Of the strains that pull.
+    /// Places of the strains with forces.
     std::vector<std::size_t>
     pulling_places(const std::vector<double> &forces) const;
 
@@ -174,10 +176,10 @@ namespace crawler
     std::vector<BlockLimit> block_limits_;
     std::vector<std::size_t> block_sizes_;
     std::vector<double> lower_, upper_;
-    double scale_ = 1.; ///< of the objective
+    double scale_ = 1.; ///< scale of the objective
     std::vector<double> latest_y_;
     bool latest_has_gradients_ = false;
-    std::vector<std::size_t> latest_places_; ///< of strains with derivatives
+    std::vector<std::size_t> latest_places_; ///< places of strains with derivatives
     Point latest_;
     std::vector<GaitRecord> records_;
   };

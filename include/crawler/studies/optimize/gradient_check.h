@@ -8,9 +8,9 @@
 
 namespace crawler
 {
-  /// Prints the derivatives of all wanted numbers, and of the limited ones where they are most extreme, at @p x beside
-  /// differences of what the model gives. Returns whether they agree to 1e-5 of the gradient's size, or, where gaits
-  /// are simulated, to what the accuracy of these allows; nothing if all derivatives are differences themselves.
+  /// Prints the derivatives of all requested numbers, and of the limited ones where they are most extreme, at @p x
+  /// beside differences of the model. Returns true if they agree to 1e-5 of the gradient's size, or, where gaits are
+  /// simulated, within their accuracy; nothing if all derivatives are differences themselves.
   std::optional<bool>
   check_gradient(
     GaitModel &model, const SceneFamily &family, const GaitWishes &wishes, const std::vector<double> &x, Log &log);

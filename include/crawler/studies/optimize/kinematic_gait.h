@@ -11,8 +11,8 @@ namespace crawler
 {
   /**
    * Gaits of the kinematic level, where the strain is given: quadrature on a grid, and derivatives in closed form
-   * (reduced_models/strain_functional.h) times those of the strain, which are differences of it. Where the strain is
-   * linear in all variables, which is tried out, its derivatives are computed once, and no scene is built any more.
+   * (reduced_models/strain_functional.h) times those of the strain, which are differences. Where the strain is linear
+   * in all variables, as tested at the beginning, its derivatives are computed once, and no more scenes are built.
    */
   class KinematicGait : public GaitModel
   {
@@ -32,7 +32,7 @@ namespace crawler
   private:
     struct State;
 
-    /// A strain: on the grid of the quadrature, and where it is limited, which is closer along the body.
+    /// Strain on the grid of the quadrature, and at the places where it is limited, which are denser along the body.
     struct Samples
     {
       StrainSamples on_grid;
@@ -66,16 +66,17 @@ namespace crawler
     std::optional<StrainFunctional> grid_;
     unsigned int n_limited_s_ = 1,
                  n_limited_t_ = 1; ///< parts of body and duration; the strain is limited at their ends
-    /// Of a strain that is linear in the variables: at some x, and its derivatives [variable].
+    /// Strain that is linear in the variables: its values at some x, and its derivatives [variable].
     struct Linear
     {
       std::vector<double> x;
-      std::shared_ptr<const State> state; ///< all but the strain
+      std::shared_ptr<const State> state; ///< everything but the strain
       Samples samples;
       std::vector<Samples> slopes;
     };
     std::optional<Linear> linear_;
-    std::vector<Samples> slopes_;                         ///< at the last x, otherwise
-    std::shared_ptr<const std::vector<double>> jacobian_; ///< of the strain where it is limited, if it is linear
+    std::vector<Samples> slopes_;                         ///< at the last x, if the strain is not linear
+    std::shared_ptr<const std::vector<double>> jacobian_; ///< Jacobian of the strain where it is limited, if it is
+                                                          ///< linear
   };
 } // namespace crawler

@@ -11,23 +11,22 @@
 namespace crawler
 {
   /**
-   * crawler optimize: the best gait of section Optimize (collective). Ranks share the starts; each ends as
-   * a row of starts.h5, so that a study that was killed goes on with --resume. Then the best gait is written as
+   * crawler optimize: the best gait of section Optimize (collective). Ranks share the starts; each ends as a row of
+   * starts.h5, so that a study that was killed can be resumed with --resume. Then the best gait is written as
    * optimum.prm and run with all files, into the folder "best".
    *
-   * The parts, each used by those below it: scene_family.h, variables, starts, and the scenes that
-   * they make; kinematic_gait.h and simulated_gait.h, what a gait gives, with derivatives (gait_model.h);
-   * gait_problem.h, objective and limits; rol_optimizer.h; optimize_start.h, the search from one start;
-   * optimize_memory.h, rows of starts and evaluations; optimize_searches.h, the searches of all ranks;
-   * optimize_results.h, tables and summary.
+   * Parts, each used by those below it: scene_family.h, variables, starts, and their scenes; kinematic_gait.h and
+   * simulated_gait.h, the numbers of a gait, with derivatives (gait_model.h); gait_problem.h, objective and limits;
+   * rol_optimizer.h; optimize_start.h, the search from one start; optimize_memory.h, rows of starts and evaluations;
+   * optimize_searches.h, the searches of all ranks; optimize_results.h, tables and summary.
    */
   ExitCode
   optimize(MPI_Comm communicator, const CommandOptions &options);
-  /// The same of a parameter file that is read already.
+  /// Optimises with a parameter file that has been read already.
   ExitCode
   optimize_input(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file);
 
-  /// For `crawler check`: computes the start of each case and says what it gives. Returns false if the file varies
+  /// Computes the start of each case and reports its numbers, for `crawler check`. Returns false if the file varies
   /// nothing. Throws InputError.
   bool
   check_optimize(MPI_Comm communicator, const ParameterFile &file, Log &log);

@@ -16,19 +16,19 @@ namespace crawler
   {
     struct Case
     {
-      std::vector<std::string> values; ///< of the axes, as they stand in a parameter file
-      std::vector<std::string> paths;  ///< of the variables
-      double sign;                     ///< of the wanted direction
+      std::vector<std::string> values; ///< values of the axes, as written in a parameter file
+      std::vector<std::string> paths;  ///< paths of the variables
+      double sign;                     ///< sign of the wanted direction
     };
     std::vector<std::string> axes;
     std::vector<Case> cases;
-    std::vector<std::string> paths, units; ///< of the variables of any case
+    std::vector<std::string> paths, units; ///< variables of any case
     std::vector<std::string> limits;       ///< entries that limit any case
-    std::string objective, unit;           ///< and its unit
+    std::string objective, unit;           ///< objective and its unit
   };
 
-  /// The problems that an optimisation solves one by one: the points of section Sweep, or the file as it is where that
-  /// has no axes.
+  /// Problems that an optimisation solves one by one: the points of section Sweep, or the file as it is if that has no
+  /// axes.
   class OptimizeCases
   {
   public:
@@ -41,7 +41,7 @@ namespace crawler
       return points_ ? points_->design().n_points() : 1;
     }
 
-    /// The scenes of a case. One at a time: it goes before the next one comes.
+    /// Scenes of a case. One at a time: it must be destroyed before the next one is made.
     std::unique_ptr<SceneFamily>
     family(unsigned long number);
 
@@ -56,18 +56,18 @@ namespace crawler
       return !names_.axes.empty();
     }
 
-    /// The cases next to a case (SweepDesign::neighbours()).
+    /// Cases next to a case (SweepDesign::neighbours()).
     std::vector<unsigned long>
     neighbours(unsigned long number) const
     {
       return points_ ? points_->design().neighbours(number) : std::vector<unsigned long>();
     }
 
-    /// "Section/Entry = value, ..." of a case, with the last names only; empty if there are no axes.
+    /// Values of a case, "Section/Entry = value, ...", with the last names only; empty if there are no axes.
     std::string
     in_words(unsigned long number) const;
 
-    /// The entries of the file itself.
+    /// Entries of the file itself.
     const Parameters &
     parameters() const
     {
@@ -79,15 +79,15 @@ namespace crawler
       return file_form_.declarations;
     }
 
-    /// On entries without an effect in any case.
+    /// Notes on entries without an effect in any case.
     std::vector<std::string>
     notes(const ParameterFile &file);
 
-    /// What the gaits depend on (one process: reads files). Throws FileError.
+    /// Inputs on which the gaits depend (one process: reads files). Throws FileError.
     SweepInputs
     inputs() const;
 
-    /// All entries as they are used, but for the axes, as a .prm file.
+    /// Entries as used, except for the axes, as a .prm file.
     std::string
     effective() const;
 
@@ -96,7 +96,7 @@ namespace crawler
     add_case(unsigned long number);
 
     Form file_form_;
-    std::unique_ptr<SweepPoints> points_; ///< if there are axes
+    std::unique_ptr<SweepPoints> points_; ///< null if there are no axes
     OptimizeNames names_;
   };
 } // namespace crawler

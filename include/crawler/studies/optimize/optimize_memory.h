@@ -12,9 +12,9 @@
 namespace crawler
 {
   /**
-   * The starts that have ended, on the rank that keeps them: rows of starts.h5, and those of their evaluations in
-   * results.h5 (contracts, doc/optimize.md). Rows come as starts end, behind those that are there; what is read again
-   * is what is whole in both.
+   * Starts that have ended, on the rank that keeps them: rows of starts.h5, and those of their evaluations in
+   * results.h5 (contracts, doc/optimize.md). Rows are appended as starts end; on resumption, the starts that are
+   * complete in both files are read.
    */
   class OptimizeMemory
   {
@@ -22,22 +22,22 @@ namespace crawler
     static const std::string file, group;                         ///< starts.h5
     static const std::string evaluations_file, evaluations_group; ///< results.h5
 
-    /// Begins a study in the folder, or goes on with the one that is there. @p cases must outlive it. Throws as
-    /// begin_or_resume() of a table.
+    /// Begins a study in the folder, or resumes the one in it. @p cases must outlive it. Throws as begin_or_resume() of
+    /// a table.
     OptimizeMemory(const OptimizeCases &cases,
                    StudyFolder &folder,
                    const ParameterFile &file,
                    std::string command_line);
 
-    /// This start, if it has ended.
+    /// Returns this start if it has ended, otherwise null.
     const StartResult *
     find(const StartName &start) const;
 
-    /// Writes a start, instead of what there is of it. Throws FileError.
+    /// Writes a start in place of any earlier rows of it. Throws FileError.
     void
     keep(StartResult start);
 
-    /// Leaves what @p starts names, in this order, and closes the files.
+    /// Keeps only @p starts, in this order, and closes the files.
     void
     arrange(const std::vector<StartName> &starts);
 
@@ -60,7 +60,7 @@ namespace crawler
     PlannedRows plan_;
     std::vector<StartResult> starts_; ///< in the order of their rows
     std::unique_ptr<RowFile> start_rows_, evaluation_rows_;
-    unsigned long n_starts_ = 0, n_evaluations_ = 0;       ///< rows that are written
+    unsigned long n_starts_ = 0, n_evaluations_ = 0;       ///< rows written
     unsigned long most_starts_ = 0, most_evaluations_ = 0; ///< places for rows
   };
 } // namespace crawler

@@ -10,28 +10,28 @@
 
 namespace crawler
 {
-  /// What `crawler optimize` has found: for each case the best of the starts.
+  /// Results of `crawler optimize`: for each case the best of the starts.
   struct OptimizeResults
   {
     const OptimizeNames &names;
     std::vector<StartResult> starts;
-    std::vector<std::size_t> best; ///< of starts, one for each case that has a gait
+    std::vector<std::size_t> best; ///< indices of starts, one for each case that has a gait
 
-    /// @p starts in the order of the cases. The best ones are chosen here.
+    /// Chooses the best of @p starts, which are in the order of the cases.
     OptimizeResults(const OptimizeNames &names, std::vector<StartResult> starts);
 
     std::size_t
     n_evaluations() const;
   };
 
-  /// A row for each optimum: that of its start in the @p folder, and what the program finds for it, by the
-  /// @p summaries of their runs.
+  /// Table with a row for each optimum: the row of its start in the @p folder, and the results of its run from @p
+  /// summaries.
   Table
   optimum_table(const OptimizeResults &results,
                 const std::filesystem::path &folder,
                 const std::vector<std::string> &summaries);
 
-  /// The summary: that of the run of the last optimum, @p summaries of the runs of all, and what the optimiser says.
+  /// Summary: that of the run of the last optimum, @p summaries of the runs of all, and the report of the optimiser.
   std::string
   optimize_json(const OptimizeResults &results,
                 const std::vector<std::string> &summaries,
@@ -40,7 +40,7 @@ namespace crawler
                 double seconds,
                 const std::string &command_line);
 
-  /// The lines for the screen.
+  /// Lines for the screen.
   std::vector<std::string>
   in_words(const OptimizeResults &results, const OptimizeCases &cases, const std::vector<std::string> &summaries);
 } // namespace crawler

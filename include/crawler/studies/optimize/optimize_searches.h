@@ -14,10 +14,10 @@
 
 namespace crawler
 {
-  /// A start of a case: of its own, or the best gait of a neighbour of the case.
+  /// Start of a case: its own, or the best gait of a neighbour of the case.
   struct Part : StartName
   {
-    std::vector<double> x = {}; ///< the gait of the neighbour
+    std::vector<double> x = {}; ///< gait of the neighbour
 
     void
     exchange(Archive &archive)
@@ -27,8 +27,8 @@ namespace crawler
   };
 
   /**
-   * The searches of an optimisation, which the ranks share (collective, but for what is said to be rank 0's). Rank 0
-   * keeps what they find.
+   * Searches of an optimisation, which the ranks share (collective, except where rank 0 is named). Rank 0 keeps their
+   * results.
    */
   class OptimizeSearches
   {
@@ -41,16 +41,16 @@ namespace crawler
                      std::function<bool()> interrupted,
                      Log &log);
 
-    /// The searches that have not ended yet: from all starts, then from the best gaits of neighbours as long as these
-    /// are better. Returns false if it was interrupted. Throws FileError, on all ranks.
+    /// Runs the searches that have not ended yet: from all starts, then from the best gaits of neighbours as long as
+    /// these are better. Returns false if it was interrupted. Throws FileError, on all ranks.
     bool
     go_on();
 
-    /// What they have found, in the order of the cases, which its files have afterwards (rank 0).
+    /// Results in the order of the cases, which the files have afterwards, too (rank 0).
     OptimizeResults
     results();
 
-    /// Those that began with the gait of a neighbour.
+    /// Number of searches that began with the gait of a neighbour.
     std::size_t
     n_from_neighbours() const;
 
@@ -75,6 +75,6 @@ namespace crawler
     SearchState state_;
     const Crashes crashes_;
     CrashNote note_;
-    std::string problem_; ///< with the files
+    std::string problem_; ///< problem with the files
   };
 } // namespace crawler

@@ -12,29 +12,29 @@
 
 namespace crawler
 {
-  /// Which start of which case.
+  /// Identifier of a start of a case.
   struct StartName
   {
     unsigned long number_of_case = 0, start = 0;
-    unsigned long neighbour = 0; ///< number of the case from whose best gait it goes on, from 1 on; 0: none
+    unsigned long neighbour = 0; ///< number of the case with whose best gait it begins, from 1 on; 0: none
 
     bool
     operator==(const StartName &) const = default;
   };
 
-  /// What one start of the optimiser has found.
+  /// Result of one start of the optimiser.
   struct StartResult : StartName
   {
     GaitRecord best = {};
     std::vector<GaitLimit> limits;
     bool has_converged = false, was_interrupted = false;
-    std::string message; ///< if it has not converged
+    std::string message; ///< reason, if it has not converged
     unsigned int iterations = 0;
-    double admissible       = 0.; ///< violation of a limit, relative to it
+    double admissible       = 0.; ///< admissible violation of a limit, relative to it
     double seconds          = 0.;
     std::vector<GaitRecord> records; ///< all evaluations
 
-    /// Is there a gait that keeps to the limits?
+    /// Returns true if there is a gait that keeps to the limits.
     bool
     is_admissible() const
     {
@@ -49,25 +49,26 @@ namespace crawler
     }
   };
 
-  /// Of a start that makes no gait because of this @p problem.
+  /// Result of a start that makes no gait because of this @p problem.
   StartResult
   without_gait(const StartName &start, const std::vector<double> &x, const std::string &problem);
 
-  /// The level on which gaits are computed: simulations, or the kinematic level if Model says so. Throws InputError.
+  /// Makes the level on which gaits are computed: simulations, or the kinematic level if Model says so. Throws
+  /// InputError.
   std::unique_ptr<GaitModel>
   make_gait_model(class SceneFamily &family, const std::vector<double> &start, const std::function<bool()> &stops);
 
-  /// How far a search is.
+  /// Progress of a search.
   struct SearchState
   {
     std::size_t evaluations = 0;
-    double best             = std::numeric_limits<double>::quiet_NaN(); ///< objective of the best so far
+    double best             = std::numeric_limits<double>::quiet_NaN(); ///< best objective so far
   };
 
   /**
-   * Looks for the best gait from the values @p x, which are those of @p start. Where the grid of the kinematic
-   * level was too coarse for what was found, and where the strain exceeds its limits between the places at which it is
-   * limited, the search goes on from there. An interrupted one has the best so far. Throws InputError.
+   * Searches for the best gait from the values @p x, which are those of @p start. Where the grid of the kinematic level
+   * was too coarse for the result, and where the strain exceeds its limits between the places at which it is limited,
+   * the search goes on from there. An interrupted search returns the best so far. Throws InputError.
    */
   StartResult
   search(class SceneFamily &family,

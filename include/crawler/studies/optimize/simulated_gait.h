@@ -12,14 +12,14 @@
 namespace crawler
 {
   /**
-   * Gaits of the levels that are simulated: an answer for the values of the variables as of `crawler run`, and
-   * derivatives by the adjoint of a run with the same numerics (adjoint/run_gradient.h). Where there is none they are
+   * Gaits of the levels that are simulated: answers of `crawler run` for the values of the variables, and derivatives
+   * by the adjoint of a run with the same numerics (adjoint/run_gradient.h). Where there is no adjoint they are
    * differences of answers, which are computed together.
    */
   class SimulatedGait : public GaitModel
   {
   public:
-    /// @p interrupted is asked after every step.
+    /// @p interrupted is called after every step.
     SimulatedGait(SceneFamily &family, GaitWishes wishes, std::function<bool()> interrupted);
 
     GaitValues
@@ -44,16 +44,16 @@ namespace crawler
     answers(const std::vector<std::vector<double>> &places);
     ByGaitNumber<double>
     numbers(const Task &task) const;
-    /// The run of a task once more, seen at some times, parts of the duration.
+    /// Repeats the run of a task with an observer at some times, parts of the duration.
     std::unique_ptr<Observer>
     seen_by(std::unique_ptr<Observer> observer, const Task &task, const std::vector<double> &times) const;
-    /// The extreme stretches in the boxes.
+    /// Extreme stretches in the boxes.
     std::vector<StretchPlace>
     extremes(const Task &task);
-    /// And the smallest and the largest of the latest extremes.
+    /// Adds the smallest and the largest of the latest extremes to @p places.
     std::vector<std::size_t>
     with_extremes(std::vector<std::size_t> places) const;
-    /// Of the strains those of @p near.
+    /// Adds gradients by the adjoint; of the strains, those of @p near.
     void
     add_adjoint_gradients(const std::vector<double> &x,
                           const Task &task,
@@ -66,9 +66,9 @@ namespace crawler
     const GaitWishes wishes_;
     const std::function<bool()> interrupted_;
     std::optional<std::size_t> n_boxes_in_time_; ///< where strains are limited
-    std::vector<double> latest_x_;               ///< of what follows
-    std::vector<Task> latest_;                   ///< one, the answer there
-    std::vector<StretchPlace> latest_extremes_;  ///< in the boxes, if strains are limited
+    std::vector<double> latest_x_;               ///< variables of the following members
+    std::vector<Task> latest_;                   ///< single task, with the answer there
+    std::vector<StretchPlace> latest_extremes_;  ///< extremes in the boxes, if strains are limited
     std::vector<double> strain_jacobian_;        ///< [extreme][variable]
   };
 } // namespace crawler

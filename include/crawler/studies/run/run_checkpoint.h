@@ -15,7 +15,7 @@ namespace crawler
   /// Checkpoint from which a run can be resumed: restart.dat in its folder, and the previous one, restart.old.dat.
   struct RunCheckpoint
   {
-    std::string program;                                    ///< that wrote it
+    std::string program;                                    ///< program that wrote it
     std::string effective;                                  ///< parameters
     std::string petsc_options;                              ///< behind "--"
     std::vector<std::pair<std::string, std::string>> files; ///< files read, with their fingerprints

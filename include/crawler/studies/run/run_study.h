@@ -41,7 +41,7 @@ namespace crawler
       bool has_output = false;         ///< true if this rank takes part in writing
     };
 
-    // Before there are files.
+    // Steps before the files exist.
     bool
     begin();
     void
@@ -53,7 +53,7 @@ namespace crawler
     void
     begin_output();
 
-    // The level and the mesh.
+    // Computation without or with a mesh.
     void
     compute_without_mesh();
     void
@@ -65,7 +65,7 @@ namespace crawler
     Simulation::Observers
     observers();
 
-    // The end.
+    // Steps at the end.
     ExitCode
     finish();
     void
@@ -102,7 +102,7 @@ namespace crawler
     RunStops stops_;
 
     std::optional<ModelChoice> model_;
-    std::optional<NumericsChoice> choice_; ///< for a level with a mesh
+    std::optional<NumericsChoice> choice_; ///< numerics of a level with a mesh
     Sharing sharing_;
     PictureTimes pictures_;
     std::optional<Scene> scene_with_fronts_;

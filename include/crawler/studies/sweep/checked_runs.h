@@ -17,7 +17,7 @@ namespace crawler
 
   /// Values in these columns for each of @p points, which have been computed, all with gait numbers or all without.
   /// Failures are the status of a run. The runs of all points share the lanes (compute_all()); each has the time limit
-  /// of a point. Of no use once @p interrupted returns true.
+  /// of a point. Results are of no use once @p interrupted returns true.
   std::vector<RowFile::Row>
   checked_values(const std::vector<const Task *> &points, const std::function<bool()> &interrupted);
 } // namespace crawler

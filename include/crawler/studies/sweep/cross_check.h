@@ -12,9 +12,10 @@ namespace crawler
   {
     std::string run;    ///< its name in explanations
     std::string status; ///< finished and inverted are answers; anything else (failed, stopped, ...) claims nothing
-    double displacement   = std::numeric_limits<double>::quiet_NaN(); ///< at the end time, if finished [length]
-    double promised_error = std::numeric_limits<double>::quiet_NaN(); ///< of the displacement, if promised [length]
-    double inversion_time = std::numeric_limits<double>::quiet_NaN(); ///< if inverted [time]
+    double displacement = std::numeric_limits<double>::quiet_NaN(); ///< at the end time, if finished [length]
+    double promised_error =
+      std::numeric_limits<double>::quiet_NaN(); ///< error of the displacement, if promised [length]
+    double inversion_time = std::numeric_limits<double>::quiet_NaN(); ///< time of inversion, if inverted [time]
   };
 
   /// Knowledge about the inversion of a scene without a run (doc/theory.md, "When a body can invert").
@@ -40,7 +41,7 @@ namespace crawler
       silent_wrong_answer, ///< two answers contradict each other, or one contradicts the theory
     };
     Kind kind = unchecked;
-    std::string explanation; ///< of a wrong answer, in a sentence
+    std::string explanation; ///< explanation of a wrong answer, in a sentence
 
     /// "agree", "unchecked" or "silent wrong answer".
     std::string

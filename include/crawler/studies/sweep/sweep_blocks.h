@@ -118,7 +118,7 @@ namespace crawler
     const SweepBlocks blocks_;
     const SweepOrder order_;
     const unsigned long parts_of_block_;
-    const double time_limit_; ///< for each point [s]
+    const double time_limit_; ///< time limit of each point [s]
     SweepNumerics numerics_;
     Crashes crashes_; ///< number of times a process died at each point
     CrashNote *note_ = nullptr;

@@ -70,6 +70,6 @@ namespace crawler
 
     SweepPoints &points_;
     std::optional<unsigned long> block_;                             ///< first point of the block
-    std::map<std::pair<unsigned long, unsigned long>, Known> known_; ///< of that block and its parts
+    std::map<std::pair<unsigned long, unsigned long>, Known> known_; ///< knowledge about that block and its parts
   };
 } // namespace crawler

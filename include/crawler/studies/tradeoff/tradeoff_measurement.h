@@ -11,7 +11,7 @@
 
 namespace crawler
 {
-  /// The row of a setting that is not computed, for this reason; of one that would take too long with the limit [s].
+  /// Row of a setting that is not computed, for this reason; with the limit [s] if it would take too long.
   TradeoffTexts
   gap(const std::string &status,
       const std::string &reason,
@@ -19,10 +19,10 @@ namespace crawler
       double limit = std::numeric_limits<double>::quiet_NaN());
 
   /**
-   * The row of a setting: what `crawler run` computes without snapshots, on this rank alone; @p entries are those of
+   * Row of a setting: the computation of `crawler run` without snapshots, on this rank alone; @p entries are those of
    * the setting. The first run gives displacement and memory, and must keep the time limit; the others are timed. The
    * cost is the processor time to build the simulation and run it, without the choice of the numerics, in a process
-   * that has done so before. Nothing is returned if it was interrupted. What goes wrong is the status of the row.
+   * that has done so before. Returns nothing if it was interrupted. Failures are the status of the row.
    */
   std::optional<TradeoffTexts>
   measure(const Input &input,

@@ -10,7 +10,7 @@
 
 namespace crawler
 {
-  /// The displacement that `crawler run` gives with a small Accuracy.
+  /// Displacement that `crawler run` gives with a small Accuracy.
   struct TradeoffAnswer
   {
     std::string method;       ///< in words; empty: there is none
@@ -18,13 +18,14 @@ namespace crawler
     double error_bound  = 0.; ///< [length]
   };
 
-  /// The displacement that the errors of a tradeoff are measured against; also as JSON.
+  /// Displacement against which the errors of a tradeoff are measured; also as JSON.
   struct TradeoffReference
   {
-    TradeoffAnswer answer, check; ///< the reference, and what a method gives that shares as little with it as possible
-    double displacement = 0.;     ///< that of the answer [length]
+    TradeoffAnswer answer, check; ///< the reference, and the result of a method that shares as little with it as
+                                  ///< possible
+    double displacement = 0.;     ///< displacement of the answer [length]
     double bar          = 0.;     ///< errors below this cannot be told from 0 [length]
-    double size         = 0.;     ///< errors are relative to this [length]
+    double size         = 0.;     ///< size to which errors are relative [length]
     double relative_bar = 0.;
     // Without a reference: failed or inverted, and why, or stopped.
     std::string status = "finished", message;
@@ -34,10 +35,10 @@ namespace crawler
     TradeoffReference, answer, check, displacement, bar, size, relative_bar, status, message)
 
   /**
-   * The reference of the nonlinear model: the answer with numerics that the program chooses, for the smallest Accuracy
-   * from 1e-12 on that it reaches within twice the time limit of a run; checked by the position form of degree 7 by
-   * radau 5 on PETSc, from 1e-10 on. The bar is the distance of the two, plus the error bound of the reference, plus
-   * 1e-14 for round-off. Errors are relative to what Accuracy is relative to.
+   * Computes the reference of the nonlinear model: the answer with numerics chosen by the program, for the smallest
+   * Accuracy from 1e-12 on that is reached within twice the time limit of a run; checked by the position form of degree
+   * 7 with radau 5 on PETSc, from 1e-10 on. The bar is the distance of the two, plus the error bound of the reference,
+   * plus 1e-14 for round-off. Errors are relative to the same size as Accuracy.
    */
   TradeoffReference
   make_reference(const Parameters &parameters, const std::function<bool()> &interrupted);
