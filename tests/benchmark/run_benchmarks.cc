@@ -270,7 +270,7 @@ namespace crawler::test
       const Scene scene = parameters.create_scene();
       Answer answer;
       for (auto _ : state)
-        answer = answer_in_memory(parameters, scene, {.energy_balance = true});
+        answer = answer_in_memory(parameters, scene, {.energy_balance = true}, {});
       state.counters["cells"] = answer.result.most_cells;
       state.counters["steps"] = answer.result.time.steps;
       state.counters["bound"] = answer.result.error ? answer.result.error->total : HUGE_VAL;
