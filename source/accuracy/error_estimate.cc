@@ -79,7 +79,7 @@ namespace crawler
       {
         const double k      = scene.body.elastic_modulus / natural_units(scene).force;
         const double levels = std::log(layer_cells * k * n.n_cells) / std::log(layer_ratio);
-        n.grading      = {static_cast<unsigned int>(std::clamp(std::ceil(levels), 1., most_layer_levels)), layer_ratio};
+        n.grading      = {static_cast<unsigned int>(std::clamp(std::ceil(levels), 1., max_layer_levels)), layer_ratio};
         n.initial_step = std::max(n.initial_step, first_step * scene.end_time);
         return n;
       }
@@ -246,7 +246,7 @@ namespace crawler
         if (promised)
           total += part * choice.promised_error;
       }
-      total = std::max(total, choice.least_error);
+      total = std::max(total, choice.min_error);
       // Works of extrapolated cycles have the same relative error as the displacement.
       const double size   = std::max(std::abs(result.displacement),
                                    std::isfinite(choice.wanted_error) ? choice.wanted_error / parameters.accuracy : 0.);

@@ -41,7 +41,7 @@ namespace crawler
   bool
   is_cheaper_than_many_cells(const double lengths, const double accuracy)
   {
-    return lengths < most_lengths && accuracy >= least_accuracy;
+    return lengths < max_lengths && accuracy >= min_accuracy;
   }
 
   bool

@@ -45,7 +45,7 @@ namespace crawler
       find()
       {
         now_.grading = {0, coarse_ratio};
-        now_.n_cells = std::max(now_.n_cells, least_cells(n_pieces_ - 1, now_.grading)); // fewer are the same mesh
+        now_.n_cells = std::max(now_.n_cells, min_graded_cells(n_pieces_ - 1, now_.grading)); // fewer are the same mesh
         while (smallest_size(task_.scene, now_) > std::max(task_.layer, smallest_layer) && task_.layer > 0.)
           ++now_.grading.levels;
         if (task_.choose_tolerance)
@@ -54,7 +54,7 @@ namespace crawler
         double largest = 1e-2 * task_.scale; // tolerance
         for (unsigned int beginnings = 1; !run(now_, result_); ++beginnings)
         {
-          if (beginnings == most_beginnings)
+          if (beginnings == max_beginnings)
             return std::nullopt;
           possible_ = true;
           now_.n_cells *= 2;
@@ -120,10 +120,10 @@ namespace crawler
       bool
       run(const Numerics &numerics, SimulationResult &result)
       {
-        const unsigned int many = std::max(most_cells, most_cells_of_piece * n_pieces_);
-        is_too_fine_ = numerics.n_cells > (result_.time.steps * many > most_work ? many : more_cells_than_most * many);
+        const unsigned int many = std::max(max_cells, max_cells_of_piece * n_pieces_);
+        is_too_fine_ = numerics.n_cells > (result_.time.steps * many > max_work ? many : more_cells_than_most * many);
         possible_ =
-          possible_ && ++n_runs_ <= most_runs && !is_too_fine_ && smallest_size(task_.scene, numerics) >= smallest_cell;
+          possible_ && ++n_runs_ <= max_runs && !is_too_fine_ && smallest_size(task_.scene, numerics) >= smallest_cell;
         if (!possible_)
           return false;
         result    = task_.run(first_step(numerics));

@@ -48,7 +48,7 @@ namespace crawler
         for (;;)
         {
           const bool good = is_good_in_space();
-          if (good ? is_fine_in_time() : 2 * latest_.mesh->n_cells > most_cells_now() || !is_worth_it())
+          if (good ? is_fine_in_time() : 2 * latest_.mesh->n_cells > max_cells_now() || !is_worth_it())
             break;
           if (!good)
             numerics().parts *= 2;
@@ -73,24 +73,24 @@ namespace crawler
       bool
       inverts_slowly() const
       {
-        return latest_.inversion && sticks() && scene_.friction_exponent() > least_slow_exponent;
+        return latest_.inversion && sticks() && scene_.friction_exponent() > min_slow_exponent;
       }
 
       bool
       is_worth_it() const
       {
         const double work = 1. * latest_.mesh->n_cells * latest_.time.steps;
-        return more_work * work <= (accuracy_ < accurate ? most_work_if_accurate : most_work);
+        return more_work * work <= (accuracy_ < accurate ? max_work_if_accurate : max_work);
       }
 
       unsigned int
-      most_cells_now() const
+      max_cells_now() const
       {
         if (latest_.inversion && space_error_ <= believed * latest_.inversion->t)
-          return most_cells_if_inverted;
+          return max_cells_if_inverted;
         if (levels_.size() == 2) // a third mesh that agrees with these tells their error
-          return most_cells_if_accurate;
-        return accuracy_ < accurate ? most_cells_if_accurate : most_cells;
+          return max_cells_if_accurate;
+        return accuracy_ < accurate ? max_cells_if_accurate : max_cells;
       }
 
       Numerics &
@@ -174,7 +174,7 @@ namespace crawler
           latest_              = run(numerics());
         }
         measure_size();
-        for (unsigned int i = 0; i < most_tolerances && value(latest_); ++i)
+        for (unsigned int i = 0; i < max_tolerances && value(latest_); ++i)
         {
           Numerics finer = numerics();
           finer.tolerance *= finer_tolerance;
@@ -218,7 +218,7 @@ namespace crawler
         if (!are_alike(result, own))
           return true;
         const double error = 2. * std::abs(*value(result) - *value(own));
-        if (error <= time_part * wanted() || ++n_corrections_ > most_tolerances)
+        if (error <= time_part * wanted() || ++n_corrections_ > max_tolerances)
         {
           // Differences may be small by chance.
           time_error_ = std::max(error, std::min(time_error_, time_part * wanted()));
@@ -303,12 +303,12 @@ namespace crawler
         const double change = std::abs(now.change), last = std::abs(before.change);
         const double order  = now.change * before.change < 0. ? 0. : std::log2(last / change);
         const bool is_clean = std::abs(order - 2.) < clean;
-        has_order_          = order > least_order;
+        has_order_          = order > min_order;
         if (inverts_slowly())
           return sticking_factor * std::max(change, last / credited);
         if (!(order > 0.2))
           return 5. * change;
-        if (order < least_order)
+        if (order < min_order)
           return std::max(std::abs(now.settled), change / (std::exp2(order) - 1.));
         if (order > largest_order)
           return std::max(std::abs(now.settled), change / 3.);
@@ -374,7 +374,7 @@ namespace crawler
         std::vector<const SimulationResult *> meshes;
         for (const Level &level : levels_)
           meshes.push_back(&level.result);
-        NumberErrors errors = errors_of_extrapolation(extrapolated_, meshes, least_part * accuracy_);
+        NumberErrors errors = errors_of_extrapolation(extrapolated_, meshes, min_part * accuracy_);
         for (std::size_t i = 0; i < NumberErrors::n; ++i)
           errors.values[i] += time_errors_.values[i];
         return errors;
@@ -385,7 +385,7 @@ namespace crawler
       bool
       is_good_in_space() const
       {
-        return value(latest_) && std::max(space_error_, least_part * wanted()) + time_part * wanted() <= wanted();
+        return value(latest_) && std::max(space_error_, min_part * wanted()) + time_part * wanted() <= wanted();
       }
 
       Answer
@@ -404,7 +404,7 @@ namespace crawler
         {
           result                        = extrapolated_;
           const double cycles           = result.cycles ? result.cycles->bound : 0.;
-          const double floor            = least_part * wanted();
+          const double floor            = min_part * wanted();
           result.error                  = {.total = std::max(space_error_, floor) + time_error_ + cycles,
                                            .space = std::max(space_error_, floor),
                                            .time  = time_error_ + cycles,
@@ -430,7 +430,7 @@ namespace crawler
           result = extrapolated_;
           if (std::isfinite(space_error_)) // Accuracy, relative to the duration, does not bind an early one
             result.inversion_error =
-              std::max(space_error_, least_part * std::min(wanted(), believed * latest_.inversion->t)) + time_error_;
+              std::max(space_error_, min_part * std::min(wanted(), believed * latest_.inversion->t)) + time_error_;
           end_before_inversion(result);
           if (!(result.inversion_error.value_or(HUGE_VAL) <= believed * latest_.inversion->t))
           {

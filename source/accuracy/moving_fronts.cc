@@ -24,7 +24,7 @@ namespace crawler
         , scene_(scene)
         , answer_of_(answer_of)
       {
-        parameters_.accuracy       = std::clamp(part_of_runs * parameters.accuracy, least_accuracy, largest_accuracy);
+        parameters_.accuracy       = std::clamp(part_of_runs * parameters.accuracy, min_accuracy, largest_accuracy);
         wanted_part_               = parameters.accuracy;
         parameters_.error_estimate = true; // the fronts are chosen by it
       }
@@ -32,7 +32,7 @@ namespace crawler
       Answer
       compute()
       {
-        for (double part = first_part; part >= last_part && n_steps_ <= most_steps; part *= 0.5)
+        for (double part = first_part; part >= last_part && n_steps_ <= max_steps; part *= 0.5)
         {
           Answer next         = answer_of_(parameters_, *with_fronts(scene_, part));
           const bool inverted = next.result.time.status == Status::inverted;
@@ -54,7 +54,7 @@ namespace crawler
             continue;
           n_steps_ += answer_.result.time.steps;
           levels_.push_back({part, answer_.result});
-          if (levels_.size() > most_levels)
+          if (levels_.size() > max_levels)
             levels_.erase(levels_.begin());
           if (levels_.size() == 1)
             continue;

@@ -43,7 +43,7 @@ namespace crawler
         , T_(scene.end_time)
         , L_(scene.body.length)
         , accuracy_(parameters.accuracy)
-        , scale_(scales_.displacement > 0. ? std::max(scales_.displacement, least_size()) : L_)
+        , scale_(scales_.displacement > 0. ? std::max(scales_.displacement, min_size()) : L_)
         , adaptive_steps_(parameters.time.step_control == StepControl::adaptive)
       {
         Numerics &n              = choice_.numerics;
@@ -51,11 +51,11 @@ namespace crawler
         n.initial_step           = parameters.time.initial_step.value_or(multistep_start * T_);
         n.step_limits            = scales_.step_limits;
         choice_.is_rough         = !scales_.is_smooth;
-        n.least_event            = scales_.jumps_move ? 0. : least_event * scales_.stress;
+        n.min_event              = scales_.jumps_move ? 0. : min_event * scales_.stress;
         pilot_time_              = parameters.time;
         pilot_time_.step_control = StepControl::adaptive;
         pilot_time_.petsc_prefix = "pilot_"; // options after "--" are for the real run
-        pilot_time_.max_steps    = std::min(pilot_time_.max_steps, most_pilot_steps);
+        pilot_time_.max_steps    = std::min(pilot_time_.max_steps, max_pilot_steps);
         tolerance_               = std::max(1e-3 * scale_, smallest());
         cycles_                  = cycle_wish(parameters, scene, /*has_pictures=*/false);
         if (cycles_)
@@ -106,8 +106,8 @@ namespace crawler
                                   is_cheaper_than_many_cells(L_ / scales_.length, accuracy_);
         bool enough = false;
         if (mesh != MeshKind::adaptive)
-          enough = uniform(mesh == MeshKind::uniform || user_cells_ || scene_.keeps_its_centre() ? most_cells
-                                                                                                 : most_uniform_cells,
+          enough = uniform(mesh == MeshKind::uniform || user_cells_ || scene_.keeps_its_centre() ? max_cells
+                                                                                                 : max_uniform_cells,
                            may_be_steep);
         if (!enough && may_be_steep && pilot_.time.reason != "inverted_at_end")
         {
@@ -182,7 +182,7 @@ namespace crawler
         const bool finished = pilot_.time.status == Status::finished;
         size_ = std::max(finished ? std::abs(pilot_.displacement) : 0., displacement_floor * pilot_.largest_u);
         if (size_ > 0.)
-          size_ = std::max(size_, least_size());
+          size_ = std::max(size_, min_size());
       }
 
       /// Stiffness k T/(gamma L^2).
@@ -220,8 +220,8 @@ namespace crawler
       starts_or_jumps() const
       {
         const double sudden = sudden_part * std::sqrt(accuracy_);
-        return scales_.sudden > sudden && scales_.in_space <= most_graded_places &&
-               (scales_.sudden_later > sudden || scales_.in_time <= most_gentle_breaks) && !user_cells_ &&
+        return scales_.sudden > sudden && scales_.in_space <= max_graded_places &&
+               (scales_.sudden_later > sudden || scales_.in_time <= max_gentle_breaks) && !user_cells_ &&
                adaptive_steps_ && !parameters_.discretization.mesh_tolerance;
       }
 
@@ -244,8 +244,8 @@ namespace crawler
         Numerics start = choice_.numerics;
         start.degree   = parameters_.discretization.degree.value_or(accuracy_ < accurate_graded ? accurate_graded_degree
                                                                                               : graded_degree);
-        start.n_cells  = static_cast<unsigned int>(
-          std::clamp(std::ceil(0.25 * L_ / scales_.length), 1. * fewest_cells, 1. * most_cells));
+        start.n_cells =
+          static_cast<unsigned int>(std::clamp(std::ceil(0.25 * L_ / scales_.length), 1. * min_cells, 1. * max_cells));
         const std::string &own = parameters_.time.integrator;
         // Pieces between breaks have a cell at least.
         start.n_cells          = std::max(start.n_cells, static_cast<unsigned int>(scales_.in_space) + 1);
@@ -279,10 +279,10 @@ namespace crawler
           size_ = 0.;
           return false;
         }
-        choice_.numerics    = found->numerics;
-        pilot_              = found->result;
-        space_over_time_    = found->space_over_time;
-        choice_.least_error = found->rest;
+        choice_.numerics  = found->numerics;
+        pilot_            = found->result;
+        space_over_time_  = found->space_over_time;
+        choice_.min_error = found->rest;
         measure_size();
         return true;
       }
@@ -347,7 +347,7 @@ namespace crawler
         // Linear elements have no mode of the stretch that could show the error: one degree more shows it.
         const unsigned int pilot_degree = std::max(choice_.numerics.degree, 2u);
         // Cells of this degree resolve a stress whose scale is a quarter of their size.
-        const double seen    = std::clamp(std::ceil(0.25 * L_ / scales_.length), 1. * fewest_cells, 0.25 * most_cells);
+        const double seen    = std::clamp(std::ceil(0.25 * L_ / scales_.length), 1. * min_cells, 0.25 * max_cells);
         unsigned int n_cells = user_cells_.value_or(static_cast<unsigned int>(seen));
         if (n_cells > most && !user_cells_)
           return false;
@@ -357,8 +357,8 @@ namespace crawler
           return true;
         const bool predicts = pilot_.time.status == Status::finished;
         if (!predicts || pilot_.unresolved > std::max(resolved, accuracy_))
-          return most == most_cells; // nothing else is left, whatever the reason
-        if (most < most_cells && stiffness() < very_soft)
+          return most == max_cells; // nothing else is left, whatever the reason
+        if (most < max_cells && stiffness() < very_soft)
           return false; // a pilot may pass over these layers by luck
         return user_cells_ || extrapolate_cells(pilot_degree, n_cells, may_be_steep);
       }
@@ -384,9 +384,9 @@ namespace crawler
           return may_be_steep && indicator_factor * indicator > accuracy_ * pilot_.strain &&
                  indicator_rate < 0.5 * full_rate;
         };
-        while ((rate < 0.5 * full_rate || unbalanced()) && 2 * n_cells <= most_cells / 4)
+        while ((rate < 0.5 * full_rate || unbalanced()) && 2 * n_cells <= max_cells / 4)
         {
-          if (may_be_steep && 2 * n_cells > most_uniform_cells)
+          if (may_be_steep && 2 * n_cells > max_uniform_cells)
             return false;
           const SimulationResult finer =
             pilot(pilot_numerics(pilot_degree, 2 * n_cells, 0.01 * tolerance_), ResolutionWish::all);
@@ -412,11 +412,11 @@ namespace crawler
           cells = std::max(cells, 1. * n_cells) * std::pow(too_large, 1. / indicator_rate);
         }
         choice_.numerics.n_cells =
-          static_cast<unsigned int>(std::clamp(std::ceil(cells), enough_cells, static_cast<double>(most_cells)));
+          static_cast<unsigned int>(std::clamp(std::ceil(cells), enough_cells, static_cast<double>(max_cells)));
         choice_.is_steep = !choice_.is_rough && rate > 0. && std::min(rate, indicator_rate) < 0.5 * full_rate;
         // Error in space predicted by the rule, relative to the wanted one.
         space_over_time_ = std::pow(cells / choice_.numerics.n_cells, rate > 0. ? rate : full_rate);
-        return !may_be_steep || choice_.numerics.n_cells <= most_uniform_cells;
+        return !may_be_steep || choice_.numerics.n_cells <= max_uniform_cells;
       }
 
       /// Chooses an adaptive mesh: pilots measure the strain, which scales its tolerance, and the number of steps.
@@ -427,18 +427,18 @@ namespace crawler
         n.integrator = "";
         n.degree     = parameters_.discretization.degree.value_or(adaptive_degree);
         n.n_cells    = user_cells_.value_or(
-          static_cast<unsigned int>(std::clamp(std::ceil(L_ / scales_.length), 8., 1. * most_cells)));
+          static_cast<unsigned int>(std::clamp(std::ceil(L_ / scales_.length), 8., 1. * max_cells)));
         n.mesh        = {1., parameters_.discretization.smallest_cell.value_or(1e-6 * L_)};
         double strain = pilot_.strain > 0. ? pilot_.strain : scale_ * scale_ / L_;
         // Pilots that need more steps than this collapse, and the scheme that is safe then costs less.
         const TimeParameters usual = pilot_time_;
-        pilot_time_.max_steps      = std::min(pilot_time_.max_steps, most_adaptive_pilot_steps);
+        pilot_time_.max_steps      = std::min(pilot_time_.max_steps, max_adaptive_pilot_steps);
         double tighter             = 1.;
         for (int i = 0; i < 4; ++i)
         {
           Numerics settings        = pilot_numerics(n.degree, n.n_cells, tolerance_);
           settings.mesh.tolerance  = tighter * resolved * strain;
-          settings.mesh.most_cells = most_adaptive_pilot_cells;
+          settings.mesh.most_cells = max_adaptive_pilot_cells;
           pilot_                   = pilot(settings, ResolutionWish::all);
           measure_size();
           const bool finished = pilot_.time.status == Status::finished;
@@ -498,7 +498,7 @@ namespace crawler
         n.integrator   = "radau 5";
         choice_.strain = std::min(scale_ / std::min(L_, scales_.length), 0.3);
         const double first =
-          std::clamp(std::ceil(cells_of_length * L_ / scales_.length), 1. * first_family_cells, 0.25 * most_cells);
+          std::clamp(std::ceil(cells_of_length * L_ / scales_.length), 1. * first_family_cells, 0.25 * max_cells);
         n.n_cells   = user_cells_.value_or(static_cast<unsigned int>(first));
         n.tolerance = user_tolerance_.value_or(
           std::max(std::min(family_tolerance * accuracy_, largest_family_tolerance) * choice_.strain * L_, 1e-13 * L_));
@@ -562,7 +562,7 @@ namespace crawler
           // Meshes double their cells and take up to twice the steps.
           unsigned int last = n.n_cells;
           for (double work = 4. * n.n_cells * pilot_.time.steps;
-               2 * last <= last_moving_cells && work < most_moving_work;
+               2 * last <= last_moving_cells && work < max_moving_work;
                work *= 4.)
             last *= 2;
           if (finished && is_second)
@@ -601,9 +601,9 @@ namespace crawler
 
       /// Smallest size of a displacement whose wanted error is round-off.
       double
-      least_size() const
+      min_size() const
       {
-        return least_error * L_ / accuracy_;
+        return min_error * L_ / accuracy_;
       }
 
       /// True where the friction switches its direction, so that kinks pass through the steps.
@@ -643,7 +643,7 @@ namespace crawler
         const double wanted = accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
         const double by_rule =
           std::max(superconvergence() * std::min(std::pow(wanted, 1. / (1. - r)), tolerance_),
-                   std::max({(kinks_move() ? least_tolerance_if_kinks : least_tolerance) * scale_,
+                   std::max({(kinks_move() ? min_tolerance_if_kinks : min_tolerance) * scale_,
                              smallest(),
                              inverts_at_end_ ? 0.1 * accuracy_ * tolerance_ : 0.})); // the size is not known then
         n.tolerance = user_tolerance_.value_or(jumps_move_ ? tolerance_ : is_graded ? n.tolerance : by_rule);
@@ -654,12 +654,12 @@ namespace crawler
           choice_.wanted_error   = accuracy_ * size_;
           choice_.promised_error = choice_.wanted_error;
           if (n.mesh.tolerance > 0. && stiffness() < very_soft)
-            choice_.least_error = soft_error * size_;
+            choice_.min_error = soft_error * size_;
         }
         if (jumps_move_ && predicts)
           choice_.wanted_error = accuracy_ * size_;
         if (std::isfinite(choice_.wanted_error))
-          choice_.least_size = std::max(displacement_floor * pilot_.largest_u, least_size());
+          choice_.min_size = std::max(displacement_floor * pilot_.largest_u, min_size());
         const double seconds   = watch_.seconds();
         const std::string kind = jumps_move_ ? "jumps of the active stress that move, "
                                  : is_graded ? fmt::format("sudden stress, {} of cells smaller by {:g} each, ",
@@ -682,9 +682,9 @@ namespace crawler
                                               counted(n_pilots_, "pilot run"),
                                               n.n_cells,
                                               pilot_.time.message);
-        if (std::max(choice_.promised_error, choice_.least_error) > 1.5 * choice_.wanted_error)
+        if (std::max(choice_.promised_error, choice_.min_error) > 1.5 * choice_.wanted_error)
           choice_.explanation += fmt::format("; Accuracy cannot be met, the error is about {:.2g} of the displacement",
-                                             std::max(choice_.promised_error, choice_.least_error) / size_);
+                                             std::max(choice_.promised_error, choice_.min_error) / size_);
         if (!scales_.sees_all)
           choice_.explanation +=
             "; an event of the active stress that is shorter than a step of its sampling may be missed";
@@ -754,7 +754,7 @@ namespace crawler
           parameters.time.tolerance)
         return std::nullopt;
       const double softness = scene.body.elastic_modulus / natural_units(scene).force * gait->period / scene.end_time;
-      const bool settles = cycle_wish(parameters, scene, /*has_pictures=*/false) && softness > least_settling_stiffness;
+      const bool settles = cycle_wish(parameters, scene, /*has_pictures=*/false) && softness > min_settling_stiffness;
       const double end   = gait->from + first_strides * gait->period;
       return !settles && scene.end_time > long_run * end ? std::optional(end) : std::nullopt;
     }
@@ -775,7 +775,7 @@ namespace crawler
         if (std::isfinite(choice.wanted_error) || choice.is_of_several_runs())
         {
           choice.numerics.step_limits = stress_scales(scene).step_limits;
-          choice.least_error *= scene.end_time / *end;
+          choice.min_error *= scene.end_time / *end;
           choice.explanation += fmt::format("; the first {:g} of {:.4g} strides chose",
                                             first_strides,
                                             scene.end_time / scene.active_stress->repetition()->period);
@@ -798,7 +798,7 @@ namespace crawler
         !(largest < choice.numerics.tolerance))
       return;
     choice.numerics.tolerance =
-      std::max(largest, accuracy_rule::choice::least_tolerance_of_pictures * parameters.body.length);
+      std::max(largest, accuracy_rule::choice::min_tolerance_of_pictures * parameters.body.length);
     choice.explanation += fmt::format("; tolerance {:.2g} for pictures", choice.numerics.tolerance);
   }
 } // namespace crawler

@@ -19,7 +19,7 @@ namespace crawler
 {
   namespace
   {
-    using accuracy_rule::finer_run::most_refined_cells, accuracy_rule::finer_run::refined_cells;
+    using accuracy_rule::finer_run::max_refined_cells, accuracy_rule::finer_run::refined_cells;
 
     /**
      * Confirms an inversion where the user chose the numerics, since a coarse mesh or long steps can fake a stretch
@@ -33,13 +33,13 @@ namespace crawler
                       SimulationResult &result,
                       const KeepGoing &keep_going)
     {
-      constexpr unsigned int most_runs = 4;
-      constexpr double same            = 0.02; // relative
-      const TimeParameters time        = time_of_finer_run(parameters.time);
-      NumericsChoice finer             = choice;
-      const Extreme lost               = *result.inversion;
+      constexpr unsigned int max_runs = 4;
+      constexpr double same           = 0.02; // relative
+      const TimeParameters time       = time_of_finer_run(parameters.time);
+      NumericsChoice finer            = choice;
+      const Extreme lost              = *result.inversion;
       std::string found;
-      for (unsigned int i = 0; i < most_runs; ++i)
+      for (unsigned int i = 0; i < max_runs; ++i)
       {
         finer.numerics = numerics_of_finer_run(finer, time, scene, /*cycles_repeat=*/false);
         const SimulationResult check =
@@ -242,7 +242,7 @@ namespace crawler
       tries_again()
       {
         // Choices measured on successive meshes get no further tries.
-        const bool has_tries = !first_.is_measured && answer_.refinements < most_refinements;
+        const bool has_tries = !first_.is_measured && answer_.refinements < max_refinements;
         if (is_for_finer_numerics(result_.time))
         {
           if (!std::isfinite(first_.promised_error) || !has_tries)
@@ -258,14 +258,14 @@ namespace crawler
         if (is_good() && (closes() || std::isnan(wanted())))
           return false;
         std::string problem;
-        if (has_tries && first_.least_error <= wanted())
+        if (has_tries && first_.min_error <= wanted())
           try
           {
             // Smooth solutions need few more cells; where these do not help errors fall by a power of the cell size.
             const double total = result_.error->total;
             make_finer(answer_.refinements == 0 || !(total > wanted())
                          ? refined_cells
-                         : std::clamp(std::cbrt(total / wanted()), refined_cells, most_refined_cells));
+                         : std::clamp(std::cbrt(total / wanted()), refined_cells, max_refined_cells));
             return true;
           }
           catch (...) // the earlier answer stays

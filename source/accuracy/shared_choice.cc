@@ -82,7 +82,7 @@ namespace crawler
           Numerics &n            = found_.choice.numerics;
           n                      = b.n_cells * b.degree > a.n_cells * a.degree ? b : a;
           n.initial_step         = std::min(a.initial_step, b.initial_step);
-          n.least_event          = std::min(a.least_event, b.least_event);
+          n.min_event            = std::min(a.min_event, b.min_event);
           found_.choice.is_rough = found_.choice.is_rough || choice->is_rough;
           found_.choice.is_steep = found_.choice.is_steep || choice->is_steep;
         }
@@ -138,7 +138,7 @@ namespace crawler
       {
         Numerics &best = found_.choice.numerics;
         Runs on_mesh   = reference; // exact in time, as far as it matters
-        for (unsigned int n = accuracy_rule::choice::fewest_cells; n < best.n_cells; ++n)
+        for (unsigned int n = accuracy_rule::choice::min_cells; n < best.n_cells; ++n)
         {
           Numerics fewer   = best;
           fewer.n_cells    = n;
@@ -149,7 +149,7 @@ namespace crawler
           on_mesh = tried;
           break;
         }
-        double least_cost   = on_mesh.cost;
+        double min_cost     = on_mesh.cost;
         const Numerics mesh = best;
         const bool is_free  = examples_.front().parameters->time.integrator == "automatic";
         for (const char *name : {"radau 9", "radau 5"})
@@ -165,15 +165,15 @@ namespace crawler
             const Runs tried = run(other, tolerance);
             if (are_near(tried, on_mesh) && are_near(looser, on_mesh))
             {
-              if (looser.cost < least_cost)
+              if (looser.cost < min_cost)
               {
                 best                      = other;
-                least_cost                = looser.cost;
+                min_cost                  = looser.cost;
                 found_.relative_tolerance = tolerance / next_tolerance;
               }
               break;
             }
-            if (tried.cost > 2. * least_cost && tried.finished)
+            if (tried.cost > 2. * min_cost && tried.finished)
               break;
             looser = tried;
           }
@@ -190,12 +190,11 @@ namespace crawler
   NumericsChoice
   SharedChoice::choice_for(const Scene &scene, const double size) const
   {
-    NumericsChoice own = choice;
-    own.numerics.tolerance =
-      std::max(relative_tolerance * size, accuracy_rule::choice::least_error * scene.body.length);
+    NumericsChoice own     = choice;
+    own.numerics.tolerance = std::max(relative_tolerance * size, accuracy_rule::choice::min_error * scene.body.length);
     // Stress events differ from scene to scene.
     own.numerics.step_limits =
-      similar_step_limits(scene, choice.numerics.step_limits, choice.numerics.least_event / least_event);
+      similar_step_limits(scene, choice.numerics.step_limits, choice.numerics.min_event / min_event);
     return own;
   }
 

@@ -198,9 +198,8 @@ namespace crawler
       bool
       is_smooth() const
       {
-        constexpr double least_order = 5., nothing = 1e-10;
-        return coarse_difference_ <= nothing * largest ||
-               fine_difference_ * std::exp2(least_order) <= coarse_difference_;
+        constexpr double min_order = 5., nothing = 1e-10;
+        return coarse_difference_ <= nothing * largest || fine_difference_ * std::exp2(min_order) <= coarse_difference_;
       }
 
       double largest = 0.; ///< |m|
@@ -309,9 +308,9 @@ namespace crawler
                 const double period,
                 const double end_time)
     {
-      constexpr double unlimited        = std::numeric_limits<double>::infinity();
-      constexpr double similar          = 2.;
-      constexpr std::size_t most_limits = 100000;
+      constexpr double unlimited       = std::numeric_limits<double>::infinity();
+      constexpr double similar         = 2.;
+      constexpr std::size_t max_limits = 100000;
       if (largest == 0.)
         return {};
       const double longest = usual > 0. ? largest / usual : unlimited;
@@ -351,7 +350,7 @@ namespace crawler
       if (n == 1)
         return longest < unlimited ? limits : std::vector<StepLimit>();
       const double n_periods = std::ceil(end_time / period * (1. - 1e-12));
-      if (static_cast<double>(n) * n_periods > static_cast<double>(most_limits))
+      if (static_cast<double>(n) * n_periods > static_cast<double>(max_limits))
       {
         double shortest = longest;
         for (const StepLimit &limit : limits)
@@ -374,7 +373,7 @@ namespace crawler
     SuddenChange
     largest_sudden_change(const Scene &scene, const std::vector<double> &in_space)
     {
-      const double L = scene.body.length, T = scene.end_time, beside = 2. * least_space_between_breaks * L;
+      const double L = scene.body.length, T = scene.end_time, beside = 2. * min_space_between_breaks * L;
       std::vector<double> points = {0., L};
       for (const double s : in_space)
         points.insert(points.end(), {s - beside, s + beside});
@@ -430,9 +429,9 @@ namespace crawler
   StressScales
   stress_scales(const Scene &scene)
   {
-    constexpr unsigned int most_looks = 64;
-    constexpr double jump_part        = 0.05; // smaller jumps, relative to the largest |m|, are not searched
-    const ActiveStress &stress        = *scene.active_stress;
+    constexpr unsigned int max_looks = 64;
+    constexpr double jump_part       = 0.05; // smaller jumps, relative to the largest |m|, are not searched
+    const ActiveStress &stress       = *scene.active_stress;
     const double L = scene.body.length, T = scene.end_time;
     // Single period, which shows everything.
     const double P                     = std::min(stress.period().value_or(T), T);
@@ -457,7 +456,7 @@ namespace crawler
       samples.largest);
     changes.insert(changes.end(), found.list.begin(), found.list.end());
     std::sort(changes.begin(), changes.end(), [](const FastChange &a, const FastChange &b) { return a.from < b.from; });
-    for (std::size_t i = 0; i < changes.size(); i += 1 + changes.size() / most_looks)
+    for (std::size_t i = 0; i < changes.size(); i += 1 + changes.size() / max_looks)
       samples.look_at(0.5 * (changes[i].from + changes[i].to));
 
     const double largest = samples.largest, along = samples.along;

@@ -23,7 +23,7 @@ namespace crawler
     if (result.time.status != Status::finished || !result.error || !std::isfinite(result.error->total) ||
         result.cycles || scene.ground.direction.is_uneven() || // moving kinks have no higher orders
         !RecordedRun::is_possible(scene, parameters.time, choice.numerics) ||
-        static_cast<double>(result.time.steps) * result.most_cells > sweep::most_work)
+        static_cast<double>(result.time.steps) * result.most_cells > sweep::max_work)
       return;
     DisplacementError &error = *result.error;
     try

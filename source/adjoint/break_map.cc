@@ -56,7 +56,7 @@ namespace crawler
   std::size_t
   BreakMap::piece(const double x) const
   {
-    const auto right = std::lower_bound(from_.begin() + 1, from_.end() - 1, x - least_time_between_breaks);
+    const auto right = std::lower_bound(from_.begin() + 1, from_.end() - 1, x - min_time_between_breaks);
     return static_cast<std::size_t>(right - from_.begin()) - 1;
   }
 

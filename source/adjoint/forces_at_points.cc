@@ -67,7 +67,7 @@ namespace crawler
     const std::size_t number = start ? 0 : in_time_.piece(time) + 1;
     const bool is_edge       = start || in_time_.is_last(number - 1);
     return in_time_.bunch(number).size() >= (is_edge ? 1 : 2) &&
-           (start || std::abs(time - in_time_.end(number - 1)) <= least_time_between_breaks);
+           (start || std::abs(time - in_time_.end(number - 1)) <= min_time_between_breaks);
   }
 
   std::vector<double>

@@ -126,8 +126,8 @@ namespace crawler
           stretches_.push_back(in_step(place));
         for (std::size_t i = 0; i < stretches_.size(); ++i)
           add_adjoint(all_quantities.size() + i, Quantity::displacement, &stretches_[i]);
-        constexpr std::size_t most_samples = 4000000;
-        keeps_stress_                      = run.steps.n_steps() * tableau_.n * cells_.size() <= most_samples;
+        constexpr std::size_t max_samples = 4000000;
+        keeps_stress_                     = run.steps.n_steps() * tableau_.n * cells_.size() <= max_samples;
         local_ = {cells_.points(), std::vector<double>(cells_.size()), std::vector<double>(cells_.size()), {}, {}};
       }
 

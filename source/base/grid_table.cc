@@ -70,8 +70,8 @@ namespace crawler
       grid.s                = distinct(s);
       grid.t                = distinct(t);
       const std::size_t n_s = grid.s.size(), n_t = grid.t.size(), n = values.size();
-      constexpr std::size_t most_gaps = 100; // grid points per row; above, the rows are not taken for a grid with gaps
-      if (n_s * n_t > most_gaps * n)
+      constexpr std::size_t max_gaps = 100; // grid points per row; above, the rows are not taken for a grid with gaps
+      if (n_s * n_t > max_gaps * n)
         source.refuse("\"{}\" has {} rows after the header with {} different values of s and {} of t, but a "
                       "full grid, a row for each of them with each, is expected",
                       source.file,

@@ -9,7 +9,7 @@ namespace crawler
 {
   namespace
   {
-    constexpr unsigned int most_points = 6;
+    constexpr unsigned int max_points = 6;
     /// Growth of a step over the one before beyond which earlier points are not used.
     constexpr double largest_growth = 25.;
   } // namespace
@@ -71,7 +71,7 @@ namespace crawler
     for (Point &point : points_)
       point.offset -= shift;
     points_.push_front({size_, rates});
-    if (points_.size() > most_points)
+    if (points_.size() > max_points)
       points_.pop_back();
     used_ = std::min<std::size_t>(points_.size(), 2);
     while (used_ >= 2 && used_ < points_.size() &&

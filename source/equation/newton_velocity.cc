@@ -9,7 +9,7 @@ namespace crawler
 {
   namespace
   {
-    constexpr unsigned int most_corrections = 50, most_halvings = 20;
+    constexpr unsigned int max_corrections = 50, max_halvings = 20;
     /// Correction, as a part of the velocity, below which it is the last one: more change nothing.
     constexpr double small = 1e-10;
     /// Corrections below this part, or below tiny in natural units, are round-off.
@@ -37,7 +37,7 @@ namespace crawler
     if (!residual(v, F))
       return false;
     double norm = largest(F, discretization);
-    for (unsigned int i = 0; norm > 0. && i < most_corrections; ++i)
+    for (unsigned int i = 0; norm > 0. && i < max_corrections; ++i)
     {
       change = F;
       if (!solve(v, change))
@@ -46,7 +46,7 @@ namespace crawler
       if (!std::isfinite(correction))
         return false;
       double part = 1., new_norm = HUGE_VAL;
-      for (unsigned int j = 0; j < most_halvings; ++j, part *= 0.5)
+      for (unsigned int j = 0; j < max_halvings; ++j, part *= 0.5)
       {
         for (std::size_t k = 0; k < v.size(); ++k)
           trial[k] = v[k] - part * change[k];

@@ -61,7 +61,7 @@ namespace crawler
     other.z_.assign(times_.size() * other.n_per_step_, 0.);
     for (std::size_t i = 0; i < places.size(); ++i)
     {
-      double weights[radau::most_stages] = {};
+      double weights[radau::max_stages] = {};
       radau::collocation_weights(static_cast<int>(c.size()), c.data(), places[i], weights);
       for (std::size_t step = 0; step < times_.size(); ++step)
         radau::combine(static_cast<int>(c.size()),

@@ -50,7 +50,7 @@ namespace crawler
             .initial_step  = course_.initial_step,
             .limits        = course_.limits.data(),
             .n_limits      = static_cast<unsigned int>(course_.limits.size()),
-            .most_steps    = std::numeric_limits<unsigned int>::max(), // the caller of the next step decides
+            .max_steps     = std::numeric_limits<unsigned int>::max(), // the caller of the next step decides
             // Empty cells are admitted where friction then holds them.
             .least_stretch  = setup_.is_stretch && scene_.friction_exponent() < 0. ? -HUGE_VAL : 0.,
             .is_last_resort = setup_.is_stretch,

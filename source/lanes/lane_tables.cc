@@ -71,8 +71,8 @@ namespace crawler
   void
   state_within(const LaneStep &step, const LaneSetup &setup, const double time, const std::span<double> y)
   {
-    const int s                        = static_cast<int>(setup.n_stages);
-    double weights[radau::most_stages] = {};
+    const int s                       = static_cast<int>(setup.n_stages);
+    double weights[radau::max_stages] = {};
     radau::collocation_weights(s, setup.c, 1. - (step.time - time) / step.size, weights);
     weights[s - 1] -= 1.; // weights are for the state relative to y at the end
     const std::size_t n = y.size();
@@ -88,12 +88,12 @@ namespace crawler
   std::shared_ptr<const LaneTables>
   lane_tables(const LaneMethod &method)
   {
-    constexpr std::size_t most_kept = 1000; // a sweep may have a mesh of its own at each point
+    constexpr std::size_t max_kept = 1000; // a sweep may have a mesh of its own at each point
     static std::map<LaneMethod, std::shared_ptr<const LaneTables>> known;
     const auto found = known.find(method);
     if (found != known.end())
       return found->second;
-    if (known.size() == most_kept)
+    if (known.size() == max_kept)
       known.clear();
     return known[method] = std::make_shared<LaneTables>(method);
   }

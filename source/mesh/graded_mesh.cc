@@ -37,7 +37,7 @@ namespace crawler
   } // namespace
 
   unsigned int
-  least_cells(const std::size_t n_breaks, const Grading &grading)
+  min_graded_cells(const std::size_t n_breaks, const Grading &grading)
   {
     return static_cast<unsigned int>(n_breaks + 1) * (grading.levels > 0 ? 2 : 1);
   }
@@ -45,7 +45,7 @@ namespace crawler
   unsigned int
   finer_n_cells(const double factor, const unsigned int n_cells, const std::size_t n_breaks, const Grading &grading)
   {
-    const unsigned int present = std::max(n_cells, least_cells(n_breaks, grading));
+    const unsigned int present = std::max(n_cells, min_graded_cells(n_breaks, grading));
     const unsigned int by      = n_breaks > 0 ? static_cast<unsigned int>(n_breaks) + 1 : 0;
     return std::max(static_cast<unsigned int>(std::ceil(factor * present)), present + by);
   }
@@ -61,7 +61,7 @@ namespace crawler
     std::vector<double> lengths;
     for (std::size_t i = 0; i + 1 < pieces.size(); ++i)
       lengths.push_back(pieces[i + 1] - pieces[i]);
-    const std::vector<unsigned int> cells = shared_out(n_cells, lengths, least_cells(0, grading));
+    const std::vector<unsigned int> cells = shared_out(n_cells, lengths, min_graded_cells(0, grading));
 
     std::vector<double> ends = {0.};
     for (std::size_t i = 0; i < lengths.size(); ++i)

@@ -16,21 +16,21 @@ namespace crawler
   void
   require_table_fits(const std::vector<double> &size, const ActiveStress &stress)
   {
-    constexpr double least = 2., most = 1e6, most_samples = 1e8;
+    constexpr double least = 2., most = 1e6, max_samples = 1e8;
     const std::string entry = "Output/Active stress table";
     if (size.empty())
       return;
-    const bool good = size.size() == 2 && size[0] * size[1] <= most_samples &&
-                      std::all_of(size.begin(), size.end(), [](const double n) {
-                        return n >= least && n <= most && n == std::floor(n);
-                      });
+    const bool good =
+      size.size() == 2 && size[0] * size[1] <= max_samples && std::all_of(size.begin(), size.end(), [](const double n) {
+        return n >= least && n <= most && n == std::floor(n);
+      });
     if (!good)
       throw InputError(
         fmt::format("Active stress table is \"{}\", but the numbers of samples over s and over t are expected, "
                     "whole numbers from {:g} on with a product of at most {:g}",
                     fmt::join(size, ", "),
                     least,
-                    most_samples),
+                    max_samples),
         entry);
     if (stress.feedback() != nullptr)
       throw InputError(

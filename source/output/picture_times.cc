@@ -11,8 +11,8 @@ namespace crawler
 {
   namespace
   {
-    constexpr unsigned int per_stride = 64, most_snapshots = 640, fewest_rows = 128, most_strides = 20;
-    constexpr std::size_t most_jumps    = 1000;
+    constexpr unsigned int per_stride = 64, max_snapshots = 640, min_rows = 128, max_strides = 20;
+    constexpr std::size_t max_jumps     = 1000;
     constexpr double strides_if_unknown = 4.;
     /// Times closer than this are one, in units of the duration.
     constexpr double same_time = 1e-12;
@@ -75,14 +75,13 @@ namespace crawler
     const auto in_all    = [](const double n_strides) {
       return static_cast<unsigned int>(std::ceil(per_stride * n_strides - 1e-6));
     };
-    const auto snapshots = equal_times(
-      output.n_snapshots.value_or(in_all(std::clamp(strides, 1., 1. * most_snapshots / per_stride))), 0., T);
+    const auto snapshots =
+      equal_times(output.n_snapshots.value_or(in_all(std::clamp(strides, 1., 1. * max_snapshots / per_stride))), 0., T);
     if (!output.kymograph)
       return {snapshots, {}, T};
-    const bool is_long = strides > most_strides;
-    const double from  = is_long ? T - most_strides * gait->period : 0.;
-    std::vector<double> rows =
-      equal_times(std::max(fewest_rows, in_all(std::min(strides, 1. * most_strides))), from, T);
+    const bool is_long       = strides > max_strides;
+    const double from        = is_long ? T - max_strides * gait->period : 0.;
+    std::vector<double> rows = equal_times(std::max(min_rows, in_all(std::min(strides, 1. * max_strides))), from, T);
     if (!is_long)
       rows.insert(rows.begin(), 0.);
     std::vector<double> jumps;
@@ -90,7 +89,7 @@ namespace crawler
     for (const double part : segments.breaks())
       if (part * T > from)
         jumps.push_back(part * T);
-    if (jumps.size() <= most_jumps)
+    if (jumps.size() <= max_jumps)
       rows.insert(rows.end(), jumps.begin(), jumps.end());
     std::sort(rows.begin(), rows.end());
     return {snapshots, rows, T};

@@ -159,7 +159,7 @@ namespace crawler
     while (true)
     {
       for (const double factor : {1., 2., 5.})
-        if ((path_.second - path_.first) / (factor * decade) < most_ground - 2.)
+        if ((path_.second - path_.first) / (factor * decade) < max_ground - 2.)
           return factor * decade;
       decade *= 10.;
     }

@@ -34,7 +34,7 @@ namespace crawler
   SnapshotHdf5::layouts()
   {
     static const std::map<std::string, Layout> all = [] {
-      const hsize_t arrows = 3 * n_grips, strips = 4 * Scenery::most_ground;
+      const hsize_t arrows = 3 * n_grips, strips = 4 * Scenery::max_ground;
       std::map<std::string, Layout> layouts = {
         {"time", {"time", "of each frame; NaN: it was not written", true, {}}},
         {"step", {"1", "number of the time step", true, {}, true}},
@@ -48,7 +48,7 @@ namespace crawler
         {"grip/friction_force", {"force/length", "of each corner", true, {arrows}}},
         {"grip/cells", {"1", "corners of the triangles", false, {n_grips, 3}, true}},
         {"ground/points", {"length", "corners of quadrilaterals: the ground", false, {strips, 3}}},
-        {"ground/cells", {"1", "their corners", false, {Scenery::most_ground, 4}, true}},
+        {"ground/cells", {"1", "their corners", false, {Scenery::max_ground, 4}, true}},
         {"scale/points", {"length", "corners of a quadrilateral: scale of the fields", false, {4, 3}}},
         {"scale/cells", {"1", "its corners", false, {1, 4}, true}}};
       for (const FieldName &field : field_names)

@@ -116,7 +116,7 @@ namespace crawler
     : path_(folder / "solution.h5")
     , length_(length)
     , expected_(n_frames)
-    , most_frames_(std::min<std::size_t>(n_frames, 4096)) // grows if there are more
+    , max_frames_(std::min<std::size_t>(n_frames, 4096)) // grows if there are more
     , body_(folder / "solution.xdmf", description_begin, description_end)
     , line_(folder / "line.xdmf", description_begin, description_end)
   {
@@ -128,12 +128,12 @@ namespace crawler
   XdmfFiles::add(const Frame &frame, const Scenery &scenery, const bool scenery_changed)
   {
     const std::size_t row = frames_.size(), n = frame.s.size();
-    const bool grows = !file_ || row == most_frames_ || n > most_points_;
+    const bool grows = !file_ || row == max_frames_ || n > max_points_;
     if (grows)
-      resize(row == most_frames_ ? std::max(row + 1, std::min(2 * row, expected_)) : most_frames_,
-             !file_             ? n
-             : n > most_points_ ? n + n / 2
-                                : most_points_);
+      resize(row == max_frames_ ? std::max(row + 1, std::min(2 * row, expected_)) : max_frames_,
+             !file_            ? n
+             : n > max_points_ ? n + n / 2
+                               : max_points_);
     if (scenery_changed || grows)
       write_scenery(scenery);
     const auto write = [&](const std::string &name, const std::vector<double> &values) {
@@ -177,7 +177,7 @@ namespace crawler
     std::size_t largest = 0;
     for (const FrameSize &frame : frames_)
       largest = std::max(largest, frame.n_points);
-    if (frames_.size() != most_frames_ || largest != most_points_)
+    if (frames_.size() != max_frames_ || largest != max_points_)
       resize(frames_.size(), largest);
     write_scenery(scenery);
     rewrite_descriptions();
@@ -190,9 +190,9 @@ namespace crawler
     archive(frames_);
     if (!archive.reads() || frames_.empty())
       return;
-    file_                                = std::make_unique<SnapshotHdf5>(path_);
-    std::tie(most_frames_, most_points_) = file_->size();
-    if (most_frames_ < frames_.size())
+    file_                              = std::make_unique<SnapshotHdf5>(path_);
+    std::tie(max_frames_, max_points_) = file_->size();
+    if (max_frames_ < frames_.size())
       throw FileError("cannot go on with \"" + path_.string() + "\": it has fewer frames than were written");
     rewrite_descriptions(); // positions of the frames in the file may have changed
   }
@@ -201,7 +201,7 @@ namespace crawler
   XdmfFiles::resize(const std::size_t n_frames, const std::size_t n)
   {
     const std::filesystem::path part = temporary_file(path_);
-    const std::size_t common         = std::min(n, most_points_);
+    const std::size_t common         = std::min(n, max_points_);
     try
     {
       SnapshotHdf5::create(part, n_frames, n);
@@ -214,7 +214,7 @@ namespace crawler
             const std::size_t n_rows = std::min(together, frames_.size() - row);
             larger.write(name, file_->read(name, row, n_rows, common), row, n_rows, common);
           }
-      const std::size_t strips = Scenery::most_ground;
+      const std::size_t strips = Scenery::max_ground;
       larger.write(line + "cells", numbers_to(n), 0, 1, n);
       larger.write(grip + "cells", numbers_to(3 * n_grips));
       larger.write(ground + "cells", numbers_to(4 * strips));
@@ -228,9 +228,9 @@ namespace crawler
     }
     file_.reset();
     rename_whole(part, path_);
-    file_        = std::make_unique<SnapshotHdf5>(path_);
-    most_frames_ = n_frames;
-    most_points_ = n;
+    file_       = std::make_unique<SnapshotHdf5>(path_);
+    max_frames_ = n_frames;
+    max_points_ = n;
   }
 
   void
@@ -238,7 +238,7 @@ namespace crawler
   {
     Corners corners = scenery.ground();
     const Corners last(corners.end() - 3, corners.end());
-    while (corners.size() < 12 * Scenery::most_ground) // the remaining quadrilaterals have no area
+    while (corners.size() < 12 * Scenery::max_ground) // the remaining quadrilaterals have no area
       corners.insert(corners.end(), last.begin(), last.end());
     file_->write(ground + "points", corners);
     file_->write(scale + "points", scenery.scale());

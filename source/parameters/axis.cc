@@ -15,7 +15,7 @@ namespace crawler
 {
   namespace
   {
-    constexpr double most_values = 100000;
+    constexpr double max_values = 100000;
 
     /// Text without round-off noise: 0.03 and not 0.030000000000000002, 100 and not 99.99999999999999.
     std::string
@@ -50,12 +50,12 @@ namespace crawler
       if (arguments.size() != 3 || numbers.size() != 3)
         refuse_call(text, function, name);
       const double count = numbers[2];
-      if (count != std::round(count) || count < 1 || count > most_values)
+      if (count != std::round(count) || count < 1 || count > max_values)
         throw InputError(fmt::format("\"{}\": the count of {} is \"{}\", but a whole number from 1 to {:g} is expected",
                                      name,
                                      function,
                                      arguments[2],
-                                     most_values),
+                                     max_values),
                          name);
       std::vector<std::string> values;
       for (double i = 0; i < count; ++i)

@@ -18,15 +18,15 @@ namespace crawler
   namespace
   {
     constexpr std::size_t deepest_section = 100;
-    constexpr unsigned int most_included  = 1000;
-    constexpr std::size_t most_bytes      = 1 << 26; // with all included files
+    constexpr unsigned int max_included   = 1000;
+    constexpr std::size_t max_bytes       = 1 << 26; // with all included files
 
     /// Reads all bytes, up to slightly more than admissible.
     std::string
     read_bytes(std::istream &in)
     {
       std::string text;
-      for (std::vector<char> part(1 << 16); in && text.size() <= most_bytes;)
+      for (std::vector<char> part(1 << 16); in && text.size() <= max_bytes;)
       {
         in.read(part.data(), static_cast<std::streamsize>(part.size()));
         text.append(part.data(), static_cast<std::size_t>(in.gcount()));
@@ -135,9 +135,9 @@ namespace crawler
   ParameterFile::parse(const std::string &text, const std::string &name, const unsigned int depth)
   {
     n_bytes_ += text.size();
-    if (n_bytes_ > most_bytes)
+    if (n_bytes_ > max_bytes)
       throw InputError(
-        fmt::format("{}: at most {} MB of parameters are expected, with all included files", name, most_bytes >> 20));
+        fmt::format("{}: at most {} MB of parameters are expected, with all included files", name, max_bytes >> 20));
     if (const std::string found = foreign_format(text); !found.empty())
       throw InputError(fmt::format("{}: this is {}, but a text file of parameters in UTF-8 is expected", name, found));
     if (std::any_of(text.begin(), text.end(), [](const char c) { return static_cast<unsigned char>(c) < 9; }))
@@ -214,9 +214,9 @@ namespace crawler
   {
     if (depth == 10)
       throw InputError(fmt::format("{}: files include each other more than 10 deep", place));
-    if (++n_included_ > most_included)
+    if (++n_included_ > max_included)
       throw InputError(fmt::format(
-        "{}: this is the included file number {}, but at most {} are expected", place, n_included_, most_included));
+        "{}: this is the included file number {}, but at most {} are expected", place, n_included_, max_included));
     if (file_name.empty())
       throw InputError(fmt::format("{}: \"include\" without the name of a file", place));
     if (const std::string sign = home_sign(file_name); !sign.empty())

@@ -84,7 +84,7 @@ namespace crawler
     time_panels(const StrainHistory &strain, std::vector<double> breaks, const std::size_t most)
     {
       constexpr unsigned int fewest = 4;
-      constexpr double most_changes = 12.;
+      constexpr double max_changes  = 12.;
       constexpr double negligible = 1e-6, shortest = 1e-9; // of the largest strain; of the duration
       for (unsigned int i = 1; i < fewest; ++i)
         breaks.push_back(1. * i / fewest);
@@ -98,7 +98,7 @@ namespace crawler
       {
         const double from = ends.back(), to = open.back();
         const auto [value, rate] = bounds_of(strain, {0., 1., from, to});
-        if (to - from <= shortest || rate * (to - from) <= most_changes * std::max(value, floor))
+        if (to - from <= shortest || rate * (to - from) <= max_changes * std::max(value, floor))
         {
           ends.push_back(to);
           open.pop_back();
@@ -277,16 +277,16 @@ namespace crawler
             const double tolerance,
             const std::function<bool()> &keep_going)
   {
-    constexpr double floor = 1e-12, share = 0.25, least_part = 0.1;
-    constexpr unsigned int most_space = 1024, most_time = 1u << 17, most_in_all = 1u << 20;
+    constexpr double floor = 1e-12, share = 0.25, min_part = 0.1;
+    constexpr unsigned int max_space = 1024, max_time = 1u << 17, max_in_all = 1u << 20;
     KinematicResult result;
-    constexpr unsigned int most_at_start = 128; // panels that end where the strain is not smooth
-    unsigned int n_space                 = GaussPanels::number_ending_at(scene.breaks_in_space(), 2, most_at_start);
-    const auto panels                    = time_panels(strain, scene.active_stress->breaks_in_time(), most_time / 4);
-    const bool sees_all                  = panels.has_value();
-    const double part                    = sees_all && has_events(*panels) ? least_part : 0.;
-    std::vector<double> &ends            = result.time_panels;
-    ends                                 = sees_all ? *panels : std::vector<double>{0., 0.25, 0.5, 0.75, 1.};
+    constexpr unsigned int max_at_start = 128; // panels that end where the strain is not smooth
+    unsigned int n_space                = GaussPanels::number_ending_at(scene.breaks_in_space(), 2, max_at_start);
+    const auto panels                   = time_panels(strain, scene.active_stress->breaks_in_time(), max_time / 4);
+    const bool sees_all                 = panels.has_value();
+    const double part                   = sees_all && has_events(*panels) ? min_part : 0.;
+    std::vector<double> &ends           = result.time_panels;
+    ends                                = sees_all ? *panels : std::vector<double>{0., 0.25, 0.5, 0.75, 1.};
     for (;;)
     {
       const std::size_t n_time = ends.size() - 1;
@@ -315,8 +315,8 @@ namespace crawler
                std::abs(finer.energies.dissipation - coarse.energies.dissipation) <= works;
       };
       const bool space_fits = settled(in_space), time_fits = settled(in_time);
-      const bool at_limit = (!space_fits && 4 * n_space > most_space) || (!time_fits && 4 * n_time > most_time) ||
-                            std::size_t{16} * n_space * n_time > most_in_all;
+      const bool at_limit = (!space_fits && 4 * n_space > max_space) || (!time_fits && 4 * n_time > max_time) ||
+                            std::size_t{16} * n_space * n_time > max_in_all;
       if (!inverts && !(space_fits && time_fits) && !at_limit)
       {
         n_space *= space_fits ? 1 : 2;

@@ -261,13 +261,13 @@ namespace crawler
   ModelErrors
   estimate_model_errors(const Scene &scene, const NaturalWave &wave)
   {
-    constexpr double per_wave = 24., most_steps = 20000., most_points = 256.;
+    constexpr double per_wave = 24., max_steps = 20000., max_points = 256.;
     const double strides = std::max(1., std::abs(wave.speed));
     // Layers at the ends are as thick as the reach of the elastic force within a stride.
     const double layer = std::sqrt(scene.body.elastic_modulus / strides);
-    const double n_s   = std::min(most_points, std::max(per_wave * wave.n_waves(), 2. / layer));
+    const double n_s   = std::min(max_points, std::max(per_wave * wave.n_waves(), 2. / layer));
     const double n_t   = per_wave * wave.n_waves() * std::ceil(strides);
-    if (!(n_t <= most_steps))
+    if (!(n_t <= max_steps))
       return {};
     return estimate(motion_of(wave, static_cast<std::size_t>(n_s), static_cast<std::size_t>(n_t)), scene);
   }

@@ -144,7 +144,7 @@ namespace crawler
         points.push_back(lane.units.length);
         lane.stress = scene.active_stress->at(points);
         lane.watch.emplace(
-          *scene.active_stress, lane.units.length, numerics.least_event > 0. ? numerics.least_event : HUGE_VAL);
+          *scene.active_stress, lane.units.length, numerics.min_event > 0. ? numerics.min_event : HUGE_VAL);
         lane.breaks = scene.breaks_in_space();
         for (double &s : lane.breaks)
           s /= lane.units.length;
@@ -163,7 +163,7 @@ namespace crawler
                                .initial_step   = numerics.initial_step / lane.units.time,
                                .limits         = lane.limits.data(),
                                .n_limits       = static_cast<unsigned int>(lane.limits.size()),
-                               .most_steps     = runs_[lane.run].time->max_steps,
+                               .max_steps      = runs_[lane.run].time->max_steps,
                                .least_stretch  = small_stretch,
                                .is_last_resort = false,
                                .start_time     = 0.,

@@ -42,7 +42,7 @@ namespace crawler
   bool
   CycleStop::fits(const CycleWish &wish)
   {
-    return whole_cycles(wish) >= fewest_cycles && whole_cycles(wish) < 1e9;
+    return whole_cycles(wish) >= min_cycles && whole_cycles(wish) < 1e9;
   }
 
   CycleStop::CycleStop(const CycleWish &wish, const double tolerance)
@@ -64,7 +64,7 @@ namespace crawler
       start_ += P;
       --n_cycles_;
     }
-    const unsigned int n_watched = std::min(n_cycles_ - 1, most_watched);
+    const unsigned int n_watched = std::min(n_cycles_ - 1, max_watched);
     for (unsigned int i = from_rest_ ? 1 : 0; i <= n_watched; ++i)
       end_times_.push_back(start_ + P * i);
   }
@@ -186,7 +186,7 @@ namespace crawler
     const EnergyBalance &now = ends_[n].energy_balance, &then = ends_[n - 1].energy_balance;
     const double stored = left * std::abs(now.elastic_energy - then.elastic_energy);
     const double work   = now.exchanged_work + left * (now.exchanged_work - then.exchanged_work);
-    repeats_ = bound_ <= part * wish_.accuracy * size && relative_change() <= same && drift <= least_part * least_ &&
+    repeats_ = bound_ <= part * wish_.accuracy * size && relative_change() <= same && drift <= min_part * least_ &&
                stored <= wish_.accuracy * work;
   }
 

@@ -21,7 +21,7 @@ namespace crawler
     constexpr double smooth = 0.05;
     /// Steps from one sample to the next, on average, beyond which the samples may show a slow alias: steps follow the
     /// motion, some in each period.
-    constexpr unsigned int most_steps_of_sample = 3;
+    constexpr unsigned int max_steps_of_sample = 3;
 
     double
     square(const double x)
@@ -216,7 +216,7 @@ namespace crawler
   std::optional<double>
   GaitMeter::find_period() const
   {
-    if (steps_.size() > most_steps_of_sample * n_searched)
+    if (steps_.size() > max_steps_of_sample * n_searched)
       return std::nullopt;
     const std::size_t first = samples_.size() - n_searched;
     std::vector<double> change(n_searched / 2 + 1, 0.);

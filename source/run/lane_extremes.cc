@@ -67,7 +67,7 @@ namespace crawler
     const unsigned int last = tables_.setup.n_samples - 1;
     const auto jump         = [&](const unsigned int right) { // jump at its left end
       const double s = tables_.place_of_sample(right * tables_.setup.n_samples);
-      if (std::ranges::any_of(breaks, [s](const double b) { return std::abs(b - s) < least_space_between_breaks; }))
+      if (std::ranges::any_of(breaks, [s](const double b) { return std::abs(b - s) < min_space_between_breaks; }))
         return 0.;
       return std::abs(stretch_at(step, i, right, 0) - stretch_at(step, i, right - 1, last));
     };

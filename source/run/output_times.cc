@@ -21,7 +21,7 @@ namespace crawler
     for (const double time : step_ends_)
     {
       const auto last  = ends.begin() + static_cast<std::ptrdiff_t>(n);
-      const auto place = std::lower_bound(ends.begin(), last, time - least_time_between_breaks);
+      const auto place = std::lower_bound(ends.begin(), last, time - min_time_between_breaks);
       if (place == last || !is_same(*place, time))
         ends.push_back(time);
     }
@@ -32,10 +32,10 @@ namespace crawler
   std::vector<double>
   OutputTimes::of_segment(const TimeSegments &segments, const double time) const
   {
-    const double reach = segments.is_last() ? HUGE_VAL : segments.end() - least_time_between_breaks;
+    const double reach = segments.is_last() ? HUGE_VAL : segments.end() - min_time_between_breaks;
     std::vector<double> result;
     for (const double end : step_ends_)
-      if (end > time + least_time_between_breaks && end < reach)
+      if (end > time + min_time_between_breaks && end < reach)
         result.push_back(end);
     if (!segments.is_last())
       result.push_back(segments.end());

@@ -25,7 +25,7 @@ namespace crawler
       result.jumps_move ? residual_of_moving_jumps
       : own_numerics
         ? residual_of_users
-        : std::max(least_residual,
+        : std::max(min_residual,
                    (result.formulation == Formulation::stretch ? of_accuracy_in_stretch_form : of_accuracy) *
                      parameters.accuracy));
   }

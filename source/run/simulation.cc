@@ -23,7 +23,7 @@ namespace crawler
     numerics.initial_step /= units.time;
     for (StepLimit &limit : numerics.step_limits)
       limit = {limit.from / units.time, limit.longest / units.time};
-    numerics.least_event /= units.force;
+    numerics.min_event /= units.force;
     numerics.mesh.tolerance /= units.length;
     numerics.mesh.smallest_cell /= units.length;
     return numerics;
@@ -126,10 +126,10 @@ namespace crawler
     mesh_.assembler->forget_stresses(); // those of the last segment
     past_.history.clear();
     // Searches for a period need a thousand samples of the state.
-    constexpr std::size_t most_unknowns = 10000;
-    const bool is_watched               = time_.step_control == StepControl::adaptive;
+    constexpr std::size_t max_unknowns = 10000;
+    const bool is_watched              = time_.step_control == StepControl::adaptive;
     Recorder recorder(
-      physical_scene_, units_, options, numerics_.tolerance, mesh_.discretization->n_unknowns() <= most_unknowns);
+      physical_scene_, units_, options, numerics_.tolerance, mesh_.discretization->n_unknowns() <= max_unknowns);
     if (mesh_.position != nullptr && !is_adaptive())
       recorder.set_smallest_cell(std::ranges::min_element(mesh_.discretization->cells(), {}, &Cell::size)->size);
     OutputTimes output_times(pictures, recorder.step_ends(), !integrators_.present->stage_places().empty());
@@ -143,7 +143,7 @@ namespace crawler
           .limiter      = StepLimiter(numerics_.step_limits,
                                  past_.delay > 0. ? past_.delay : HUGE_VAL,
                                  *scene_.active_stress,
-                                 is_watched ? numerics_.least_event : 0.),
+                                 is_watched ? numerics_.min_event : 0.),
           .breaks       = scene_.breaks_in_space(),
           .n_failures   = scene_.active_stress->failures() != nullptr ? scene_.active_stress->failures()->count : 0});
     result().jumps_move  = numerics_.jumps_move;

@@ -24,7 +24,7 @@ namespace crawler
     std::optional<double> wish = options.cycles ? std::optional(options.cycles->accuracy) : std::nullopt;
     // Members one by one, since bytes between the members of a struct may differ.
     archive(numerics.degree, numerics.n_cells, numerics.tolerance, numerics.initial_step, numerics.step_limits);
-    archive(numerics.least_event, numerics.formulation, numerics.integrator, numerics.layer);
+    archive(numerics.min_event, numerics.formulation, numerics.integrator, numerics.layer);
     archive(numerics.mesh.tolerance, numerics.mesh.smallest_cell, numerics.mesh.most_cells, numerics.grading.levels);
     archive(numerics.grading.ratio, numerics.parts, numerics.other_rule, numerics.jumps_move);
     archive(time.integrator, time.engine, time.order, time.step_control, time.max_steps, time.petsc_prefix);

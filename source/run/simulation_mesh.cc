@@ -51,14 +51,14 @@ namespace crawler
   void
   Simulation::settle()
   {
-    constexpr unsigned int most_corrections = 10;
-    const double size                       = settling_factor * std::sqrt(std::min(numerics_.tolerance, 1e-8));
-    const double t                          = run_->accepted.time + size;
+    constexpr unsigned int max_corrections = 10;
+    const double size                      = settling_factor * std::sqrt(std::min(numerics_.tolerance, 1e-8));
+    const double t                         = run_->accepted.time + size;
     // Settling steps are not shown, so they must not pass a time at which a state is wanted.
     if (t > std::min({run_->output_times.next(), segments_.end(), run_->recorder.next_sample()}) - size)
       return;
     std::vector<double> y = y_, rate(y.size(), 0.), F(y.size()), change(y.size());
-    for (unsigned int i = 0; i < most_corrections; ++i)
+    for (unsigned int i = 0; i < max_corrections; ++i)
     {
       if (!mesh_.position->residual(t, y, rate, F) || !mesh_.position->setup_jacobian(t, y, rate, 1. / size))
         return;
@@ -99,8 +99,8 @@ namespace crawler
   bool
   Simulation::wants_coarser_mesh(const Step &step)
   {
-    constexpr unsigned int most_joins_every = 10;
-    if (!is_adaptive() || step.number == 0 || step.number % most_joins_every != 0 || step.time >= 1.)
+    constexpr unsigned int max_joins_every = 10;
+    if (!is_adaptive() || step.number == 0 || step.number % max_joins_every != 0 || step.time >= 1.)
       return false;
     run_->changes = mark_for_joining(run_->indicators, *mesh_.discretization, numerics_.mesh);
     return !run_->changes.empty();

@@ -28,7 +28,7 @@ namespace crawler
   void
   Simulation::show_step(const Step &step, const std::span<const double> y)
   {
-    const bool is_picture = run_->output_times.next() <= step.time + least_time_between_breaks;
+    const bool is_picture = run_->output_times.next() <= step.time + min_time_between_breaks;
     const EnergyBalance none;
     show({step,
           y,
@@ -47,7 +47,7 @@ namespace crawler
   bool
   Simulation::show_pictures_within(const Step &step, const double until)
   {
-    for (; run_->output_times.next() < until - least_time_between_breaks; run_->output_times.pass())
+    for (; run_->output_times.next() < until - min_time_between_breaks; run_->output_times.pass())
     {
       const double t = run_->output_times.next();
       y_inside_.resize(y_.size());

@@ -15,12 +15,12 @@ namespace crawler
   namespace
   {
     /// Number of successive steps smaller than tiny_step, as a part of the duration, that are a failure.
-    constexpr double tiny_step             = 1e-9;
-    constexpr unsigned int most_tiny_steps = 2000;
+    constexpr double tiny_step            = 1e-9;
+    constexpr unsigned int max_tiny_steps = 2000;
     /// Number of them at a stretch below nearly_zero that means that it is lost: the rest of it is the error of
     /// Newton's method.
-    constexpr unsigned int most_steps_at_zero = 20;
-    constexpr double nearly_zero              = 1e-6;
+    constexpr unsigned int max_steps_at_zero = 20;
+    constexpr double nearly_zero             = 1e-6;
   } // namespace
 
   /// Examines a state that the time stepper has accepted; returns why the run ends if it must not be used.
@@ -54,8 +54,7 @@ namespace crawler
       return Ending::lost;
     }
     // Pictures need the velocity at output times only, the energy balance and adaptive meshes always.
-    const bool is_shown =
-      !run_->observers.empty() && run_->output_times.next() <= step.time + least_time_between_breaks;
+    const bool is_shown = !run_->observers.empty() && run_->output_times.next() <= step.time + min_time_between_breaks;
     if ((run_->options.energy_balance || is_adaptive() || is_shown) && !lanes_look &&
         !finds_velocity(step.time, step.size, y, v_))
       return Ending::lost;
@@ -131,18 +130,18 @@ namespace crawler
     const StretchAt &smallest = run_->stretch.min;
     const double tiny         = tiny_step * std::min(1., 10. * run_->limiter.longest_step(step.time));
     run_->tiny_steps          = step.size > 0. && step.size < tiny ? run_->tiny_steps + 1 : 0;
-    if (run_->tiny_steps > most_steps_at_zero && scene_.friction_exponent() >= 0. && smallest.value < nearly_zero)
+    if (run_->tiny_steps > max_steps_at_zero && scene_.friction_exponent() >= 0. && smallest.value < nearly_zero)
     {
       inverted_inside(smallest.value, smallest.s, step.time);
       return true;
     }
-    if (run_->tiny_steps <= most_tiny_steps)
+    if (run_->tiny_steps <= max_tiny_steps)
       return false;
     run_->diagnosis = {Status::failed,
                        "step_underflow",
                        fmt::format("{} steps in succession were smaller than {:g} of the duration, at t = {:.9g}; the "
                                    "smallest stretch is {:.3g} at s = {:.6g}",
-                                   most_tiny_steps,
+                                   max_tiny_steps,
                                    tiny,
                                    step.time * units_.time,
                                    smallest.value,
@@ -234,7 +233,7 @@ namespace crawler
       return true;
     const CellIntegrals &integrals = run_->integrals = mesh_.assembler->integrals(step.time, y, v_);
     result().displacement                            = integrals.displacement;
-    if (!run_->options.energy_balance && run_->output_times.next() > step.time + least_time_between_breaks)
+    if (!run_->options.energy_balance && run_->output_times.next() > step.time + min_time_between_breaks)
       return true;
     if (!std::isfinite(integrals.dissipation))
     {

@@ -10,10 +10,10 @@ namespace crawler
   StepLimiter::StepLimiter(const std::vector<StepLimit> &limits,
                            const double longest,
                            const ActiveStress &stress,
-                           const double least_event)
+                           const double min_event)
     : limits_(limits)
-    , watch_(least_event > 0. ? std::optional<StressWatch>(std::in_place, stress, 1., least_event)
-                              : std::optional<StressWatch>())
+    , watch_(min_event > 0. ? std::optional<StressWatch>(std::in_place, stress, 1., min_event)
+                            : std::optional<StressWatch>())
   {
     if (limits_.empty())
       limits_.push_back({0., HUGE_VAL});

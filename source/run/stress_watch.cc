@@ -40,7 +40,7 @@ namespace crawler
       const double expected = of_start * start[p] + of_end * end[p] + of_a * inside_[0][p] + of_b * inside_[2][p];
       largest               = std::max(largest, std::abs(inside_[1][p] - expected));
     }
-    if (largest > std::max(least_, least_event * largest_))
+    if (largest > std::max(least_, min_event * largest_))
       return false;
     end_time_ = to;
     end_      = end;

@@ -15,10 +15,10 @@ namespace crawler
     constexpr double nothing = 1e-12;
     /// Largest part of the mean square of e in unexamined harmonics: a pulse that few samples see has half of it there,
     /// a signal that is on for a tenth of the period a tenth.
-    constexpr double most_unresolved = 0.3;
+    constexpr double max_unresolved = 0.3;
     /// Motion of the extremes of the stretch, over the largest |e|, beyond which the samples, means over pieces of the
     /// body at few times, have not seen its cause: it is at most twice the largest |e| otherwise.
-    constexpr double most_swing = 4.;
+    constexpr double max_swing = 4.;
     /// Resolution of the table of each harmonic, and of the search for the number of waves on the body.
     constexpr unsigned int steps_per_wave = 4, search_steps_per_wave = 16;
 
@@ -275,12 +275,12 @@ namespace crawler
     Beam::Peak
     Beam::best(double nu) const
     {
-      constexpr unsigned int most_corrections = 30;
+      constexpr unsigned int max_corrections = 30;
       constexpr double most = 0.5 / search_steps_per_wave, last = 1e-7;
       // Newton's method for a slope of 0, which goes uphill where S is not concave. Digits double, so that this last
       // correction leaves round-off.
       double S = 0.;
-      for (unsigned int i = 0; i < most_corrections; ++i)
+      for (unsigned int i = 0; i < max_corrections; ++i)
       {
         const Value here = at(nu);
         const double correction =
@@ -334,7 +334,7 @@ namespace crawler
         }
       }
     }
-    if (largest <= nothing || swing > most_swing * largest || squares - 2. * power(E) > most_unresolved * squares)
+    if (largest <= nothing || swing > max_swing * largest || squares - 2. * power(E) > max_unresolved * squares)
       return std::nullopt;
 
     // Pairs of pieces take half the time. A wave with more than half of all e is the largest, since waves of other

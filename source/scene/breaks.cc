@@ -39,7 +39,7 @@ namespace crawler
   std::vector<double>
   distinct_breaks_in_space(std::vector<double> places, const double length)
   {
-    std::vector<double> breaks = distinct(std::move(places), length, least_space_between_breaks);
+    std::vector<double> breaks = distinct(std::move(places), length, min_space_between_breaks);
     for (double &s : breaks)
       s *= length;
     return breaks;
@@ -49,7 +49,7 @@ namespace crawler
   {
     std::vector<double> breaks = stress.breaks_in_time();
     clamps_                    = !breaks.empty();
-    breaks_                    = distinct(std::move(breaks), end_time, least_time_between_breaks);
+    breaks_                    = distinct(std::move(breaks), end_time, min_time_between_breaks);
     set_limits();
   }
 
@@ -75,7 +75,7 @@ namespace crawler
       throw FileError("a saved state does not fit to the program: its piece of time is not there");
     if (!clamps_)
       return;
-    from_ = (piece_ == 0 ? 0. : breaks_[piece_ - 1]) + 2. * least_time_between_breaks;
-    to_   = std::max(from_, end() - least_time_between_breaks);
+    from_ = (piece_ == 0 ? 0. : breaks_[piece_ - 1]) + 2. * min_time_between_breaks;
+    to_   = std::max(from_, end() - min_time_between_breaks);
   }
 } // namespace crawler

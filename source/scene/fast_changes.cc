@@ -15,7 +15,7 @@ namespace crawler
     /// Changes below this fraction of the largest |m| are ignored.
     constexpr double negligible = 1e-4;
     /// Largest change of m in a listed time, in units of the largest |m|; longer times are halved.
-    constexpr double most_changes = 64.;
+    constexpr double max_changes = 64.;
     /// Shortest time of a box, relative to the duration.
     constexpr double shortest = 1e-9;
 
@@ -43,7 +43,7 @@ namespace crawler
         if (!bounds)
           return result;
         boxes_.push_back({all, bounds->rate, /*in_s=*/true});
-        for (; !boxes_.empty() && n_bounds_ < limits_.most_bounds; boxes_.pop_front())
+        for (; !boxes_.empty() && n_bounds_ < limits_.max_bounds; boxes_.pop_front())
           look_at(boxes_.front(), result.list);
         result.is_complete = boxes_.empty();
         for (const Part &part : boxes_)
@@ -74,7 +74,7 @@ namespace crawler
         if (rate * explained_by_point >= bound && 2. * rate > admitted && std::isfinite(bound))
         {
           see_values(box);
-          if (bound * time <= most_changes * largest_)
+          if (bound * time <= max_changes * largest_)
           {
             list.push_back({box.t_from, box.t_to, std::min(bound, 2. * rate)});
             return;
@@ -82,7 +82,7 @@ namespace crawler
         }
         if (time <= shortest * duration_)
         {
-          if (const double change = see_values(box); change >= limits_.least_jump * largest_ && change > 0.)
+          if (const double change = see_values(box); change >= limits_.min_jump * largest_ && change > 0.)
             list.push_back({box.t_from, box.t_to, change / time});
           return;
         }

@@ -84,11 +84,11 @@ namespace crawler
       }
 
       /// Tests at random times, at times where m is faster than in a period, and at many times in each period. Fails if
-      /// there are too many fast changes to check, and once most_misses times P have passed only the random test.
+      /// there are too many fast changes to check, and once max_misses times P have passed only the random test.
       bool
       holds(const double P)
       {
-        if (n_misses_ >= most_misses)
+        if (n_misses_ >= max_misses)
           return false;
         std::mt19937 generator(20220610);
         const double last = end_ - begin_ - P;
@@ -164,18 +164,18 @@ namespace crawler
       bool
       fast_changes_repeat(const double P)
       {
-        constexpr unsigned int most_bounds = 200000;
-        constexpr double round_off = 1e-6, times_in_change = 8., least_times = 3., most_times = 1024.;
+        constexpr unsigned int max_bounds = 200000;
+        constexpr double round_off = 1e-6, times_in_change = 8., min_times = 3., max_times = 1024.;
         const double explained    = rate_in_period(P) * (1. + round_off);
         double largest            = largest_;
         const FastChanges changes = find_fast_changes(
-          stress_, length_, begin_, end_, [=](double, double) { return explained; }, largest, {most_bounds, same});
+          stress_, length_, begin_, end_, [=](double, double) { return explained; }, largest, {max_bounds, same});
         for (const FastChange &change : changes.list)
         {
           // Times beside the change are included: m differs after a jump.
           const double time = 3. * (change.to - change.from), from = change.from - time / 3.;
           const auto n = static_cast<unsigned int>(
-            std::ceil(std::clamp(times_in_change * time * change.rate / largest, least_times, most_times)));
+            std::ceil(std::clamp(times_in_change * time * change.rate / largest, min_times, max_times)));
           for (unsigned int i = 0; i < n; ++i)
           {
             const double t = std::clamp(from + (i + 0.381966) / n * time, begin_, end_);
@@ -184,16 +184,16 @@ namespace crawler
           }
         }
         if (!changes.is_complete)
-          n_misses_ = most_misses;
+          n_misses_ = max_misses;
         return changes.is_complete;
       }
 
       const ActiveStress &stress_;
       const double length_, begin_, end_;
       StressAtPlaces m_;
-      double largest_                           = 0.; ///< |m|
-      unsigned int n_misses_                    = 0;  ///< times P that passed only the random test
-      static constexpr unsigned int most_misses = 2;
+      double largest_                          = 0.; ///< |m|
+      unsigned int n_misses_                   = 0;  ///< times P that passed only the random test
+      static constexpr unsigned int max_misses = 2;
     };
 
     /// Searches a period by comparing the samples of a grid.
@@ -261,9 +261,9 @@ namespace crawler
       std::optional<double>
       smallest(const std::vector<unsigned int> &candidates, const double longest, PeriodTest &test)
       {
-        constexpr std::size_t most_candidates = 64;
+        constexpr std::size_t max_candidates = 64;
         test.knows(largest_);
-        for (std::size_t i = 0; i < std::min(candidates.size(), most_candidates); ++i)
+        for (std::size_t i = 0; i < std::min(candidates.size(), max_candidates); ++i)
           for (const double P : guesses(candidates[i]))
             if (P > 0. && P <= longest && test.holds(P))
               return P;
@@ -309,10 +309,10 @@ namespace crawler
       double
       refined(const double near)
       {
-        constexpr unsigned int most_iterations = 10, n = 8;
+        constexpr unsigned int max_iterations = 10, n = 8;
         const double around = 2. * T_ / n_times_, delta = 1e-6 * T_ / n_times_;
         double P = near, change_before = around;
-        for (unsigned int iteration = 0; iteration < most_iterations; ++iteration)
+        for (unsigned int iteration = 0; iteration < max_iterations; ++iteration)
         {
           double r_d = 0., d_d = 0.;
           for (unsigned int i = 0; i < n; ++i)

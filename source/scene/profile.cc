@@ -115,7 +115,7 @@ namespace crawler
       std::vector<double>
       breaks() const override
       {
-        return spline_ && x_.size() > most_knots_of_splines ? std::vector<double>{x_.front(), x_.back()} : x_;
+        return spline_ && x_.size() > max_knots_of_splines ? std::vector<double>{x_.front(), x_.back()} : x_;
       }
 
     private:

@@ -24,10 +24,10 @@ namespace crawler
             double ds,
             double dt)
     {
-      constexpr unsigned int most_moves = 60;
+      constexpr unsigned int max_moves = 60;
       constexpr double shrink = 0.5, smallest = 1e-4;
       const double stop = smallest * ds;
-      for (unsigned int move = 0; move < most_moves && ds > stop; ++move)
+      for (unsigned int move = 0; move < max_moves && ds > stop; ++move)
       {
         const std::vector<double> points = {std::max(0., best.s - ds), best.s, std::min(length, best.s + ds)};
         const auto at                    = history(points);
@@ -132,7 +132,7 @@ namespace crawler
   std::optional<StrainJump>
   find_jump(const StrainHistory &history, const double length, const double end_time)
   {
-    constexpr unsigned int n_points = 11, n_intervals = 37, most_panels = 1024;
+    constexpr unsigned int n_points = 11, n_intervals = 37, max_panels = 1024;
     constexpr double tolerance = 1e-6;
     std::vector<double> points(n_points), before(n_points), after(n_points), rate(n_points);
     for (unsigned int i = 0; i < n_points; ++i)
@@ -152,7 +152,7 @@ namespace crawler
       before = after;
       at->strain(to, after);
       std::optional<StrainJump> jump;
-      for (unsigned int n_panels = 1; n_panels == 1 || (jump && n_panels <= most_panels); n_panels *= 4)
+      for (unsigned int n_panels = 1; n_panels == 1 || (jump && n_panels <= max_panels); n_panels *= 4)
       {
         const GaussPanels time(from, to, n_panels);
         std::vector<double> integral(n_points, 0.);

@@ -171,7 +171,7 @@ namespace crawler
     petsc(TSGetAdapt(stepper, &adapt));
     petsc(TSAdaptSetType(adapt, parameters.step_control == StepControl::fixed ? TSADAPTNONE : TSADAPTBASIC));
     if (method.petsc_type == radau_type)
-      petsc(TSAdaptSetClip(adapt, radau::least_change, radau::most_change));
+      petsc(TSAdaptSetClip(adapt, radau::min_change, radau::max_change));
     petsc(TSSetExactFinalTime(stepper, TS_EXACTFINALTIME_STEPOVER)); // choose_step() sets the ends of steps
     petsc(TSSetMaxSNESFailures(stepper, -1));
     petsc(TSSetMaxStepRejections(stepper, 30));

@@ -108,7 +108,7 @@ namespace crawler
       std::fill(z.span.begin(), z.span.end(), 0.);
       if (ts->steprestart || radau.old_h == 0.)
         return false;
-      double weights[radau::most_stages];
+      double weights[radau::max_stages];
       for (int i = 0; i < radau.n_stages(); ++i)
       {
         radau::guess_weights(radau.n_stages(),
@@ -518,7 +518,7 @@ namespace crawler
     {
       Radau &radau = data(ts);
       const WriteAccess x(X);
-      double weights[radau::most_stages];
+      double weights[radau::max_stages];
       radau::collocation_weights(radau.n_stages(), radau.tableau->c.data(), (t - radau.old_t) / radau.old_h, weights);
       radau::combine(radau.n_stages(), weights, radau.old_z.data(), radau.n(), x.span.data());
       for (std::size_t k = 0; k < radau.n_owned; ++k)

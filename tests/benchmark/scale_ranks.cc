@@ -25,10 +25,10 @@ namespace
 {
   using namespace crawler;
 
-  constexpr unsigned int degree       = 2;
-  constexpr double shift              = 100.; ///< of the size of a few stages of a step of 0.01 [1/time]
-  constexpr double seconds_of_a_row   = 1.;
-  constexpr unsigned int fewest_times = 5;
+  constexpr unsigned int degree     = 2;
+  constexpr double shift            = 100.; ///< of the size of a few stages of a step of 0.01 [1/time]
+  constexpr double seconds_of_a_row = 1.;
+  constexpr unsigned int min_times  = 5;
 
   /// A rank's share of a crawler, and a state of it.
   struct Bench
@@ -99,7 +99,7 @@ namespace
     const unsigned int steps = std::max(1u, 10000 / n_cells);
     seconds_per_step(bench, is_complex, steps, t); // memory is touched for the first time
     const double guess = seconds_per_step(bench, is_complex, steps, t).wall;
-    const auto times   = std::max(fewest_times, static_cast<unsigned int>(seconds_of_a_row / (guess * steps)));
+    const auto times   = std::max(min_times, static_cast<unsigned int>(seconds_of_a_row / (guess * steps)));
     std::vector<double> seconds;
     double cpu = std::numeric_limits<double>::infinity();
     while (seconds.size() < times)

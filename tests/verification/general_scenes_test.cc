@@ -43,11 +43,11 @@ namespace
   }
 
   SimulationResult
-  run(const Settings &settings, const double most_residual = 1e-6)
+  run(const Settings &settings, const double max_residual = 1e-6)
   {
     SimulationResult result = test::run_with(settings).result;
     EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
-    EXPECT_LT(result.energy_balance->residual(), most_residual);
+    EXPECT_LT(result.energy_balance->residual(), max_residual);
     EXPECT_LT(result.net_friction, 1e-9);
     return result;
   }
@@ -344,7 +344,7 @@ namespace
     const auto position = run(scene + Settings{{"Discretization/Formulation", "position"}, {"Accuracy", "1e-7"}}),
                stretch =
                  run(scene + stretch_form + Settings{{"Accuracy", accuracy}, {"Time/Maximum number of steps", "20000"}},
-                     /*most_residual=*/1e-4);
+                     /*max_residual=*/1e-4);
     EXPECT_EQ(position.formulation, Formulation::position) << name;
     EXPECT_EQ(stretch.formulation, Formulation::stretch) << name;
     ASSERT_TRUE(stretch.error) << name;
@@ -390,5 +390,5 @@ TEST(GeneralScenes, ViscosityAndDirectionAreForThePositionForm)
   const Settings scene = feedback(wave_formula + "+0.05*w_t") +
                          Settings{{"Ground/Backward ratio", "3"}, {"Ground/Switching velocity", "0.2"}};
   EXPECT_THROW(run(scene + stretch_form), InputError);
-  EXPECT_EQ(run(scene + Settings{{"Accuracy", "1e-4"}}, /*most_residual=*/1e-3).formulation, Formulation::position);
+  EXPECT_EQ(run(scene + Settings{{"Accuracy", "1e-4"}}, /*max_residual=*/1e-3).formulation, Formulation::position);
 }

@@ -35,7 +35,7 @@ namespace
 
   /// The promise.
   constexpr double largest_failed_share = 0.005, largest_missed_share = 0.01, usual_seconds = 0.02, usual_share = 0.95,
-                   most_seconds = 5.;
+                   max_seconds = 5.;
   /// Of fewer scenes only wrong answers count: shares and times say little.
   constexpr unsigned int fewest = 500;
   /// No answer is waited for longer, and no second method unless the user says so [steps].
@@ -44,7 +44,7 @@ namespace
   constexpr double most_cells =
     16.; ///< of the second method, where it does not agree, relative to those it begins with
   /// Of the answers so many must have been compared.
-  constexpr double least_compared_share = 0.5;
+  constexpr double min_compared_share = 0.5;
   /// The error is larger than the reported one, but not larger than Accuracy asks for.
   constexpr const char *bound_only = "WRONG: the bound only";
   /// Inversions inside agree if they are within this part of the duration.
@@ -96,9 +96,9 @@ namespace
   class Patience
   {
   public:
-    Patience(const unsigned long steps, const double most_seconds)
-      : most_steps_(steps)
-      , most_seconds_(most_seconds)
+    Patience(const unsigned long steps, const double max_seconds)
+      : max_steps_(steps)
+      , max_seconds_(max_seconds)
       , begin_(processor_seconds())
     {
     }
@@ -112,7 +112,7 @@ namespace
     bool
     ends_now()
     {
-      has_ended_ = has_ended_ || ++steps_ > most_steps_ || seconds() > most_seconds_;
+      has_ended_ = has_ended_ || ++steps_ > max_steps_ || seconds() > max_seconds_;
       return has_ended_;
     }
     bool
@@ -122,19 +122,19 @@ namespace
     }
 
   private:
-    const unsigned long most_steps_;
-    const double most_seconds_, begin_;
+    const unsigned long max_steps_;
+    const double max_seconds_, begin_;
     unsigned long steps_ = 0;
     bool has_ended_      = false;
   };
 
   /// What `crawler run` computes, stopped if it takes more than @p limit steps, or too long.
   Task
-  computed(const Parameters &parameters, const unsigned long limit, const double most_seconds = longest)
+  computed(const Parameters &parameters, const unsigned long limit, const double max_seconds = longest)
   {
     Task task;
     task.parameters = parameters;
-    Patience patience(limit, most_seconds);
+    Patience patience(limit, max_seconds);
     compute_all({&task, 1}, std::numeric_limits<double>::infinity(), [&]() { return patience.ends_now(); });
     task.seconds        = patience.seconds();
     task.is_out_of_time = patience.has_ended();
@@ -306,7 +306,7 @@ namespace
   answer(const unsigned int number,
          const std::filesystem::path &folder,
          const unsigned long limit,
-         const unsigned long most_steps)
+         const unsigned long max_steps)
   {
     Row row;
     row.number = number;
@@ -315,7 +315,7 @@ namespace
     {
       const Parameters parameters    = test::parameters_with(row.scene.settings);
       row.accuracy                   = parameters.accuracy;
-      const Task own                 = computed(parameters, most_steps);
+      const Task own                 = computed(parameters, max_steps);
       row.seconds                    = own.seconds;
       const SimulationResult &result = own.computed.result;
       if (own.error)
@@ -500,10 +500,10 @@ namespace
     for (const Row &row : slow)
       print(row);
     const bool kept = all.wrong == 0 && all.missed <= std::max(1., largest_missed_share * all.n) &&
-                      (all.n < fewest || (all.failed < largest_failed_share * all.n &&
-                                          quantile(all.seconds, usual_share) < usual_seconds &&
-                                          quantile(all.seconds, 1.) < most_seconds));
-    const bool enough = !is_compared || all.compared >= least_compared_share * (all.finished + all.inverted);
+                      (all.n < fewest ||
+                       (all.failed < largest_failed_share * all.n &&
+                        quantile(all.seconds, usual_share) < usual_seconds && quantile(all.seconds, 1.) < max_seconds));
+    const bool enough = !is_compared || all.compared >= min_compared_share * (all.finished + all.inverted);
     fmt::print("{} of {} answers compared: {}\n",
                all.compared,
                all.finished + all.inverted,
@@ -535,7 +535,7 @@ main(int argc, char **argv)
   }
   last                               = std::max(first, last);
   const unsigned long limit          = argc > 3 ? std::stoul(argv[3]) : second_limit,
-                      most_steps     = argc > 4 ? std::stoul(argv[4]) : own_limit;
+                      max_steps      = argc > 4 ? std::stoul(argv[4]) : own_limit;
   const std::filesystem::path folder = std::filesystem::path(argv[2]).replace_extension("");
   std::ofstream out(argv[2]);
   out << "number,kind,form,accuracy,status,reason,seconds,displacement,bound,inversion,second,second displacement,"
@@ -544,7 +544,7 @@ main(int argc, char **argv)
   std::vector<Row> rows;
   for (unsigned int number = first; number <= last; ++number)
   {
-    rows.push_back(answer(number, folder, limit, most_steps));
+    rows.push_back(answer(number, folder, limit, max_steps));
     const Row &r = rows.back();
     out << fmt::format("{},{},{},{:.3g},{},{},{:.4g},{:.15g},{:.3g},{:.10g},{},{:.15g},{:.3g},{:.10g},\"{}\",{}\n",
                        r.number,

@@ -41,7 +41,7 @@ namespace
   struct Family
   {
     const char *name, *scene, *axes;
-    double least_part; ///< of the points that the shared numerics must answer
+    double min_part; ///< of the points that the shared numerics must answer
   };
 
   const std::string set_by_speed =
@@ -89,7 +89,7 @@ namespace
         }
       }
     }
-    EXPECT_GE(n, static_cast<unsigned long>(family.least_part * n_points)) << family.name;
+    EXPECT_GE(n, static_cast<unsigned long>(family.min_part * n_points)) << family.name;
   }
 } // namespace
 

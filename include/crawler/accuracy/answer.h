@@ -19,7 +19,7 @@ namespace crawler
   void
   end_before_inversion(SimulationResult &result);
 
-  constexpr unsigned int most_refinements = 3;
+  constexpr unsigned int max_refinements = 3;
 
   /// Reason of a run whose displacement is known, but not as accurately as wanted.
   constexpr const char *accuracy_not_met = "accuracy_not_met";

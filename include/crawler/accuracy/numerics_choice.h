@@ -25,7 +25,7 @@ namespace crawler
     /// Share of the mesh in the error, as far as the rule can tell; not a number if it cannot [1].
     double space_share = std::numeric_limits<double>::quiet_NaN();
     /// Floor of the reported error, for the part that the indicators cannot see [length].
-    double least_error = 0.;
+    double min_error = 0.;
     /// True if the active stress is not smooth along the body: finer meshes have errors that are not much smaller
     bool is_rough = false;
     /// True if errors of a smooth active stress fall slowly with the cells, as pilots measured: fronts of friction
@@ -43,7 +43,7 @@ namespace crawler
     bool has_fronts   = false;
     double front_part = 0.;
     /// Floor of the size of the displacement, known after the run [length]; NaN if the user chose the numerics.
-    double least_size = std::numeric_limits<double>::quiet_NaN();
+    double min_size = std::numeric_limits<double>::quiet_NaN();
     /// Advice for an Accuracy that is not met; empty if there is none.
     std::string advice;
 
@@ -60,8 +60,8 @@ namespace crawler
     set_size(const double displacement, const double accuracy)
     {
       constexpr double near = 0.2;
-      const double wanted   = accuracy * std::max(std::abs(displacement), least_size);
-      if (!std::isfinite(least_size) || std::abs(wanted - wanted_error) <= near * wanted_error)
+      const double wanted   = accuracy * std::max(std::abs(displacement), min_size);
+      if (!std::isfinite(min_size) || std::abs(wanted - wanted_error) <= near * wanted_error)
         return;
       wanted_error = wanted;
       if (!is_measured)

@@ -190,11 +190,11 @@ namespace crawler
     }
     template <typename List>
     void
-    resize(List &list, const std::size_t least_bytes)
+    resize(List &list, const std::size_t min_bytes)
     {
       std::size_t n = list.size();
       raw(&n, sizeof(n));
-      if (reads_ && n > (bytes_.size() - place_) / least_bytes)
+      if (reads_ && n > (bytes_.size() - place_) / min_bytes)
         fail("a list");
       list.resize(n);
     }

@@ -28,7 +28,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   class AdjointLanes
   {
   public:
-    static constexpr int lanes = PackTraits<Pack>::size, pairs = (s - 1) / 2, middle = s / 2, most_directions = 12;
+    static constexpr int lanes = PackTraits<Pack>::size, pairs = (s - 1) / 2, middle = s / 2, max_directions = 12;
     using Number = Complex<Pack>;
 
     AdjointLanes(const LaneSetup &setup, const LaneAdjointHost &host, double *memory)
@@ -103,7 +103,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       memory_.piece(K_mu_, s * n);
       memory_.piece(M_mu_, s * n);
       memory_.piece(residual_, s * n);
-      memory_.piece(directions_, 2 * most_directions * s * n);
+      memory_.piece(directions_, 2 * max_directions * s * n);
       memory_.piece(by_u_, s * n);
       memory_.piece(by_velocity_, s * n);
       memory_.piece(real_, n);
@@ -301,7 +301,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     solve()
     {
-      constexpr int most_passes = 100;
+      constexpr int max_passes = 100;
       for (Lane &lane : lanes_)
       {
         lane.iterating   = lane.busy;
@@ -310,10 +310,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
       n_directions_ = 0;
       look_at_residual();
-      for (int pass = 0; pass < most_passes && any(lanes_, &Lane::iterating); ++pass)
+      for (int pass = 0; pass < max_passes && any(lanes_, &Lane::iterating); ++pass)
       {
         const bool settles = correct();
-        if (settles || n_directions_ == most_directions)
+        if (settles || n_directions_ == max_directions)
         {
           look_at_residual();
           n_directions_ = 0;
@@ -354,7 +354,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       const bool is_new   = n_directions_ == 0;
       const std::size_t n = std::size_t(s) * n_;
       Pack *const step    = directions_ + n_directions_ * n;
-      Pack *const image   = step + most_directions * n;
+      Pack *const image   = step + max_directions * n;
       radau::to_eigenbasis(radau::Stages<s>{}, rows_, residual_, n_, real_, complex_);
       system_.solve_all(real_, complex_);
       for (int i = 0; i < s; ++i)
@@ -364,7 +364,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int j = 0; j < n_directions_; ++j)
       {
         const Pack *const other     = directions_ + j * n;
-        const Pack *const its_image = other + most_directions * n;
+        const Pack *const its_image = other + max_directions * n;
         const Pack part             = -product(image, its_image);
         add(part, other, step);
         add(part, its_image, image);

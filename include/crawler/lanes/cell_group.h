@@ -111,7 +111,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     all.a           = broadcast<Cells>(one.a);
     all.whole       = mask(one.whole);
     all.negative    = mask(one.negative);
-    for (int b = 0; b < one.most_bits; ++b)
+    for (int b = 0; b < one.max_bits; ++b)
       all.bits[b] = mask(one.bits[b]);
     all.any_whole = one.any_whole;
     all.any_other = one.any_other;

@@ -193,15 +193,15 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int l = 0; l < width; ++l) // of equal stretches the first one counts
       {
         const double low = all.least[l], high = all.most[l];
-        if (low < look.least || (low == look.least && all.least_at[l] < look.least_at))
+        if (low < look.least || (low == look.least && all.min_at[l] < look.min_at))
         {
-          look.least    = low;
-          look.least_at = all.least_at[l];
+          look.least  = low;
+          look.min_at = all.min_at[l];
         }
-        if (high > look.most || (high == look.most && all.most_at[l] < look.most_at))
+        if (high > look.most || (high == look.most && all.max_at[l] < look.max_at))
         {
-          look.most    = high;
-          look.most_at = all.most_at[l];
+          look.most   = high;
+          look.max_at = all.max_at[l];
         }
       }
     }

@@ -10,20 +10,20 @@
 /// Decisions for each body alone: convergence of Newton's method and step sizes (included by radau_lanes.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  constexpr int most_newton = 14;
+  constexpr int max_newton = 14;
   /// Tolerance up to which the equations are solved at least.
   constexpr double largest_tolerance = 1e-3;
   /// Convergence rate of Newton's method, per iteration, above which the step is shortened by failure_factor.
   constexpr double slowest_rate = 0.5, failure_factor = 0.25;
   /// Convergence rate that no step is likely to exceed.
-  constexpr double wanted_rate         = 0.35;
-  constexpr unsigned int most_failures = 12;
+  constexpr double wanted_rate        = 0.35;
+  constexpr unsigned int max_failures = 12;
   /// Failures of Newton's method, in number and as a part of the steps, beyond which a body is left to another engine.
   constexpr unsigned int many_failures = 1000;
   constexpr double large_part          = 0.5;
   /// Factor on the step after a rejected one.
   constexpr double after_rejection = 0.5;
-  constexpr double least_step      = 1e-18; // a sudden start needs short ones
+  constexpr double min_step        = 1e-18; // a sudden start needs short ones
 
   /// Body in a lane, and its step.
   struct Lane : LaneProgress
@@ -71,12 +71,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     /// tolerance.
     void
     look_at_correction(const int it,
-                       const double least_stretch_of_stages,
+                       const double min_stretch_of_stages,
                        const double correction,
                        const double newton_fraction)
     {
       ++newton;
-      if (!(least_stretch_of_stages > 0.) || !(correction < HUGE_VAL))
+      if (!(min_stretch_of_stages > 0.) || !(correction < HUGE_VAL))
       {
         fail();
         return;
@@ -134,9 +134,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
       double factor = accepted || !just_rejected ? radau::safety : radau::safety * after_rejection;
       factor *= error > 0. ? ::pow(error, -1. / (n_stages + 1)) : HUGE_VAL;
-      factor = factor < radau::least_change  ? radau::least_change
-               : factor > radau::most_change ? radau::most_change
-                                             : factor;
+      factor = factor < radau::min_change ? radau::min_change : factor > radau::max_change ? radau::max_change : factor;
       // Newton's method converges the more slowly the longer the step is, about in proportion. A step that was rejected
       // for its error is shortened all the same.
       if (accepted && rate > 0. && factor * rate > wanted_rate)
@@ -152,7 +150,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     bool
     is_hopeless() const
     {
-      return failures > most_failures || next < least_step ||
+      return failures > max_failures || next < min_step ||
              (!job.is_last_resort && all_failures > many_failures && all_failures > large_part * steps);
     }
 

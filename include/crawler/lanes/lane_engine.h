@@ -85,7 +85,7 @@ namespace crawler
     double initial_step;
     const StepLimit *limits; ///< limits of its steps
     unsigned int n_limits;
-    unsigned int most_steps;
+    unsigned int max_steps;
     double least_stretch; ///< smaller stretches are given up; the full path must tell what they mean
     bool is_last_resort;  ///< no other engine can take over where Newton's method often fails
     double start_time;
@@ -149,7 +149,7 @@ namespace crawler
     enum Status
     {
       finished,
-      stopped, ///< stopped by the host, or at most_steps
+      stopped, ///< stopped by the host, or at max_steps
       gave_up  ///< given up for a reason that only the full path can tell
     } status;
     double time, step_size; ///< time of the last accepted state; step that would follow

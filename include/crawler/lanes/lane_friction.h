@@ -13,8 +13,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     using Mask = typename PackTraits<Pack>::Mask;
 
     Pack a;
-    static constexpr int most_bits = 4;
-    Mask whole, negative, bits[most_bits]; ///< |a| is an integer, a < 0; binary digits of |a|
+    static constexpr int max_bits = 4;
+    Mask whole, negative, bits[max_bits]; ///< |a| is an integer, a < 0; binary digits of |a|
     bool any_whole, any_other;
     int n_bits;
 
@@ -25,8 +25,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       any_whole           = false;
       any_other           = false;
       n_bits              = 0;
-      constexpr int bound = (1 << most_bits) - 1;
-      Pack is_whole{}, is_negative{}, has_bit[most_bits] = {};
+      constexpr int bound = (1 << max_bits) - 1;
+      Pack is_whole{}, is_negative{}, has_bit[max_bits] = {};
       for (int l = 0; l < PackTraits<Pack>::size; ++l)
       {
         const double exponent = get_lane(a, l), size = exponent < 0. ? -exponent : exponent;
@@ -35,7 +35,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         set_lane(is_negative, l, exponent < 0.);
         any_whole = any_whole || is;
         any_other = any_other || !is;
-        for (int b = 0; b < most_bits; ++b)
+        for (int b = 0; b < max_bits; ++b)
           if (is && (static_cast<int>(size) >> b & 1) != 0)
           {
             set_lane(has_bit[b], l, 1.);
@@ -44,7 +44,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
       whole    = is_whole > 0.;
       negative = is_negative > 0.;
-      for (int b = 0; b < most_bits; ++b)
+      for (int b = 0; b < max_bits; ++b)
         bits[b] = has_bit[b] > 0.;
     }
 

@@ -31,7 +31,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   template <typename Pack>
   struct LaneLook
   {
-    Pack least = broadcast<Pack>(HUGE_VAL), most = broadcast<Pack>(-HUGE_VAL), least_at{}, most_at{};
+    Pack least = broadcast<Pack>(HUGE_VAL), most = broadcast<Pack>(-HUGE_VAL), min_at{}, max_at{};
     LaneIntegrals<Pack> sums;
     Pack end_stretch[2] = {}, end_rate[2] = {}; ///< stretch at both ends, and its rate
   };
@@ -305,11 +305,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       Pack w{};
       for (int j = 0; j < n; ++j)
         w += derivatives[j] * u[j];
-      w             = 1. + inverse_size * w;
-      look.least_at = w < look.least ? place : look.least_at;
-      look.least    = smaller(w, look.least);
-      look.most_at  = w > look.most ? place : look.most_at;
-      look.most     = w > look.most ? w : look.most;
+      w           = 1. + inverse_size * w;
+      look.min_at = w < look.least ? place : look.min_at;
+      look.least  = smaller(w, look.least);
+      look.max_at = w > look.most ? place : look.max_at;
+      look.most   = w > look.most ? w : look.most;
     }
 
     /// Smallest and largest stretch among the samples of all cells.

@@ -13,7 +13,7 @@
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
   /// Floor of w^(1+a) where the unknown is made of it.
-  constexpr double least_power = 1e-8;
+  constexpr double min_power = 1e-8;
 
   /**
    * Unknowns are those of the cells, and last the displacement of the left end, u_0' = v_0. That of a cell is its
@@ -186,9 +186,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int j = 0; j < n_; ++j)
       {
         const Pack place = broadcast<Pack>(j);
-        result.least_at  = w_[j] < result.least ? place : result.least_at;
+        result.min_at    = w_[j] < result.least ? place : result.min_at;
         result.least     = smaller(w_[j], result.least);
-        result.most_at   = w_[j] > result.most ? place : result.most_at;
+        result.max_at    = w_[j] > result.most ? place : result.max_at;
         result.most      = w_[j] > result.most ? w_[j] : result.most;
       }
     }
@@ -245,7 +245,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         }
         return;
       }
-      const Pack b = 1. + a_, inverse = 1. / b, least = least_power * inverse;
+      const Pack b = 1. + a_, inverse = 1. / b, least = min_power * inverse;
       for (int j = 0; j < n_; ++j)
         rate_[j] = b * (q[j] > least ? q[j] : least);
       power_at_points(rate_, inverse, w_, n_);

@@ -211,7 +211,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Pack
     velocity(const double *t, const Pack *u, const Pack *m, Pack *v, Pack *correction)
     {
-      constexpr int most_corrections = 30;
+      constexpr int max_corrections = 30;
       constexpr double settled = 1e-10, tiny = 1e-13;
       if (!is_general_)
       {
@@ -221,7 +221,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         return Pack{};
       }
       Pack left = broadcast<Pack>(HUGE_VAL);
-      for (int i = 0; i < most_corrections; ++i)
+      for (int i = 0; i < max_corrections; ++i)
       {
         evaluate(t, u, v, m, /*slopes=*/true);
         kernels_.balance(mesh_, u, v, m, correction, blocks_, schur_);

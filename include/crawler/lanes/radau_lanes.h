@@ -163,7 +163,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       for (Lane &lane : lanes_)
         lane.start_newton();
-      for (int it = 1; it <= most_newton && any(lanes_, &Lane::iterating); ++it)
+      for (int it = 1; it <= max_newton && any(lanes_, &Lane::iterating); ++it)
       {
         Pack least = broadcast<Pack>(HUGE_VAL);
         for (int i = 0; i < s; ++i)
@@ -295,8 +295,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int l = 0; l < lanes; ++l)
         stages_[l][i] = {get_lane(look.least, l),
                          get_lane(look.most, l),
-                         static_cast<unsigned int>(get_lane(look.least_at, l)),
-                         static_cast<unsigned int>(get_lane(look.most_at, l)),
+                         static_cast<unsigned int>(get_lane(look.min_at, l)),
+                         static_cast<unsigned int>(get_lane(look.max_at, l)),
                          get_lane(sums.stress_power, l),
                          get_lane(sums.positive_power, l),
                          get_lane(sums.absolute_power, l),
@@ -341,7 +341,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                                 &lane});
       if (lane.output_time == lane.job.n_output_times)
         end(l, LaneOutcome::finished);
-      else if (!go_on || lane.steps >= lane.job.most_steps)
+      else if (!go_on || lane.steps >= lane.job.max_steps)
         end(l, LaneOutcome::stopped);
       else if (is_output_time && lane.job.restarts != nullptr && lane.job.restarts[lane.output_time - 1] != 0)
       {

@@ -17,15 +17,15 @@ namespace crawler
    * The ends of the cells of a body of length 1, from 0 to 1; empty if all cells have one size, 1/n_cells. @p breaks
    * (ascending, in (0, 1)) are ends of cells. The pieces between them get at least one cell each, two if they are
    * graded, and cells of one size in proportion to their lengths as far as whole numbers allow: @p n_cells altogether,
-   * or least_cells() if that is more. Then the cell at each end of a piece is divided at ratio^levels, ..., ratio^2,
-   * ratio of its size, seen from that end.
+   * or min_graded_cells() if that is more. Then the cell at each end of a piece is divided at ratio^levels, ...,
+   * ratio^2, ratio of its size, seen from that end.
    */
   std::vector<double>
   cell_ends(unsigned int n_cells, const std::vector<double> &breaks, const Grading &grading);
 
   /// Least number of cells, before grading, that matters: cell_ends() gives the same mesh for fewer.
   unsigned int
-  least_cells(std::size_t n_breaks, const Grading &grading);
+  min_graded_cells(std::size_t n_breaks, const Grading &grading);
 
   /// Number of cells, before grading, of a mesh that is certainly finer than that of @p n_cells: @p factor times as
   /// many, or one more for each piece between breaks if that is more.

@@ -65,10 +65,10 @@ namespace crawler
     void
     finish();
 
-    /// Quadrilaterals, at most @p most_ground: a strip under the body's path, and ticks below it.
+    /// Quadrilaterals, at most @p max_ground: a strip under the body's path, and ticks below it.
     Corners
     ground() const;
-    static constexpr std::size_t most_ground = 64;
+    static constexpr std::size_t max_ground = 64;
 
     /// Distance of the ticks [length]: 1, 2 or 5 times a power of ten, times L/10.
     double

@@ -53,8 +53,8 @@ namespace crawler
 
     const std::filesystem::path path_; ///< of the HDF5 file
     const double length_;
-    const std::size_t expected_;                ///< frames
-    std::size_t most_frames_, most_points_ = 0; ///< capacity of the file
+    const std::size_t expected_;              ///< frames
+    std::size_t max_frames_, max_points_ = 0; ///< capacity of the file
     std::unique_ptr<SnapshotHdf5> file_;
     std::vector<FrameSize> frames_;
     GrowingText body_, line_; ///< the descriptions

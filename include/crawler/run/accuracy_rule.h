@@ -18,11 +18,11 @@ namespace crawler::accuracy_rule
   namespace choice
   {
     inline constexpr unsigned int automatic_degree = 6;
-    inline constexpr unsigned int fewest_cells = 4, most_cells = 4096;
+    inline constexpr unsigned int min_cells = 4, max_cells = 4096;
     /// Stretch below which a pilot that breaks off has lost it.
     inline constexpr double emptied = 0.1;
     /// Limit on the cells of uniform meshes of pilots; degree of adaptive meshes.
-    inline constexpr unsigned int most_uniform_cells = 1024, adaptive_degree = 4;
+    inline constexpr unsigned int max_uniform_cells = 1024, adaptive_degree = 4;
     /// Factor on the sum of the error indicators over the strain: a bound of the relative error of the displacement.
     inline constexpr double indicator_factor = 8.;
     /// Stretch form: cells of the coarsest mesh, cells for each length in which the active stress changes, and the time
@@ -31,8 +31,8 @@ namespace crawler::accuracy_rule
     inline constexpr double cells_of_length = 4., family_tolerance = 10., largest_family_tolerance = 1e-3;
     /// Layers of the stretch form: layer_lengths times k/max|m_s| thick, at most this part of the body.
     inline constexpr double layer_lengths = 1., largest_layer = 0.02;
-    inline constexpr unsigned int most_pilot_steps = 100000, most_adaptive_pilot_steps = 20000,
-                                  most_adaptive_pilot_cells = 1200;
+    inline constexpr unsigned int max_pilot_steps = 100000, max_adaptive_pilot_steps = 20000,
+                                  max_adaptive_pilot_cells = 1200;
     /// Relative accuracy of the displacement for pilots that end when their cycles repeat.
     inline constexpr double pilot_accuracy = 1e-2;
     /// Limit of `unresolved` below which a pilot's mesh is good enough to predict others.
@@ -47,7 +47,7 @@ namespace crawler::accuracy_rule
     /// much more accurately than their tolerance says.
     inline constexpr double radau_5_superconvergence = 50., radau_9_superconvergence = 2000.;
     /// Smallest tolerances relative to the motion; below the second, kinks in the friction of stiff bodies stop a run.
-    inline constexpr double least_tolerance = 1e-15, least_tolerance_if_kinks = 1e-10;
+    inline constexpr double min_tolerance = 1e-15, min_tolerance_if_kinks = 1e-10;
     /// Accuracy below which runs on uniform meshes are by radau 9, others by radau 5.
     inline constexpr double radau_9_accuracy = 1.1e-4;
     /// Counterpart on graded meshes, where starts take many steps that are short for any method.
@@ -58,18 +58,18 @@ namespace crawler::accuracy_rule
     inline constexpr unsigned int graded_degree = 6, accurate_graded_degree = 8;
     inline constexpr double accurate_graded = 3e-7;
     /// Numbers of breaks beyond which graded meshes become too large, or too many starts have nothing sudden.
-    inline constexpr std::size_t most_graded_places = 200, most_gentle_breaks = 200;
+    inline constexpr std::size_t max_graded_places = 200, max_gentle_breaks = 200;
     /// Smallest error that may be wanted, as a part of the length: round-off.
-    inline constexpr double least_error = 3e-15;
+    inline constexpr double min_error = 3e-15;
     /// Largest tolerance with pictures, relative to the wanted error, since the displacement within a step of radau 5
     /// or 9 has an error of up to half the tolerance; and its floor, as a part of the length.
-    inline constexpr double tolerance_of_pictures = 2., least_tolerance_of_pictures = 1e-13;
+    inline constexpr double tolerance_of_pictures = 2., min_tolerance_of_pictures = 1e-13;
     /// First tolerances on graded meshes, relative to the wanted error.
     inline constexpr double graded_radau_5 = 4., graded_radau_9 = 10., graded_others = 0.1;
     /// Meshes for moving jumps: doubled from the coarsest until the displacement settles, which it does in proportion
     /// to the cell size, with tolerances that fall in the same proportion; limits on cells, and on cells times steps.
     inline constexpr unsigned int moving_degree = 2, first_moving_cells = 64, last_moving_cells = 2048;
-    inline constexpr double moving_tolerance = 0.1, most_moving_work = 1e7;
+    inline constexpr double moving_tolerance = 0.1, max_moving_work = 1e7;
     /// Smallest number of steps of a period for each cell.
     inline constexpr double moving_steps = 4.;
     /// Factors on the last change, which is the remaining error of a first-order method: a larger part is promised.
@@ -78,7 +78,7 @@ namespace crawler::accuracy_rule
     inline constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
     /// Runs long_run times as long as their first strides that do not end when cycles repeat have their numerics
     /// chosen by those strides. Strides are slow to repeat below this stiffness, in natural units of a stride.
-    inline constexpr double first_strides = 3., long_run = 4., least_settling_stiffness = 0.02;
+    inline constexpr double first_strides = 3., long_run = 4., min_settling_stiffness = 0.02;
     /// Bodies softer than very_soft, in natural units, may have a relative error of soft_error on adaptive meshes
     /// whatever Accuracy is: the indicators do not see their layers, and uniform meshes do not see them at all.
     inline constexpr double very_soft = 2e-5, soft_error = 3e-3;
@@ -98,16 +98,16 @@ namespace crawler::accuracy_rule
     /// Relative change of the displacement assumed for the tolerance beyond which that is set anew.
     inline constexpr double same_size = 0.1;
     /// Limits at which the search is given up.
-    inline constexpr unsigned int most_runs = 40, most_cells = 96, most_cells_of_piece = 12;
-    /// Factor on most_cells while cells times steps stay below most_work; the last change by more cells may then be
+    inline constexpr unsigned int max_runs = 40, max_cells = 96, max_cells_of_piece = 12;
+    /// Factor on max_cells while cells times steps stay below max_work; the last change by more cells may then be
     /// last_part of the wanted error.
     inline constexpr unsigned int more_cells_than_most = 4;
-    inline constexpr double most_work = 3e5, last_part = 0.5;
+    inline constexpr double max_work = 3e5, last_part = 0.5;
     inline constexpr double smallest_cell = 1e-7, emptied = 1e-3;
     /// Thickness of layers, relative to the length, below which they do not count.
     inline constexpr double smallest_layer = 1e-6;
     /// Number of times the search begins anew, with twice the cells, if its first mesh loses a stretch.
-    inline constexpr unsigned int most_beginnings = 3;
+    inline constexpr unsigned int max_beginnings = 3;
     inline constexpr double more_cells = 1.5, finer_tolerance = 0.1;
     inline constexpr double longest_first_step = 1e-2, shortest_first_step = 1e-16;
   } // namespace graded
@@ -131,7 +131,7 @@ namespace crawler::accuracy_rule
     inline constexpr double softest = 1e-3, emptied = 0.06, emptied_if_it_inverts = 3e-3, moderate = 1e-5;
     inline constexpr double softness_power = 0.5, stretch_power = 0.35;
     /// Limits beyond which many cells of the position form are cheaper.
-    inline constexpr double most_lengths = 30., least_accuracy = 1e-7;
+    inline constexpr double max_lengths = 30., min_accuracy = 1e-7;
   } // namespace form
 
   // Families of meshes of the stretch form (mesh_family.cc; doc/numerics.md, "Stretch form"). Measured by
@@ -139,21 +139,21 @@ namespace crawler::accuracy_rule
   namespace family
   {
     /// Cells of the finest mesh: in general, for an Accuracy below accurate, and of bodies that invert.
-    inline constexpr unsigned int most_cells = 3200, most_cells_if_accurate = 6400, most_cells_if_inverted = 1600;
+    inline constexpr unsigned int max_cells = 3200, max_cells_if_accurate = 6400, max_cells_if_inverted = 1600;
     inline constexpr double accurate = 2e-6;
     /// Limits on cells times steps of the next mesh, about a second for each 2e6, and the factor by which it takes more
     /// of them than the last one.
-    inline constexpr double most_work = 2.5e7, most_work_if_accurate = 5e7, more_work = 5.;
+    inline constexpr double max_work = 2.5e7, max_work_if_accurate = 5e7, more_work = 5.;
     /// Part of the wanted error that the error in time may be; number of reductions of the time tolerance for that.
-    inline constexpr double time_part             = 0.3;
-    inline constexpr unsigned int most_tolerances = 5;
-    inline constexpr double finer_tolerance       = 0.1;
+    inline constexpr double time_part            = 0.3;
+    inline constexpr unsigned int max_tolerances = 5;
+    inline constexpr double finer_tolerance      = 0.1;
     /// Stretch below which cells are empty; largest time tolerance then.
     inline constexpr double empty = 1e-9, tolerance_if_empty = 3e-7;
     inline constexpr unsigned int few_steps = 30;  ///< steps below which errors grow fast with the cells
-    inline constexpr double least_part      = 0.5; ///< part of the wanted error that all runs have in common
+    inline constexpr double min_part        = 0.5; ///< part of the wanted error that all runs have in common
     /// Observed orders between which second order is accepted.
-    inline constexpr double least_order = 1.5, largest_order = 2.7;
+    inline constexpr double min_order = 1.5, largest_order = 2.7;
     /// Factors by which a time tolerance, relative to the strain, may be too large or small before it is chosen anew.
     inline constexpr double too_large = 2., too_small = 0.05;
     /// Limits relative to the time of an inversion: error beyond which it may be none; change beyond which meshes are
@@ -164,8 +164,8 @@ namespace crawler::accuracy_rule
     /// Rates at which extrapolations settle: beyond fast a further factor credited counts; beyond fastest, the fourth
     /// order, it is chance, as is a turning point. Regions thinner than cells count unseen_part of their length.
     inline constexpr double fast = 5., credited = 3., fastest = 16., turned = 8., unseen_part = 0.15;
-    /// Factor on the last change of the time of an inversion for its error, for a between least_slow_exponent and 0.
-    inline constexpr double least_slow_exponent = -0.5, sticking_factor = 3.;
+    /// Factor on the last change of the time of an inversion for its error, for a between min_slow_exponent and 0.
+    inline constexpr double min_slow_exponent = -0.5, sticking_factor = 3.;
     /// Deviation of the order from 2 up to which that is accepted; else a first change counts unclean_factor times.
     inline constexpr double clean = 0.25, unclean_factor = 2.;
   } // namespace family
@@ -177,14 +177,14 @@ namespace crawler::accuracy_rule
     /// Widths of fronts, relative to the widest that fit: the first, halved each time, and the last.
     inline constexpr double first_part = 0.32, last_part = 0.0025;
     /// Largest number of widths of an answer.
-    inline constexpr unsigned int most_levels = 5;
+    inline constexpr unsigned int max_levels = 5;
     /// Error bound of the answer: at most this multiple of the change by one width less, and of that since the answer
     /// before.
     inline constexpr double factor = 2., factor_of_change = 0.5;
     /// Accuracy of the runs, relative to the wanted one, and its limits.
-    inline constexpr double part_of_runs = 0.1, least_accuracy = 1e-9, largest_accuracy = 1e-3;
+    inline constexpr double part_of_runs = 0.1, min_accuracy = 1e-9, largest_accuracy = 1e-3;
     /// Steps of all runs after which no steeper fronts are tried.
-    inline constexpr unsigned long most_steps = 100000;
+    inline constexpr unsigned long max_steps = 100000;
     /// Relative change of the time of an inversion from fronts to fronts below which it is known.
     inline constexpr double settled_inversion = 1e-2;
   } // namespace fronts
@@ -213,11 +213,11 @@ namespace crawler::accuracy_rule
     inline constexpr double first_step = 1e-3;
     /// Layers at the ends of bodies softer than soft, in natural units, about as thick as the softness; the finer run
     /// has cells as small as the softness times layer_cells there, graded by layer_ratio.
-    inline constexpr double soft = 1e-3, layer_cells = 3., layer_ratio = 0.25, most_layer_levels = 8.;
+    inline constexpr double soft = 1e-3, layer_cells = 3., layer_ratio = 0.25, max_layer_levels = 8.;
     /// Tolerance where one cycle stands for many: its error does not average out, so the finer run is more accurate.
     inline constexpr double finer_tolerance_of_cycles = 0.25;
     /// Factors on cells and tolerance for the next try.
-    inline constexpr double refined_cells = 1.2, most_refined_cells = 4., refined_tolerance = 0.1;
+    inline constexpr double refined_cells = 1.2, max_refined_cells = 4., refined_tolerance = 0.1;
     /// Round-off of the displacement, as a part of the body length.
     inline constexpr double round_off = 1e-15;
   } // namespace finer_run
@@ -234,7 +234,7 @@ namespace crawler::accuracy_rule
     /// Stretch below which nothing is estimated.
     inline constexpr double least_stretch = 0.1;
     /// Limit on steps times cells of a run for the sweep, about a second.
-    inline constexpr double most_work = 5e4;
+    inline constexpr double max_work = 5e4;
   } // namespace sweep
 
   // Derivatives by entries (studies/core/sensitivities.cc). Measured by
@@ -248,7 +248,7 @@ namespace crawler::accuracy_rule
                             promised_factor_of_positive_work = 160., round_off = 1e-10;
     /// Relative steps of entries whose answers are compared where there is no adjoint; a slope is suspicious if it
     /// changes by more than this part, as a kink's does, and values closer by closer_answers decide.
-    inline constexpr double least_step_of_answers = 1e-3, largest_step_of_answers = 0.01, suspicious = 0.1,
+    inline constexpr double min_step_of_answers = 1e-3, largest_step_of_answers = 0.01, suspicious = 0.1,
                             closer_answers = 0.25;
   } // namespace sensitivities
 
@@ -281,11 +281,11 @@ namespace crawler::accuracy_rule
     /// Changes of the strain below this multiple of the tolerance of the time integration are its noise.
     inline constexpr double noise = 10.;
     /// Limit of the remaining drift, as a part of the smallest stretch.
-    inline constexpr double least_part = 0.1;
+    inline constexpr double min_part = 0.1;
     /// Distance of a start from the first phase, as a part of a cycle, below which it is left out.
     inline constexpr double short_start = 1e-3;
     /// Largest number of cycles watched.
-    inline constexpr unsigned int most_watched = 200;
+    inline constexpr unsigned int max_watched = 200;
   } // namespace cycles
 
   // Tolerances of the identities of a finished run (self_check.cc; doc/numerics.md, "Energy balance and self-checks").
@@ -293,7 +293,7 @@ namespace crawler::accuracy_rule
   namespace identities
   {
     /// Energy residual, relative: in units of Accuracy for each form, and at least.
-    inline constexpr double of_accuracy = 10., of_accuracy_in_stretch_form = 300., least_residual = 1e-8;
+    inline constexpr double of_accuracy = 10., of_accuracy_in_stretch_form = 300., min_residual = 1e-8;
     /// Energy residuals with the user's numerics; for moving jumps; above which stretch-form works are unknown.
     inline constexpr double residual_of_users = 0.1, residual_of_moving_jumps = 0.2, residual_of_known_works = 0.1;
     /// Net friction, relative to the absolute one.

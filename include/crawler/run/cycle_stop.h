@@ -53,12 +53,12 @@ namespace crawler
     static constexpr unsigned int n_phases = 8, n_pieces = 64;
 
     /// Least number of cycles worth watching: two must be computed before one can repeat.
-    static constexpr unsigned int fewest_cycles = 3;
+    static constexpr unsigned int min_cycles = 3;
 
     /// @p wish has its times in units of the duration; @p tolerance is that of the time integration.
     CycleStop(const CycleWish &wish, double tolerance);
 
-    /// True if the duration, which is the unit of times, holds fewest_cycles.
+    /// True if the duration, which is the unit of times, holds min_cycles.
     static bool
     fits(const CycleWish &wish);
 

@@ -20,8 +20,8 @@ namespace crawler
     double tolerance                   = 0.; ///< [length]
     double initial_step                = 0.; ///< [time]
     std::vector<StepLimit> step_limits = {}; ///< limits of adaptive steps [time]
-    double least_event = 0.; ///< size [force] from which on an event of the active stress within a step makes it be
-                             ///< repeated; 0: events are not looked for
+    double min_event = 0.; ///< size [force] from which on an event of the active stress within a step makes it be
+                           ///< repeated; 0: events are not looked for
     Formulation formulation = Formulation::position;
     MeshLimits mesh         = {};    ///< limits of an adaptive mesh
     std::string integrator  = "";    ///< integrator that replaces an automatic one (time/integrators.h); empty: bdf
@@ -34,7 +34,7 @@ namespace crawler
     void
     exchange(Archive &archive)
     {
-      archive(degree, n_cells, tolerance, initial_step, step_limits, least_event, formulation, mesh, integrator);
+      archive(degree, n_cells, tolerance, initial_step, step_limits, min_event, formulation, mesh, integrator);
       archive(grading, layer, parts, other_rule, jumps_move);
     }
   };

@@ -47,7 +47,7 @@ namespace crawler
     static bool
     is_same(const double a, const double b)
     {
-      return a - b <= least_time_between_breaks && b - a <= least_time_between_breaks;
+      return a - b <= min_time_between_breaks && b - a <= min_time_between_breaks;
     }
 
   private:

@@ -15,9 +15,9 @@ namespace crawler
   class StepLimiter
   {
   public:
-    /// @p limits may be empty; no step is longer than @p longest. Events are changes of at least @p least_event
+    /// @p limits may be empty; no step is longer than @p longest. Events are changes of at least @p min_event
     /// [force]; 0: events are not looked for.
-    StepLimiter(const std::vector<StepLimit> &limits, double longest, const ActiveStress &stress, double least_event);
+    StepLimiter(const std::vector<StepLimit> &limits, double longest, const ActiveStress &stress, double min_event);
 
     std::span<const StepLimit>
     limits() const

@@ -9,7 +9,7 @@
 namespace crawler
 {
   /// Smallest deviation within a step from the expected stress that is an event, relative to the largest |m|.
-  constexpr double least_event = 0.1;
+  constexpr double min_event = 0.1;
 
   /**
    * Watch for events of an active stress that a step has passed over: at times inside the step that no integrator can

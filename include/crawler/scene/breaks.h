@@ -12,7 +12,7 @@ namespace crawler
   class ActiveStress;
 
   /// Breaks closer than this fraction of the duration, or of the length, are one.
-  constexpr double least_time_between_breaks = 1e-12, least_space_between_breaks = 1e-9;
+  constexpr double min_time_between_breaks = 1e-12, min_space_between_breaks = 1e-9;
 
   /// The @p places that are in (0, @p end).
   std::vector<double>
@@ -20,7 +20,7 @@ namespace crawler
 
   /// Largest number of spline knots that count as breaks: the third derivative jumps there. Where more are, cells are
   /// small anyway.
-  constexpr std::size_t most_knots_of_splines = 24;
+  constexpr std::size_t max_knots_of_splines = 24;
 
   /// Breaks of an active stress in (0, @p length), ascending, each once [length]; the ends of the body are none.
   std::vector<double>

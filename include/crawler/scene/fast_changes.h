@@ -25,8 +25,8 @@ namespace crawler
   /// Limits of the search.
   struct FastChangeLimits
   {
-    unsigned int most_bounds = 20000; ///< bounds evaluated at most
-    double least_jump        = 0.05;  ///< smaller jumps are ignored, relative to the largest |m|
+    unsigned int max_bounds = 20000; ///< bounds evaluated at most
+    double min_jump         = 0.05;  ///< smaller jumps are ignored, relative to the largest |m|
   };
 
   /**

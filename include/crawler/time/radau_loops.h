@@ -22,13 +22,13 @@ namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
       return s;
     }
   };
-  constexpr int most_stages = 7;
+  constexpr int max_stages = 7;
 
   /// Largest multiple of the last step up to which its polynomial is a good first guess.
   constexpr double longest_extrapolation = 3.;
   /// Constants of the step control: the next step is safety * (1/error)^(1/(s+1)) of the present one, within these
   /// factors.
-  constexpr double safety = 0.9, least_change = 0.1, most_change = 5.;
+  constexpr double safety = 0.9, min_change = 0.1, max_change = 5.;
   /// Number of steps after which the disturbance of stiff components by a start, or by a change of mesh, has faded to
   /// traces.
   constexpr unsigned int settling_steps = 3;
@@ -84,7 +84,7 @@ namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
              const int n,
              Number *rate)
   {
-    Number weights[most_stages];
+    Number weights[max_stages];
     for (int j = 0; j < s; ++j)
       weights[j] = inverse_h * inverse[i * s + j];
     combine(s, weights, z, n, rate);
@@ -158,7 +158,7 @@ namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
   {
     for (int d = 0; d < n; ++d)
     {
-      Number own[most_stages], sum = Number{};
+      Number own[max_stages], sum = Number{};
       for (int j = 0; j < s; ++j)
       {
         own[j] = f[j * n + d];

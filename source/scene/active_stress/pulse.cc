@@ -78,11 +78,11 @@ namespace crawler
   void
   Pulse::require_reachable_body(const double end_time) const
   {
-    const double least_width = 1e-4 * length_;
-    if (width_ < least_width)
+    const double min_width = 1e-4 * length_;
+    if (width_ < min_width)
       throw InputError(
         fmt::format(
-          "the pulse is {:g} wide, but at least {:g} is expected, a ten thousandth of the body", width_, least_width),
+          "the pulse is {:g} wide, but at least {:g} is expected, a ten thousandth of the body", width_, min_width),
         pulse_section + "Width");
     if (period_ > 0.)
     {

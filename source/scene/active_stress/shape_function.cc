@@ -17,7 +17,7 @@ namespace crawler
     constexpr double smallest = 1e-10;              ///< panel, relative to the initial length
     constexpr double tiny     = 1e-6;               ///< largest panel, likewise, that only a kink causes
     constexpr double accuracy = 1e-13, jump = 1e-3; ///< of the largest |V|
-    constexpr std::size_t most_panels = 1000000;
+    constexpr std::size_t max_panels = 1000000;
 
     /// sum c_k T_k(u)
     double
@@ -78,7 +78,7 @@ namespace crawler
     , left_{from}
   {
     const auto n_panels = static_cast<std::size_t>(std::ceil((to - from) / size * (1. - 1e-12)));
-    if (n_panels > most_panels)
+    if (n_panels > max_panels)
       throw std::logic_error("too many panels from the beginning");
     const auto end_of = [&](const std::size_t i) {
       return i == n_panels ? to : from + (to - from) * static_cast<double>(i) / static_cast<double>(n_panels);
@@ -122,7 +122,7 @@ namespace crawler
       if (last > accuracy * largest && !is_smallest)
       {
         rights.push_back(0.5 * (left + right));
-        if (left_.size() + rights.size() > most_panels)
+        if (left_.size() + rights.size() > max_panels)
           throw InputError(fmt::format("the shape has more detail from x = {:g} to {:g} than a million polynomials of "
                                        "degree {} have; a smoother one is expected",
                                        from,

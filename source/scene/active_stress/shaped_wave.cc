@@ -23,9 +23,9 @@ namespace crawler
     /// Longest panel of the polynomials through a formula, relative to the body.
     constexpr double longest_panel = 1. / 16.;
     /// Largest number of body lengths; more would take too much memory.
-    constexpr double most_lengths = 1e4;
+    constexpr double max_lengths = 1e4;
     /// Largest number of strides for which the leading order is reported.
-    constexpr double most_reported = 100.;
+    constexpr double max_reported = 100.;
 
     ShapeFunction
     shape_from_formula(const OptimalWaveParameters &parameters,
@@ -104,11 +104,11 @@ namespace crawler
       if (c == 0.)
         throw InputError("the wave speed is 0, but a number that is not 0 is expected",
                          shaped_wave_section + "Wave speed");
-      if (!(std::abs(way) <= most_lengths * body.length))
+      if (!(std::abs(way) <= max_lengths * body.length))
         throw InputError(fmt::format("the wave runs {:.3g} body lengths until the end time, but at most {:g} are "
                                      "expected with Shape = {}",
                                      std::abs(way) / body.length,
-                                     most_lengths,
+                                     max_lengths,
                                      parameters.shape),
                          shaped_wave_section + "Wave speed");
       const double from = std::min(0., way), to = body.length + std::max(0., way);
@@ -223,7 +223,7 @@ namespace crawler
                        speed_,
                        body.friction_exponent() / (body.length * body.friction_coefficient * speed_),
                        shape_name_);
-    if (std::abs(speed_) * end_time_ <= most_reported * body.length)
+    if (std::abs(speed_) * end_time_ <= max_reported * body.length)
     {
       const LeadingOrder order = leading_order();
       out << fmt::format(", leading-order displacement {:.8g}, energy {:.8g}, stretch {:.4g} to {:.4g}{}",

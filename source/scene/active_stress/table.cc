@@ -229,7 +229,7 @@ namespace crawler
     constexpr std::size_t most = 256;
     const auto &s              = table_.grid().s;
     auto knots                 = inside(s, length_);
-    if (knots.size() <= (parameters_.interpolation == "linear" ? most : most_knots_of_splines))
+    if (knots.size() <= (parameters_.interpolation == "linear" ? most : max_knots_of_splines))
       return knots;
     return inside({s.front(), s.back()}, length_); // ends of a held table
   }

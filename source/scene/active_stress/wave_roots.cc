@@ -17,7 +17,7 @@ namespace crawler
     using std::numbers::pi;
 
     /// Largest number of waves that are ever listed.
-    constexpr std::size_t most_roots = 100000;
+    constexpr std::size_t max_roots = 100000;
     /// Number of waves up to which the list is complete.
     constexpr double few_roots = 2000;
 
@@ -173,7 +173,7 @@ namespace crawler
     const std::vector<double> g = strain_of_speed_1(shape);
     unsigned int admissible     = 0;
     const auto enough           = [&]() {
-      return result.roots.size() >= most_roots || (result.roots.size() >= at_least && admissible >= 10);
+      return result.roots.size() >= max_roots || (result.roots.size() >= at_least && admissible >= 10);
     };
     const auto add = [&](const double x) {
       result.roots.push_back(describe(body, shape, g, chi, end_time, sign * x * L / end_time));

@@ -65,7 +65,7 @@ namespace crawler
   step_of_differences(const double relative_error)
   {
     using namespace accuracy_rule::sensitivities;
-    return std::clamp(0.5 * std::cbrt(relative_error), least_step_of_answers, largest_step_of_answers);
+    return std::clamp(0.5 * std::cbrt(relative_error), min_step_of_answers, largest_step_of_answers);
   }
 
   bool

@@ -237,6 +237,6 @@ namespace crawler
           : scene.keeps_its_centre()   ? "the displacement, by which cycles are judged, is 0 at a = 0"
           : !scene.active_stress->repetition()
             ? "no period of the active stress is known"
-            : fmt::format("the active stress repeats fewer than {} times", CycleStop::fewest_cycles));
+            : fmt::format("the active stress repeats fewer than {} times", CycleStop::min_cycles));
   }
 } // namespace crawler

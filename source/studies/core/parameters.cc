@@ -27,7 +27,7 @@ namespace crawler
         "and loguniform(from, to). The name \"File\" instead of an entry stands for parameter files whose entries "
         "replace those of this one. Names of files count from the folder of this parameter file (with --set, from the "
         "current one).");
-    declarations.whole_number("Number of points", n_points, 1, most_points)
+    declarations.whole_number("Number of points", n_points, 1, max_points)
       .means("Of a random or Latin hypercube design; the others count themselves.");
     declarations.whole_number("Seed", seed, 0, std::numeric_limits<unsigned int>::max())
       .means("Of the random numbers of a random or Latin hypercube design: the same seed gives the same points.");
@@ -121,7 +121,7 @@ namespace crawler
       .means("Of the random starts: the same seed gives the same starts.");
     declarations.number("Tolerance", tolerance, between(1e-12, 0.1), "1")
       .means("The optimiser stops when the gradient and the violation of limits, both relative, are below this.");
-    declarations.whole_number("Most iterations", most_iterations, 1, 1000000)
+    declarations.whole_number("Most iterations", max_iterations, 1, 1000000)
       .means("Of the optimiser (its outer loop, in which the multipliers of the limits are found), for each start.");
     declarations.number("Time limit", time_limit, positive(), "s")
       .means("Wall time after which the best so far is the result; --resume goes on. Automatic: none.");

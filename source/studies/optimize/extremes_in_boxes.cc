@@ -10,7 +10,7 @@ namespace crawler
   namespace
   {
     constexpr std::size_t n_space = 8, per_box = 16;
-    constexpr double boxes_of_stride = 8., most_strides = 4., most_times = 2560.;
+    constexpr double boxes_of_stride = 8., max_strides = 4., max_times = 2560.;
     constexpr std::size_t reach = 2; ///< shift of a crest from one time to the next [points]
     /// Distance within which neighbours are the two sides of a break.
     constexpr double beside = 1e-9;
@@ -66,14 +66,14 @@ namespace crawler
   std::size_t
   ExtremesInBoxes::boxes_in_time(const double strides)
   {
-    return static_cast<std::size_t>(boxes_of_stride * std::clamp(std::ceil(strides), 1., most_strides));
+    return static_cast<std::size_t>(boxes_of_stride * std::clamp(std::ceil(strides), 1., max_strides));
   }
 
   ExtremesInBoxes::ExtremesInBoxes(const std::size_t n_time, const double strides, const Breaks &breaks)
     : n_time_(n_time)
     , points_(equal_parts(n_space * per_box, breaks.in_space))
     , times_(equal_parts(static_cast<std::size_t>(std::clamp(
-                           per_box * boxes_of_stride * strides, per_box * static_cast<double>(n_time), most_times)),
+                           per_box * boxes_of_stride * strides, per_box * static_cast<double>(n_time), max_times)),
                          breaks.in_time))
   {
   }

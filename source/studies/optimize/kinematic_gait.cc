@@ -113,8 +113,8 @@ namespace crawler
   KinematicGait::choose_limited_places(const bool many)
   {
     // Nonlinear strains are computed anew at all of them, for each variable.
-    const unsigned int most_times = many ? 128 : 32, most = many ? 65536 : 4096, closer = many ? 64 : 8;
-    n_limited_t_ = std::min(std::bit_ceil(GaussPanels::n_points * n_time_), most_times);
+    const unsigned int max_times = many ? 128 : 32, most = many ? 65536 : 4096, closer = many ? 64 : 8;
+    n_limited_t_ = std::min(std::bit_ceil(GaussPanels::n_points * n_time_), max_times);
     n_limited_s_ = std::min(closer * GaussPanels::n_points * n_space_, most / n_limited_t_);
   }
 

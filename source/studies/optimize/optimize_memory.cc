@@ -281,7 +281,7 @@ namespace crawler
   OptimizeMemory::keep(StartResult start)
   {
     const bool is_new = std::erase_if(starts_, [&](const StartName &one) { return one == start; }) == 0;
-    const bool fits   = n_starts_ < most_starts_ && n_evaluations_ + start.records.size() <= most_evaluations_;
+    const bool fits   = n_starts_ < max_starts_ && n_evaluations_ + start.records.size() <= max_evaluations_;
     starts_.push_back(std::move(start));
     if (is_new && fits)
       write(starts_.back());
@@ -305,15 +305,15 @@ namespace crawler
   void
   OptimizeMemory::write_all(const bool with_room)
   {
-    constexpr unsigned long fewest_starts = 16, fewest_evaluations = 1024;
+    constexpr unsigned long min_starts = 16, min_evaluations = 1024;
     start_rows_.reset();
     evaluation_rows_.reset();
     unsigned long n = 0;
     for (const StartResult &start : starts_)
       n += start.records.size();
-    most_starts_      = starts_.size() + (with_room ? std::max(starts_.size(), fewest_starts) : 0);
-    most_evaluations_ = n + (with_room ? std::max(n, fewest_evaluations) : 0);
-    plan_.n           = most_starts_;
+    max_starts_      = starts_.size() + (with_room ? std::max(starts_.size(), min_starts) : 0);
+    max_evaluations_ = n + (with_room ? std::max(n, min_evaluations) : 0);
+    plan_.n          = max_starts_;
     const std::vector<RowFile::Column> written = evaluation_columns(names_);
     std::vector<RowFile::Column> columns       = written;
     columns.insert(columns.begin(), index_column);
@@ -325,7 +325,7 @@ namespace crawler
     RowFile::create(folder_ / (evaluations_file + fresh),
                     evaluations_group,
                     columns,
-                    most_evaluations_,
+                    max_evaluations_,
                     provenance(plan_.effective, command_line_),
                     known_index());
     const auto open = [&](const std::string &end) {

@@ -150,8 +150,8 @@ namespace crawler
   std::vector<std::string>
   in_words(const OptimizeResults &results, const OptimizeCases &cases, const std::vector<std::string> &summaries)
   {
-    constexpr std::size_t most_variables = 12;
-    constexpr double near_inversion      = 0.02;
+    constexpr std::size_t max_variables = 12;
+    constexpr double near_inversion     = 0.02;
     std::vector<std::string> lines;
     for (std::size_t i = 0; i < results.best.size(); ++i)
     {
@@ -187,10 +187,10 @@ namespace crawler
                         "back, not a limit that was set. Optimize/Smallest strain sets one",
                         stretch));
       }
-      for (std::size_t k = 0; k < std::min(its.paths.size(), most_variables); ++k)
+      for (std::size_t k = 0; k < std::min(its.paths.size(), max_variables); ++k)
         lines.push_back(fmt::format("  {} = {:.8g}", its.paths[k], start.best.x[k]));
-      if (its.paths.size() > most_variables)
-        lines.push_back(fmt::format("  and {} more variables", its.paths.size() - most_variables));
+      if (its.paths.size() > max_variables)
+        lines.push_back(fmt::format("  and {} more variables", its.paths.size() - max_variables));
       for (const GaitLimit &limit : start.limits)
         if (std::isfinite(limit.multiplier) && limit.multiplier != 0.)
           lines.push_back(fmt::format(

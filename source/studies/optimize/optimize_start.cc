@@ -130,14 +130,14 @@ namespace crawler
       void
       go_on()
       {
-        constexpr unsigned int most_rounds = 12;
+        constexpr unsigned int max_rounds = 12;
         constexpr double above_noise = 10., promised = 1e-5;
         const auto model  = make_gait_model(family_, x_, stops_);
         wanted_.tolerance = std::max(wanted_.tolerance, above_noise * model->noise());
         parameters_       = wanted_;
         bool is_rough     = model->noise() == 0.; // with simulations all is known after the first round
         bool is_fine      = false;
-        for (unsigned int round = 0; round < most_rounds; ++round)
+        for (unsigned int round = 0; round < max_rounds; ++round)
         {
           improve(*model, is_rough);
           if (round == 0 && result_.has_converged && !moves() && result_.records.front().violation > 0.)
@@ -183,7 +183,7 @@ namespace crawler
       void
       improve(GaitModel &model, const bool is_rough)
       {
-        constexpr double roughly = 1e-3, most_unused = 0.01;
+        constexpr double roughly = 1e-3, max_unused = 0.01;
         const GaitProblem *current = nullptr;
         const auto stops           = [&]() {
           if (current != nullptr)
@@ -211,14 +211,14 @@ namespace crawler
                                             problem.to_y(x_),
                                             multipliers_,
                                             is_rough ? std::max(roughly, tolerance) : tolerance,
-                                            parameters_.most_iterations);
+                                            parameters_.max_iterations);
           multipliers_             = end.multipliers;
           scale_                   = problem.scale();
           const std::string at_end = end.has_converged ? problem.at(end.y, /*with_gradients=*/true).problem : "";
           result_.has_converged    = end.has_converged && at_end.empty();
           result_.message          = at_end.empty() ? end.message : "what it ends at has no derivatives, " + at_end;
           keep(result_.has_converged ? &problem.record(end.y) : nullptr);
-          if (result_.has_converged && problem.unused_limits(end.y, end.multipliers) > most_unused)
+          if (result_.has_converged && problem.unused_limits(end.y, end.multipliers) > max_unused)
           {
             result_.has_converged = false;
             result_.message = "a limit that holds the gait back is not reached, so better ones are near; a smaller "
@@ -239,10 +239,10 @@ namespace crawler
       bool
       moves() const
       {
-        constexpr double least_motion = 1e-12;
-        const bool is_cost            = wanted_.objective == "cost of transport"; // positive in the wanted direction
-        const double sign             = wanted_.direction == "forward" || is_cost ? 1. : -1.;
-        return sign * result_.best.objective > least_motion;
+        constexpr double min_motion = 1e-12;
+        const bool is_cost          = wanted_.objective == "cost of transport"; // positive in the wanted direction
+        const double sign           = wanted_.direction == "forward" || is_cost ? 1. : -1.;
+        return sign * result_.best.objective > min_motion;
       }
 
       /// Finds the point nearest to the start that the limits admit, between the start and the result. A start far

@@ -147,12 +147,12 @@ namespace crawler
     ROL::ParameterList
     settings(const double tolerance)
     {
-      constexpr int most_steps = 200;
+      constexpr int max_steps = 200;
       ROL::ParameterList list;
       ROL::ParameterList &test = list.sublist("Status Test");
       test.set("Gradient Tolerance", tolerance);
       test.set("Step Tolerance", 1e-2 * tolerance);
-      test.set("Iteration Limit", most_steps);
+      test.set("Iteration Limit", max_steps);
       return list;
     }
 
@@ -173,10 +173,10 @@ namespace crawler
            const std::vector<double> &y,
            std::vector<double> multipliers,
            const double tolerance,
-           const unsigned int most_iterations)
+           const unsigned int max_iterations)
   {
     constexpr double first_tolerance = 1e-2, first_penalty = 10., largest_penalty = 1e6, less = 0.25;
-    constexpr unsigned int most_idle = 5;
+    constexpr unsigned int max_idle = 5;
     multipliers.resize(problem.lower().size());
     const auto lagrangian = ROL::makePtr<Lagrangian>(problem, std::move(multipliers));
     lagrangian->rho       = first_penalty;
@@ -186,7 +186,7 @@ namespace crawler
     double inner = has_limits ? std::max(first_tolerance, tolerance) : tolerance, before = HUGE_VAL;
     ROL::Bounds<double> limits(vector_of(List(y.size(), 0.)), vector_of(List(y.size(), 1.)));
     std::ostringstream unread;
-    for (unsigned int i = 1; i <= most_iterations; ++i)
+    for (unsigned int i = 1; i <= max_iterations; ++i)
     {
       ROL::ParameterList list = settings(inner);
       ROL::TypeB::LinMoreAlgorithm<double> algorithm(list);
@@ -207,7 +207,7 @@ namespace crawler
       if (!has_limits && !is_good)
         return {*unknowns->getVector(), false, impossible.empty() ? ROL::EExitStatusToString(end) : impossible, i, {}};
       n_idle = (is_good && now <= tolerance) || now < 0.9 * before ? 0 : n_idle + 1;
-      if (n_idle == most_idle)
+      if (n_idle == max_idle)
         return {*unknowns->getVector(),
                 false,
                 !impossible.empty() ? impossible
@@ -220,6 +220,6 @@ namespace crawler
       before = now;
       inner  = std::max(0.1 * inner, tolerance);
     }
-    return {*unknowns->getVector(), false, "too many iterations", most_iterations, lagrangian->mu};
+    return {*unknowns->getVector(), false, "too many iterations", max_iterations, lagrangian->mu};
   }
 } // namespace crawler

@@ -117,7 +117,7 @@ namespace crawler
   std::pair<double, double>
   SimulatedGait::extreme_strains(const std::vector<double> &x)
   {
-    constexpr double pictures_of_stride = 1000., most_pictures = 20000.;
+    constexpr double pictures_of_stride = 1000., max_pictures = 20000.;
     evaluate(x, /*with_gradients=*/false, {});
     const Task &task = latest_.front();
     std::pair<double, double> extremes{task.computed.result.min_stretch.value - 1.,
@@ -126,7 +126,7 @@ namespace crawler
       seen_by(std::make_unique<ExtremesOfPictures>(extremes),
               task,
               equal_parts(static_cast<std::size_t>(
-                std::min(pictures_of_stride * std::max(strides_of(*task.scene), 1.), most_pictures))));
+                std::min(pictures_of_stride * std::max(strides_of(*task.scene), 1.), max_pictures))));
     return extremes;
   }
 

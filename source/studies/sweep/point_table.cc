@@ -124,8 +124,8 @@ namespace crawler
   std::vector<RowFile::Column>
   axis_columns(const SweepDesign &design, const Declarations &declarations)
   {
-    constexpr unsigned int most_axis_width = 256;
-    std::vector<RowFile::Column> columns   = {{"index", "1", "number of the point", 0}};
+    constexpr unsigned int max_axis_width = 256;
+    std::vector<RowFile::Column> columns  = {{"index", "1", "number of the point", 0}};
     for (const SweepAxis &axis : design.axes())
     {
       const std::string unit = axis.is_file() ? "" : declarations.info(axis.entry).unit;
@@ -139,7 +139,7 @@ namespace crawler
       columns.push_back({axis.entry,
                          unit,
                          "axis of the sweep",
-                         is_number ? 0 : std::min(static_cast<unsigned int>(widest), most_axis_width)});
+                         is_number ? 0 : std::min(static_cast<unsigned int>(widest), max_axis_width)});
     }
     return columns;
   }

@@ -295,13 +295,13 @@ namespace crawler
     for (const RowFile::Column &column : sweep_columns(points))
       bytes += column.width == 0 ? sizeof(double) : column.width;
     // Measured time of some parts, spread over the sweep.
-    constexpr unsigned long most_samples = 32;
-    constexpr double long_enough         = 0.5; // [s]
+    constexpr unsigned long max_samples = 32;
+    constexpr double long_enough        = 0.5; // [s]
     SweepWork work(points, size_of(communicator));
     const unsigned long n_parts = work.n_parts(), stride = golden_stride(n_parts);
     const double before      = now();
     unsigned long n_computed = 0;
-    for (unsigned long i = 0; i < n_parts && n_computed < design.n_points() && (i < most_samples || n_computed == 0) &&
+    for (unsigned long i = 0; i < n_parts && n_computed < design.n_points() && (i < max_samples || n_computed == 0) &&
                               now() - before < long_enough;
          ++i)
       n_computed += work.try_out((i + 1) * stride % n_parts);

@@ -147,11 +147,11 @@ namespace crawler
     , order_(blocks_, points)
     , parts_of_block_([&]() {
       // Each rank that takes a part must measure the numerics its block shares. Points of a cross-check take long.
-      constexpr unsigned long most = 64, most_if_alone = 8;
+      constexpr unsigned long most = 64, max_if_alone = 8;
       const unsigned long parts_per_rank = points.sweep().cross_check ? 8 : 4;
       const unsigned long n = points.design().n_points(), largest = blocks_.largest();
       const unsigned long together =
-        std::clamp(n / (parts_per_rank * n_ranks), 1ul, SweepNumerics::are_shared(points) ? most : most_if_alone);
+        std::clamp(n / (parts_per_rank * n_ranks), 1ul, SweepNumerics::are_shared(points) ? most : max_if_alone);
       return (largest + together - 1) / together;
     }())
     , time_limit_(points.sweep().point_time_limit.value_or(HUGE_VAL))
@@ -308,10 +308,10 @@ namespace crawler
 
     // Remaining points are computed a few at a time, or one by one where one takes much work, so that finished ones are
     // soon on the disk. With a time limit for each, none may use up that of its neighbours.
-    const std::size_t most_together = std::isfinite(time_limit_) ? 1 : 8;
-    constexpr double much           = 1e6; // unknowns times steps
-    std::size_t together            = most_together;
-    const std::size_t alone         = missing.size(); // number of the first point to compute alone
+    const std::size_t max_together = std::isfinite(time_limit_) ? 1 : 8;
+    constexpr double much          = 1e6; // unknowns times steps
+    std::size_t together           = max_together;
+    const std::size_t alone        = missing.size(); // number of the first point to compute alone
     missing.insert(missing.end(), sorted.alone.begin(), sorted.alone.end());
     for (std::size_t from = 0, to = 0; from < missing.size(); from = to)
     {
@@ -323,7 +323,7 @@ namespace crawler
       compute_all(few, time_limit_, interrupted);
       if (interrupted())
         return false;
-      together = std::ranges::any_of(few, [&](const Task &one) { return work_of(one) > much; }) ? 1 : most_together;
+      together = std::ranges::any_of(few, [&](const Task &one) { return work_of(one) > much; }) ? 1 : max_together;
       std::vector<Point> ready;
       for (std::size_t i = from; i < to; ++i)
         ready.push_back({missing[i], std::move(few[i - from])});

@@ -324,11 +324,11 @@ namespace crawler
                axes_[0].values.size(),
                axis.entry,
                axis.values.size());
-    if (n > SweepParameters::most_points)
+    if (n > SweepParameters::max_points)
       throw InputError(fmt::format("\"{}\" makes {:.3g} points, but at most {:g} are expected",
                                    entry_name,
                                    n,
-                                   double(SweepParameters::most_points)),
+                                   double(SweepParameters::max_points)),
                        entry_name);
     n_points_ = static_cast<unsigned long>(n);
   }

@@ -235,12 +235,12 @@ namespace crawler
   Form &
   SweepPoints::form(const unsigned long point)
   {
-    constexpr std::size_t most_forms = 64; // half a megabyte each
-    const auto &axes                 = design_->axes();
-    const auto form_of               = [&](const std::string &name) -> Form               &{
+    constexpr std::size_t max_forms = 64; // half a megabyte each
+    const auto &axes                = design_->axes();
+    const auto form_of              = [&](const std::string &name) -> Form              &{
       if (const auto known = forms_.find(name); known != forms_.end())
         return *known->second;
-      if (forms_.size() == most_forms)
+      if (forms_.size() == max_forms)
         forms_.clear();
       const ParameterFile its = scene(name);
       return *(forms_[name] = std::make_unique<Form>(file_, &its));

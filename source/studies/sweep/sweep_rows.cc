@@ -40,7 +40,7 @@ namespace crawler
       return std::ranges::any_of(entries, [](const SensitivityEntry &one) { return one.deviation > 0.; });
     }
 
-    constexpr std::size_t most_wrong_answers = 10;
+    constexpr std::size_t max_wrong_answers = 10;
 
     void
     count(const Table &table, SweepCounts &counts)
@@ -63,7 +63,7 @@ namespace crawler
       {
         if (!verdicts[i].empty())
           ++counts.verdicts[verdicts[i]];
-        if (!explanations[i].empty() && counts.wrong_answers.size() < most_wrong_answers)
+        if (!explanations[i].empty() && counts.wrong_answers.size() < max_wrong_answers)
           counts.wrong_answers.emplace(std::get<std::vector<double>>(*column("index"))[i], explanations[i]);
       }
       for (const char *run : {"", "position ", "stretch "})
@@ -92,7 +92,7 @@ namespace crawler
         add(json[1], all.reasons);
         add(json[2], all.verdicts);
         all.wrong_answers.merge(json[3].get<std::map<unsigned long, std::string>>());
-        while (all.wrong_answers.size() > most_wrong_answers)
+        while (all.wrong_answers.size() > max_wrong_answers)
           all.wrong_answers.erase(std::prev(all.wrong_answers.end()));
         if (json[4].is_number()) // null: unknown
           all.largest_error_ratio = std::fmax(all.largest_error_ratio, json[4].get<double>());

@@ -142,12 +142,12 @@ namespace crawler
         run.numerics = choice->numerics;
       }
       const double heap_before = heap_bytes(), start_of_run = processor_seconds();
-      double most_heap           = heap_before;
+      double max_heap            = heap_before;
       unsigned long n_steps      = 0;
       bool is_out_of_time        = false;
       auto result                = run([&]() {
         if (++n_steps <= looks_at_heap || n_steps % steps_between_looks == 0)
-          most_heap = std::fmax(most_heap, heap_bytes());
+          max_heap = std::fmax(max_heap, heap_bytes());
         is_out_of_time = now() > end;
         return !is_out_of_time && !interrupted();
       });
@@ -175,7 +175,7 @@ namespace crawler
       row["reason"]       = "";
       row["message"]      = breaks_promise ? result.time.message : "";
       row["displacement"] = to_text(result.displacement);
-      row["memory"]       = to_text(most_heap - heap_before);
+      row["memory"]       = to_text(max_heap - heap_before);
       return time_runs(row, run, first_seconds, interrupted) ? std::optional(row) : std::nullopt;
     }
   } // namespace

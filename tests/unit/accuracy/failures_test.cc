@@ -24,17 +24,17 @@ namespace
   class Throwing : public ActiveStress
   {
   public:
-    Throwing(const std::function<void()> &fault, const double from, const std::size_t most_points = 1000000)
+    Throwing(const std::function<void()> &fault, const double from, const std::size_t max_points = 1000000)
       : fault_(fault)
       , from_(from)
-      , most_points_(most_points)
+      , max_points_(max_points)
     {
     }
 
     std::unique_ptr<ActiveStressAtPoints>
     at(const std::vector<double> &points) const override
     {
-      if (points.size() > most_points_)
+      if (points.size() > max_points_)
         fault_();
       return std::make_unique<AtPoints>(*this, points);
     }
@@ -65,7 +65,7 @@ namespace
 
     const std::function<void()> fault_;
     const double from_;
-    const std::size_t most_points_;
+    const std::size_t max_points_;
   };
 
   Scene
@@ -131,7 +131,7 @@ TEST(Failures, OfTheSecondRunLeaveTheAnswer)
   const Scene scene           = scene_with(parameters,
                                  std::make_unique<Throwing>([]() { throw std::bad_alloc(); },
                                                             HUGE_VAL,
-                                                            /*most_points=*/44));
+                                                            /*max_points=*/44));
   NumericsChoice choice;
   choice.numerics       = mesh;
   choice.wanted_error   = 1e-9;

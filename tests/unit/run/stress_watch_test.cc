@@ -46,9 +46,9 @@ TEST(StressWatch, LetsAStepBeMadeAgain)
 {
   const Scene quiet  = formula("0.1*sin(2*pi*(s+t))*tanh(5*t)"),
               active = formula("0.1*sin(2*pi*(s+t))*tanh(5*t)+0.3*sin(2*pi*s)*exp(-((t-0.5)/0.02)^2)");
-  const auto run     = [](const Scene &scene, const double least_event) {
+  const auto run     = [](const Scene &scene, const double min_event) {
     const Numerics numerics = {
-          .degree = 6, .n_cells = 8, .tolerance = 1e-2, .initial_step = 0.1, .least_event = least_event};
+          .degree = 6, .n_cells = 8, .tolerance = 1e-2, .initial_step = 0.1, .min_event = min_event};
     TimeParameters time;
     time.integrator = "radau 5";
     return Simulation(MPI_COMM_WORLD, scene, time, numerics).run({}, {});

@@ -54,7 +54,7 @@ namespace crawler
     std::optional<Repetition>
     search_repetition() const override;
 
-    /// Places of kinks: the samples in (0, L), at most 256 if linear and most_knots_of_splines if cubic; if there are
+    /// Places of kinks: the samples in (0, L), at most 256 if linear and max_knots_of_splines if cubic; if there are
     /// more, the places where a held table begins and ends.
     std::vector<double>
     kinks_in_space() const;

@@ -18,7 +18,7 @@ namespace crawler
   /// Section "Sweep": which scenes `crawler sweep` computes (sweep_design.h reads the axes).
   struct SweepParameters
   {
-    static constexpr unsigned int most_points = 10000000;
+    static constexpr unsigned int max_points = 10000000;
 
     std::string design      = "grid";
     std::string axes        = "";
@@ -63,9 +63,9 @@ namespace crawler
     std::optional<double> work, positive_work, dissipation, smallest_strain, largest_strain, mean_square_strain,
       largest_stress, largest_stress_rate;
     unsigned int n_starts = 1, seed = 1;
-    double spread                = 0.2; ///< spread of the starts, in ranges of the variables
-    double tolerance             = 1e-6;
-    unsigned int most_iterations = 50;
+    double spread               = 0.2; ///< spread of the starts, in ranges of the variables
+    double tolerance            = 1e-6;
+    unsigned int max_iterations = 50;
     std::optional<double> time_limit; ///< [s]
 
     void

@@ -60,7 +60,7 @@ namespace crawler
     PlannedRows plan_;
     std::vector<StartResult> starts_; ///< in the order of their rows
     std::unique_ptr<RowFile> start_rows_, evaluation_rows_;
-    unsigned long n_starts_ = 0, n_evaluations_ = 0;       ///< rows written
-    unsigned long most_starts_ = 0, most_evaluations_ = 0; ///< places for rows
+    unsigned long n_starts_ = 0, n_evaluations_ = 0;     ///< rows written
+    unsigned long max_starts_ = 0, max_evaluations_ = 0; ///< places for rows
   };
 } // namespace crawler

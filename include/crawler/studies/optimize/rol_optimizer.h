@@ -32,5 +32,5 @@ namespace crawler
            const std::vector<double> &y,
            std::vector<double> multipliers,
            double tolerance,
-           unsigned int most_iterations);
+           unsigned int max_iterations);
 } // namespace crawler

@@ -33,7 +33,7 @@ namespace crawler
   public:
     /// Reads the axes, with the CSV files that they name, relative to @p folder. Throws InputError in the name of the
     /// entry Sweep/Axes if they do not make sense, if the axes of a zip have different lengths or if there are more
-    /// than SweepParameters::most_points.
+    /// than SweepParameters::max_points.
     explicit SweepDesign(const SweepParameters &parameters, std::filesystem::path folder = "");
 
     unsigned long
