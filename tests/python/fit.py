@@ -211,6 +211,19 @@ class Values(unittest.TestCase):
             self.assertGreater(found.goodness.probability, 1e-3)
 
 
+    def test_places_within_their_deviation(self):
+        """Markers up to 0.14 away from where they are said to be: more than the spacing of two waves admits as linear."""
+        pulls, said = [], {"markers_at": S, "place_deviation": 0.1, "standard_deviation": NOISE / 2}
+        for seed in range(5):
+            shifts = np.clip(0.1 * np.random.default_rng(seed).standard_normal(7), -0.14, 0.14)
+            data = tracks(STRESS, NOISE / 2, seed)
+            data.values += fields(STRESS, np.clip(S + shifts, 0, 2)).position - fields(STRESS).position
+            found = crawler.fit({**STRESS, P: 1.8}, data, {P: RANGES[P], K: RANGES[K]}, **said)
+            pulls.append((found.variables[P]["value"] - 2) / found.variables[P]["deviation"])
+            self.assertGreater(found.goodness.probability, 1e-4)
+        self.assertLess(np.sum(np.square(pulls)), 20.5)  # chi-square of 5, exceeded once in a thousand
+
+
 class Together(unittest.TestCase):
     """Several kinds of data in one fit."""
 
@@ -322,6 +335,21 @@ class Untold(unittest.TestCase):
         self.assertIn("does not fit", found.notes[0])
         found = fit({**STRESS, WAVE + "Wave number": 1.3}, tracks(STRESS), P, K)
         self.assertIn("alike", " ".join(found.notes))
+
+    def test_says_that_data_fit_too_well(self):
+        found = fit(STRESS, tracks(STRESS), P, standard_deviation=10 * NOISE)
+        self.assertIn("nearer to the scene", found.notes[0])
+
+    def test_strain_of_the_same_tracks_is_not_exact(self):
+        with tempfile.TemporaryDirectory() as folder:
+            table = pathlib.Path(folder, "strain.csv")
+            table.write_text("s,t,strain\n" + "".join(f"{s},{t},{0.2 * np.sin(np.pi * (s - 2 * t))}\n" for s in np.linspace(0, 2, 33) for t in T))
+            scene = {**STRAIN, "Active stress/Prescribed strain/Given by": "table", "Active stress/Prescribed strain/File": str(table)}
+            self.assertIn("taken as exact", " ".join(fit(scene, tracks(scene), P, standard_deviation=NOISE).notes))
+
+    def test_entries_without_effect(self):
+        found = crawler.fit({**STRAIN, P: 1.8}, path(STRAIN), {P: RANGES[P]}, standard_deviation=NOISE, set={"Fit/Place deviation": "0.1"})
+        self.assertIn('"Fit/Place deviation" has no effect', " ".join(found.notes))
 
     def test_says_that_a_value_is_at_its_limit(self):
         found = crawler.fit({**STRAIN, P: 1.5}, tracks(STRAIN), {P: (0.5, 1.8)}, standard_deviation=NOISE)

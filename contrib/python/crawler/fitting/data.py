@@ -51,6 +51,7 @@ class Data:
         """has_origin: True if x of the run has the origin of the data; place_deviation: of the places of markers
         [length]; 0: they are known, inf: they are free."""
         self.series, self.has_origin, self.place_deviation = series, has_origin, place_deviation
+        self.said_places = np.array(self.places)  # before the fit moves them
         self.n = int(sum(one.is_there.sum() for one in series))
         self.values, self.relative = (self.flat([getattr(one, name) for one in series]) for name in ("values", "relative"))
         self.notes = [note for one in series for note in one.notes]
@@ -136,7 +137,16 @@ def read_data(data, parameters, **reading):
             raise InputError('"Fit/Place deviation" is set, but not "Fit/Standard deviation", without which the two cannot be weighed; it is expected')
         series.append(Series(kind, _times_of_run(samples.t + shift, parameters["Time/End time"], name), places, samples.values, deviation,
                              list(samples.names), list(samples.notes), relative))
+    series[0].notes.extend(_idle_entries(series, parameters))
     return Data(series, not any(one.kind in COUNTED for one in series) or parameters["Fit/Origin"] != "unknown", free)
+
+
+def _idle_entries(series, parameters):
+    """Sentences on entries of section Fit that have no effect for lack of such data."""
+    kinds = {one.kind for one in series}
+    for entry, usual, wanted in (("Markers at", "first", ("markers",)), ("Place deviation", "automatic", ("markers",)), ("Origin", "unknown", COUNTED)):
+        if str(parameters[f"Fit/{entry}"]).strip() != usual and kinds.isdisjoint(wanted):
+            yield f'"Fit/{entry}" has no effect: none of the data are {" or ".join(WORDS[kind] for kind in wanted)}'
 
 
 def _read_file(name, reading, is_one_of_several):

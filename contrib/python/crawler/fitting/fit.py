@@ -13,7 +13,7 @@ from .uncertainty import undetermined_directions
 LARGEST_ACCURACY, LEAST_ACCURACY = 1e-4, 3e-11  # accuracies of runs whose differences are derivatives
 MOST_REFINEMENTS = 4
 CHANGE = 1e-3         # change of chi-square, with data of known deviation, that ends a search
-MOST_MOVES, FAR_PLACE = 6, 1e-3  # for free places of markers; the latter in lengths of the body
+MOST_MOVES, FAR_PLACE = 6, 1e-3  # for unknown places of markers; the latter in lengths of the body
 LEAST_NOISE = 1e-10   # relative to the variation of the data; for data without noise
 
 
@@ -51,13 +51,21 @@ class Problem:
     def scaled(self, values, basis):
         """Differences [datum] as residuals, without the part that origin and places can absorb; followed by those of
         the places."""
-        rest = np.concatenate([values / self.scales, np.zeros(self.n_rows)])
+        return self.absorbed(np.concatenate([values / self.scales, np.zeros(self.n_rows)]), basis)
+
+    @staticmethod
+    def absorbed(rest, basis):
+        """Residuals without the part that origin and places can absorb."""
         return rest if basis is None else rest - basis @ (basis.T @ rest)
+
+    def of_places(self):
+        """Residuals of the places that are held: their distances from where they were said to be, in deviations."""
+        return (self.data.places - self.data.said_places)[:self.n_rows] / (self.data.place_deviation or 1.0)
 
     def residuals(self, z):
         """Residuals, one for each datum, and for each place that is held."""
         values, basis = self.run(z)
-        residuals = self.scaled(values - self.data.values, basis)
+        residuals = self.absorbed(np.concatenate([(values - self.data.values) / self.scales, self.of_places()]), basis)
         self.see(float(residuals @ residuals), z)
         return residuals
 
@@ -88,7 +96,7 @@ class Problem:
             found = least_squares(self.residuals, np.clip(z, 1e-9, 1 - 1e-9), self.jacobian, bounds=(0, 1), x_scale="jac",
                                   ftol=CHANGE / self.data.n, xtol=1e-8, gtol=1e-12, max_nfev=MOST_STEPS)
             z = found.x
-            if self.data.place_deviation < math.inf or not self.move_places(z):
+            if self.data.place_deviation == 0 or not self.move_places(z):
                 break
         return 2 * found.cost, z, found.status > 0
 
@@ -101,11 +109,13 @@ class Problem:
         return z - step if after <= before else z
 
     def move_places(self, z):
-        """Moves free places to their best fit; returns True if any moved far."""
+        """Moves places that are free, or held within their deviation, to their best fit, about which they are linear;
+        returns True if any moved far."""
         data, length = self.data, self.model.parameters["Body/Length"]
         values, stretch = self.model(self.real(z))
-        matrix, _ = data.nuisance(stretch)
-        shifts = np.linalg.lstsq(matrix / self.scales[:, None], (data.values - values) / self.scales, rcond=1e-9)[0][-len(data.places):]
+        matrix, rows = data.nuisance(stretch)
+        rest = np.concatenate([(data.values - values) / self.scales, -self.of_places()])
+        shifts = np.linalg.lstsq(np.vstack([matrix / self.scales[:, None], rows]), rest, rcond=1e-9)[0][-len(data.places):]
         before, data.places = data.places, np.clip(data.places + shifts, 0, length)
         data.places = np.maximum.accumulate(data.places + 1e-9 * length * np.arange(len(shifts)))  # keeps their order
         data.places = np.minimum(data.places, length * (1 - 1e-9 * np.arange(len(shifts))[::-1]))

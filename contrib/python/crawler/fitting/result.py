@@ -105,7 +105,7 @@ def described(problem, best, starts):
     matrix = covariance(best.jacobian)
     found = {"status": "finished", "reason": "converged", "message": "", "variables": variables,
              "undetermined": list(_untold(problem, best, variables, values)) if goodness["probability"] is None or goodness["probability"] >= HOPELESS else [],
-             "notes": list(_notes(best, variables, goodness, data)),
+             "notes": list(_notes(best, variables, goodness, data, model.parameters)),
              "correlation": (matrix / np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))).tolist(), "goodness": goodness,
              "information": {"aic": likelihood + 2 * k, "bic": likelihood + k * math.log(n)},
              "accuracy": model.accuracy, "n_runs": model.n_runs, "starts": starts}
@@ -186,9 +186,15 @@ def _largest_in_words(goodness):
     return f"the largest residual is {abs(one['deviations']):.3g} deviations, at {place}t = {one['t']:.6g} of the run"
 
 
-def _notes(best, variables, goodness, data):
+def _notes(best, variables, goodness, data, parameters):
     """Sentences on possible mistakes."""
     yield from _does_not_fit(goodness)
+    if (goodness["probability"] or 0) > 1 - UNLIKELY:
+        yield (f"the data are nearer to the scene than their standard deviations allow: chi-square is {goodness['chi_square']:.4g} with "
+               f"{goodness['degrees_of_freedom']} degrees of freedom; the deviations are too large, or the scene has the noise of the data")
+    if (parameters["Active stress/Generator"], parameters["Active stress/Prescribed strain/Given by"]) == ("prescribed strain", "table") and data.places.size:
+        yield ("the strain of the table is taken as exact: if it was made of these tracks its noise counts as motion, and the deviations of the "
+               "variables are too small by a factor of two or more")
     yield from data.notes
     for name, one in variables.items():
         if one["at_limit"] and one["determined"]:

@@ -53,6 +53,8 @@ def _by_name(sheet, columns):
     for marker, quantity, i in columns:
         array = arrays.setdefault(quantity, np.full((len(sheet.rows), len(names)), np.nan))
         array[:, names.index(marker)] = sheet.column(i)
+    if "x" not in arrays:
+        raise InputError(f'"{sheet.name}" has y of the markers {", ".join(names[:4])}, but no x; columns of both, like x1 and y1, are expected')
     return names, arrays
 
 

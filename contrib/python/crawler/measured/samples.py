@@ -404,10 +404,20 @@ def _between_times(t, x):
     return x
 
 
+def _between_markers(x):
+    """Fills what is left of gaps between markers by straight lines, x [time, marker]: a reference for the others."""
+    x, numbers = x.copy(), np.arange(x.shape[1])
+    for j in np.flatnonzero(np.any(np.isnan(x), axis=1)):
+        there = ~np.isnan(x[j])
+        if there.any():
+            x[j] = np.interp(numbers, numbers[there], x[j, there], left=np.nan, right=np.nan)
+    return x
+
+
 def _arc_lengths(t, x, y, words):
     """Places along a body that may bend: distances between neighbours, beside the mean place along the mean axis."""
     gaps = np.isnan(x)
-    x, y = _between_times(t, x), _between_times(t, y)
+    x, y = (_between_markers(_between_times(t, one)) for one in (x, y))
     with np.errstate(invalid="ignore"):
         axis = np.array([np.nanmean(x[:, -1] - x[:, 0]), np.nanmean(y[:, -1] - y[:, 0])])
         axis /= np.hypot(*axis)
@@ -421,7 +431,10 @@ def _arc_lengths(t, x, y, words):
     filled = np.where(np.isnan(steps), np.nanmean(steps, axis=0), steps)
     arc = np.concatenate([np.zeros((len(x), 1)), np.cumsum(filled, axis=1)], axis=1)
     words.append(f"the body bends, by {bend:.0f} degrees from the axis; places are distances along it")
-    return np.where(gaps, np.nan, arc + (np.nanmean(along, axis=1) - np.nanmean(arc, axis=1))[:, np.newaxis])
+    rest = along - arc
+    if np.any(whole := ~np.any(np.isnan(rest), axis=1)):  # the mean over some markers is then that over all
+        rest = rest - np.mean(rest[whole] - rest[whole].mean(axis=1, keepdims=True), axis=0)
+    return np.where(gaps, np.nan, arc + np.nanmean(rest, axis=1)[:, np.newaxis])
 
 
 def _from_tail_to_head(x, names, head, words, notes):
