@@ -222,7 +222,7 @@ namespace crawler
       words = error.text;
     }
     if (code != 0)
-      throw InputError("PETSc refuses an option behind \"--\": " + words);
+      throw InputError("PETSc refuses an option after \"--\": " + words);
 
     // Options that begin() resets each time.
     const auto option = [&](const char *option_name) {

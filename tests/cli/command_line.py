@@ -62,7 +62,7 @@ def templates(folder):
     check(crawler("init", "snail", "--output", "my.prm", folder=folder).returncode == 0 and
           (folder / "my.prm").read_text() == (folder / "snail.prm").read_text(), "init --output writes the template")
     again = crawler("init", "robot", "--output", "my.prm", folder=folder)
-    check(again.returncode == 2 and '"my.prm" is there already' in again.stderr and
+    check(again.returncode == 2 and '"my.prm" already exists' in again.stderr and
           (folder / "my.prm").read_text() == (folder / "snail.prm").read_text(), "init never overwrites a file")
     wrong = crawler("init", "robbot")
     check(wrong.returncode == 2 and 'the nearest is "robot"' in wrong.stderr, "init names the nearest template")
