@@ -477,7 +477,7 @@ namespace
       bad_arguments("TradeoffInFullFolder", {"tradeoff", "good.prm", "--output", "full"}, {"\"full\" is not empty"}),
       bad_arguments("TradeoffResumesWhatIsNone",
                     {"tradeoff", "good.prm", "--output", "full", "--resume"},
-                    {"\"full\" has no tradeoff that could be resumed"}),
+                    {"\"full\" has no tradeoff that can be resumed"}),
       bad_arguments("TradeoffResumedAndOverwritten",
                     {"tradeoff", "good.prm", "--resume", "--overwrite"},
                     {"--resume and --overwrite contradict each other"}),
@@ -676,7 +676,7 @@ namespace
       set("HomeSignOfFolder", {"--output=~/results"}, {"--output: \"~/results\" begins with \"~\""}),
       set("KilledFolder",
           {"--output", "killed"},
-          {"\"killed\" has a run or study that was broken off; the same command with --resume goes on"}),
+          {"\"killed\" has a run or study that was interrupted; the same command with --resume continues it"}),
     };
   }
 

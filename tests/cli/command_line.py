@@ -53,7 +53,7 @@ def templates(folder):
         check(10 <= len(text.splitlines()) <= 24 and "# " in text and "Expect" not in text, f"{name} is short")
         (folder / f"{name}.prm").write_text(text)
         done = crawler("check", f"{name}.prm", folder=folder)
-        check(done.returncode == 0 and "is in order" in done.stdout, f"{name} is in order {done.stderr}")
+        check(done.returncode == 0 and "is valid" in done.stdout, f"{name} is valid {done.stderr}")
         command = name if name in ("sweep", "optimize", "fit") else "run"
         quick = ["--set", "Output/Number of snapshots=2"] if command == "run" else []
         done = crawler(command, f"{name}.prm", *quick, folder=folder)
