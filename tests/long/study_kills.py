@@ -277,7 +277,7 @@ def test_more_bad_input(folder):
         (folder / f"{name}.csv").write_text(text, encoding="utf-8")
     (folder / "binary.csv").write_bytes(bytes(range(256)) * 20)
     (folder / "a_folder").mkdir()
-    for axes, words in ((f"{P} : 4, column(good.csv, p)", ("column(good.csv, p)", "nothing beside it")),
+    for axes, words in ((f"{P} : 4, column(good.csv, p)", ("column(good.csv, p)", "nothing else")),
                         (f"{P} : linspace(1, 2)", ("linspace(first, last, count)",)),
                         (f"{P} : uniforms(2, 3)", ('nearest is "uniform"',)),
                         (f"{P} 1, 2", ("VALUES",)),
