@@ -578,7 +578,7 @@ def test_damaged_table(folder):
     sweep(folder, "damaged")
     file = folder / "damaged" / "results.h5"
     whole = file.read_bytes()
-    for content, word in ((whole[:len(whole) // 2], "cannot be read"), (b"garbage" * 1000, "no HDF5"),
+    for content, word in ((whole[:len(whole) // 2], "cannot be read"), (b"garbage" * 1000, "not an HDF5"),
                           (whole.replace(b"scene files", b"Scene files"), "no attribute")):
         file.write_bytes(content)
         refused(folder, "damaged", ("results.h5", word, "damaged"), f"a table of {len(content)} bytes")

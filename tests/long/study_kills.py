@@ -306,7 +306,7 @@ def test_more_bad_input(folder):
     call([PROGRAM, "sweep", "scene.prm", "--output", "damaged"], folder)
     file = folder / "damaged" / "results.h5"
     whole = file.read_bytes()
-    for content, word in ((whole[:100], "cannot be read"), (b"", "no HDF5"), (whole.replace(b"results", b"Results"), "results")):
+    for content, word in ((whole[:100], "cannot be read"), (b"", "not an HDF5"), (whole.replace(b"results", b"Results"), "results")):
         file.write_bytes(content)
         result = call([PROGRAM, "sweep", "scene.prm", "--output", "damaged", "--resume"], folder)
         expect(result.returncode == 2 and len(result.stderr.splitlines()) == 1 and "results.h5" in result.stderr
