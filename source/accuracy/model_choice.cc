@@ -132,7 +132,7 @@ namespace crawler
     {
       const bool is_prescribed = scene.active_stress->prescribed_strain() != nullptr;
       if (parameters.output.differentiates() && parameters.model == Model::automatic && !is_prescribed)
-        return {Model::nonlinear, "Model nonlinear: of simpler ones that are approximate there are no Sensitivities"};
+        return {Model::nonlinear, "Model nonlinear: simpler ones that are approximate have no Sensitivities"};
       if (parameters.output.differentiates() && !is_prescribed)
         throw InputError(fmt::format("Sensitivities are wanted, but Model is {} and the strain is not prescribed; "
                                      "nonlinear or auto is expected",
@@ -140,7 +140,7 @@ namespace crawler
                          parameters.output.sensitivities.empty() ? "Output/Uncertainty" : "Output/Sensitivities");
       if (!scene.is_plain() && !is_prescribed)
         return {Model::nonlinear,
-                "Model nonlinear: simpler ones are for plain bodies and grounds, and here is " +
+                "Model nonlinear: simpler ones are for plain bodies and grounds, but the scene has " +
                   scene.general_features()};
       const ReducedScene levels(scene);
       if (parameters.model == Model::automatic)

@@ -509,9 +509,8 @@ namespace crawler
         choice_.promised_error = choice_.wanted_error = choice_.space_share = std::numeric_limits<double>::quiet_NaN();
         choice_.explanation =
           choice_.is_family
-            ? fmt::format(
-                "for Accuracy {:g}: the stretch form, on meshes that become finer until the displacement settles",
-                accuracy_)
+            ? fmt::format("for Accuracy {:g}: the stretch form, on ever finer meshes until the displacement settles",
+                          accuracy_)
             : "stretch form, with cells as set by the user";
       }
 
@@ -577,10 +576,10 @@ namespace crawler
             choice_.promised_error = error;
             choice_.space_share    = 0.9; // the tolerance is small
             choice_.is_measured    = true;
-            choice_.advice         = "the active stress jumps at places that move through the cells, where the error "
-                                     "falls only like the size of a cell, and works and energies are known to some "
-                                     "percent only: fronts of finite width (a smoothed square profile) cost far less";
-            const bool hopeless    = !is_first && error > wanted * last / n.n_cells;
+            choice_.advice = "the active stress jumps at places that move through the cells, where the error falls "
+                             "only like the size of a cell, and works and energies are known only to within some per "
+                             "cent: fronts of finite width (a smoothed square profile) cost far less";
+            const bool hopeless = !is_first && error > wanted * last / n.n_cells;
             if (error <= 0.9 * wanted || hopeless) // the end of cycles has an error, too
               return;
           }

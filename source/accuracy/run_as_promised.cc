@@ -56,7 +56,7 @@ namespace crawler
         {
           if (i == 0)
             return;
-          found = fmt::format("lost it at t = {:.6g} only", check.inversion->t);
+          found = fmt::format("lost it only at t = {:.6g}", check.inversion->t);
           break;
         }
         result.inversion->t = check.inversion->t;
@@ -358,7 +358,7 @@ namespace crawler
       catch (...) // the earlier answer stays
       {
         answer.result.time.message +=
-          "; the position form failed, too: " + failure_of(std::current_exception()).message;
+          "; the position form also failed: " + failure_of(std::current_exception()).message;
       }
       return answer;
     }

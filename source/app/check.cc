@@ -27,13 +27,13 @@ namespace crawler
     if (const FitParameters &fit = input.parameters.fit; !trimmed(fit.variables).empty())
       log.line(fmt::format("Fit: {} unknown, from {}.",
                            read_variables(input.file, "Fit/Variables").size(),
-                           fit.data.empty() ? "the file that --data names" : fit.data));
+                           fit.data.empty() ? "the file given with --data" : fit.data));
     const ModelChoice model = choose_model(input);
     if (!model.needs_mesh())
     {
       report_plan(log, input, model, nullptr);
       log.line("No mesh and no time steps are needed.");
-      log.line(input.file.name() + " is in order; nothing was run, and nothing was written.");
+      log.line(input.file.name() + " is valid; nothing was run and nothing was written.");
       return ExitCode::finished;
     }
     WaitProgress pilots(log, pilot_runs);
@@ -52,7 +52,7 @@ namespace crawler
                   input.parameters.output.statistics ? ", statistics" : "",
                   input.parameters.output.energy_balance ? ", energy balance" : "",
                   output_folder(options.output, options.file).string()));
-    log.line(input.file.name() + " is in order; nothing but pilot runs was run, and nothing was written.");
+    log.line(input.file.name() + " is valid; only pilot runs were made, and no files were written.");
     return ExitCode::finished;
   }
 } // namespace crawler

@@ -143,7 +143,7 @@ namespace crawler
       {
         report_error(communicator,
                      ExitCode::bad_input,
-                     "PETSc refuses an option behind \"--\": " + petsc_error->text,
+                     "PETSc refuses an option after \"--\": " + petsc_error->text,
                      /*on_all_ranks=*/false);
         MPI_Finalize();
         return static_cast<int>(ExitCode::bad_input);

@@ -33,7 +33,7 @@ namespace crawler
     constexpr std::pair<const char *, const char *> commands_in_python[] = {
       {"fit", "Finds numbers of a parameter file, with their uncertainty, from measured data"},
       {"report", "Makes a page for browsers, report.html, of the output folder of any other command"},
-      {"table", "Turns measured samples or tracks of markers into a table that a scene reads"}};
+      {"table", "Turns measured samples or tracks of markers into a table that a scene can read"}};
 
     bool
     is_in_python(const std::string &name)
@@ -50,31 +50,31 @@ namespace crawler
     };
     constexpr Command commands[] = {
       {"run",
-       "Runs the crawler of a parameter file",
+       "Runs the crawler that a parameter file describes",
        run,
        /*writes=*/true,
        /*resumes=*/true,
        /*takes_petsc_options=*/true},
       {"check",
-       "Says what run would do with a parameter file; runs and writes nothing",
+       "Says what run would do with a parameter file, without running it or writing anything",
        check,
        /*writes=*/false,
        /*resumes=*/false,
        /*takes_petsc_options=*/true},
       {"tradeoff",
-       "Measures cost against error of many settings on the scene of a parameter file",
+       "Measures the cost and the error of many numerical settings on the scene of a parameter file",
        tradeoff,
        /*writes=*/true,
        /*resumes=*/true,
        /*takes_petsc_options=*/false},
       {"optimize",
-       "Looks for the best gait of section Optimize of a parameter file",
+       "Searches for the best gait as section Optimize of a parameter file defines it",
        optimize,
        /*writes=*/true,
        /*resumes=*/true,
        /*takes_petsc_options=*/false},
       {"sweep",
-       "Runs all points of section Sweep of a parameter file and makes a table of them",
+       "Runs all points of section Sweep of a parameter file and tabulates the results",
        sweep,
        /*writes=*/true,
        /*resumes=*/true,
@@ -110,21 +110,20 @@ namespace crawler
       own->add_option("--output", options.output, "Output folder (default: output-NAME for NAME.prm)")
         ->option_text("DIR");
       if (command.resumes)
-        own->add_flag("--resume",
-                      options.resume,
-                      fmt::format("Goes on with {} {} that was stopped or killed",
-                                  command.name[0] == 'o' ? "an" : "a",
-                                  command.name));
+        own->add_flag(
+          "--resume",
+          options.resume,
+          fmt::format("Resumes {} {} that was stopped or killed", command.name[0] == 'o' ? "an" : "a", command.name));
       if (command.function == optimize)
         own->add_flag("--check-gradient",
                       options.check_gradient,
-                      "Compares the derivatives at the start with differences, and optimises nothing");
+                      "Compares the derivatives at the start with finite differences, without optimising");
       if (command.function == sweep)
-        own->add_flag("--strict", options.strict, "Exit code 8 if the row of a point failed");
+        own->add_flag("--strict", options.strict, "Exits with code 8 if any point failed");
       if (command.writes)
       {
         own->add_flag("--overwrite", options.overwrite, "Replaces the results in the output folder");
-        own->add_flag("--quiet", options.quiet, "Prints nothing but errors");
+        own->add_flag("--quiet", options.quiet, "Prints only errors");
       }
     }
   } // namespace
@@ -150,7 +149,7 @@ namespace crawler
       {
         command->add_option("DIR", options_.file, "Output folder of a run, sweep, tradeoff, optimisation or fit")
           ->required();
-        command->add_flag("--quiet", options_.quiet, "Prints nothing but errors");
+        command->add_flag("--quiet", options_.quiet, "Prints only errors");
       }
       else
         command->prefix_command()->set_help_flag();
@@ -159,9 +158,9 @@ namespace crawler
     plot->set_help_flag();
     plot->add_option(
       "DIR", options_.file, "Output folder of a run or study, or the table of a calibration or of crawler table");
-    plot->add_option("--kind", kind_, fmt::format("{} (default: what fits)", fmt::join(plot_kinds(), ", ")))
+    plot->add_option("--kind", kind_, fmt::format("{} (default: whichever fits)", fmt::join(plot_kinds(), ", ")))
       ->option_text("KIND");
-    plot->add_flag("-h,--help", plot_help_, "Help; behind DIR that of the script, which takes all other options");
+    plot->add_flag("-h,--help", plot_help_, "Help; after DIR, that of the script, which takes all other options");
     plot->allow_extras();
 
     CLI::App *parameters = app_.add_subcommand("parameters", "Prints every entry of the parameter file");
@@ -169,11 +168,12 @@ namespace crawler
     parameters->add_option("--format", format_, fmt::format("{}", fmt::join(parameter_formats(), ", ")))
       ->option_text("FORMAT");
 
-    CLI::App *init = app_.add_subcommand("init", "Prints a parameter file to begin with");
+    CLI::App *init = app_.add_subcommand("init", "Prints a parameter file to start from");
     init->add_option("TEMPLATE", name_, fmt::format("{}", fmt::join(template_names(), ", ")))->required();
     init->add_option("--output", options_.output, "Writes it to this file, which must be new")->option_text("FILE");
 
-    CLI::App *completion = app_.add_subcommand("completion", "Prints what lets a shell complete this command line");
+    CLI::App *completion =
+      app_.add_subcommand("completion", "Prints a script that lets a shell complete this command line");
     completion->add_option("SHELL", name_, fmt::format("{}", fmt::join(completion_shells(), ", ")))->required();
 
     app_.add_subcommand("man", "Prints the manual page: crawler man | man -l -");
@@ -222,12 +222,12 @@ namespace crawler
         throw InputError(fmt::format("the command line has a control character in \"{}\", but text is expected", word));
     require_command(app_, arguments);
     if (!petsc_options.empty() && !petsc_options[0].starts_with("-"))
-      throw InputError("behind \"--\" stands \"" + petsc_options[0] +
-                       "\", but a PETSc option is expected, like -ts_monitor");
+      throw InputError("found \"" + petsc_options[0] +
+                       "\" after \"--\", but a PETSc option is expected, like -ts_monitor");
     for (const std::string &word : petsc_options)
       if (word.starts_with("--"))
         throw InputError(fmt::format(
-          "behind \"--\" stands \"{}\", but PETSc options are expected; those of crawler stand in front", word));
+          "found \"{}\" after \"--\", but PETSc options are expected; those of crawler go before it", word));
     try
     {
       app_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
@@ -240,12 +240,12 @@ namespace crawler
     }
     catch (const CLI::ParseError &error)
     {
-      throw InputError(usage_error(error, app_, arguments) + " (crawler --help tells the commands and options)");
+      throw InputError(usage_error(error, app_, arguments) + " (crawler --help lists the commands and options)");
     }
     const CLI::App *const command = app_.get_subcommands().front();
     if (command->get_option_no_throw("--output") != nullptr && command->count("--output") > 0 &&
         options_.output.empty())
-      throw InputError(fmt::format("behind \"--output\" stands \"\", but the name of a {} is expected",
+      throw InputError(fmt::format("found \"\" after \"--output\", but the name of a {} is expected",
                                    needs_mpi() ? "folder" : "file"));
     if (!petsc_options.empty())
     {
@@ -261,9 +261,8 @@ namespace crawler
   {
     const Command *const command = find_command(chosen());
     if (command == nullptr || !command->takes_petsc_options)
-      throw InputError(fmt::format("behind \"--\" stands \"{}\", but the command \"{}\" has no use for PETSc options",
-                                   petsc_options[0],
-                                   chosen()));
+      throw InputError(fmt::format(
+        "found \"{}\" after \"--\", but the command \"{}\" takes no PETSc options", petsc_options[0], chosen()));
   }
 
   bool

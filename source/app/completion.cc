@@ -101,7 +101,7 @@ namespace crawler
     }
 
     constexpr const char *bash_head =
-      R"~~~~(# Lets bash, and zsh behind bashcompinit, complete the command line of crawler; made by "crawler completion bash".
+      R"~~~~(# Lets bash, and zsh after bashcompinit, complete the command line of crawler; made by "crawler completion bash".
 
 # The given words that begin with what was typed, in quotes or not.
 _crawler_words()
@@ -187,7 +187,7 @@ _crawler()
   print_completion(const CLI::App &app, const std::string &shell)
   {
     if (shell != "bash")
-      throw InputError(fmt::format("unknown shell \"{}\"; {} is expected, whose script zsh reads, too, behind "
+      throw InputError(fmt::format("unknown shell \"{}\"; {} is expected, whose script zsh reads, too, after "
                                    "\"autoload -U bashcompinit; bashcompinit\"",
                                    shell,
                                    quoted_list(completion_shells())));

@@ -15,23 +15,23 @@ namespace crawler
     /// Examples for all commands: the command to which an example belongs is its second word or, behind mpirun -n N,
     /// its fifth.
     const std::vector<Example> all_examples = {
-      {"crawler init earthworm > worm.prm", "a parameter file to begin with"},
-      {"crawler init table --output my.prm", "the same into a file that is new"},
-      {"crawler check worm.prm", "what would be computed, and whether all entries are right"},
+      {"crawler init earthworm > worm.prm", "a parameter file to start from"},
+      {"crawler init table --output my.prm", "the same, into a new file"},
+      {"crawler check worm.prm", "what would be computed, and whether all entries are valid"},
       {"crawler run worm.prm", "one run, with its files in output-worm/"},
       {"crawler run worm.prm --set \"Body/Length=12\" --output longer", "another value, another folder"},
-      {"crawler run worm.prm --resume", "goes on with a run that was stopped"},
-      {"crawler run worm.prm -- -ts_monitor", "options for PETSc stand behind a lone \"--\""},
+      {"crawler run worm.prm --resume", "resumes a run that was stopped"},
+      {"crawler run worm.prm -- -ts_monitor", "options for PETSc follow a lone \"--\""},
       {"mpirun -n 2 crawler sweep sweep.prm", "a table of many runs, shared by two processes"},
-      {"crawler sweep sweep.prm --resume", "goes on with one that was stopped"},
+      {"crawler sweep sweep.prm --resume", "resumes one that was stopped"},
       {"crawler optimize gait.prm", "the best gait within limits"},
-      {"crawler fit worm.prm --data tracks.csv", "what measured data say about numbers of a scene"},
-      {"crawler sweep sweep.prm --set Sweep/Cross-check=true", "with every answer checked by others"},
+      {"crawler fit worm.prm --data tracks.csv", "what measured data say about the numbers of a scene"},
+      {"crawler sweep sweep.prm --set Sweep/Cross-check=true", "with every answer cross-checked"},
       {"crawler tradeoff scene.prm", "what accuracy costs on this scene"},
-      {"crawler plot output-worm", "a picture into the folder"},
-      {"crawler plot output-worm --last-stride", "of the last stride; or of --from TIME --to TIME"},
+      {"crawler plot output-worm", "a picture in the folder"},
+      {"crawler plot output-worm --last-stride", "the last stride only (or --from TIME --to TIME)"},
       {"crawler plot output-worm --help", "all options of this picture"},
-      {"crawler report output-worm", "a page for browsers into the folder"},
+      {"crawler report output-worm", "a page for browsers in the folder"},
       {"crawler parameters Body", "one section of the parameter file, every entry explained"},
       {"crawler parameters --format schema", "types, ranges and defaults for other programs"},
       {"source <(crawler completion bash)", "the Tab key completes commands, options and entries"},
@@ -92,8 +92,8 @@ namespace crawler
     std::string text = in_columns(examples_of()) + "\nExit codes:\n";
     for (const ExitCodeMeaning &one : exit_code_meanings())
       text += fmt::format("  {}  {}\n", one.code, one.meaning);
-    return text + "\nOptions for PETSc go behind a lone \"--\", e.g. crawler run FILE.prm -- -ts_monitor\n"
-                  "crawler COMMAND --help tells the options of a command, crawler man has it all.";
+    return text + "\nOptions for PETSc go after a lone \"--\", e.g. crawler run FILE.prm -- -ts_monitor\n"
+                  "crawler COMMAND --help lists the options of a command; crawler man has it all.";
   }
 
   std::string

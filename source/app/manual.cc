@@ -60,17 +60,18 @@ namespace crawler
   void
   print_manual(const CLI::App &app)
   {
-    std::cout << ".\\\" Made by \"crawler man\".\n.TH CRAWLER 1 \"\" \"crawler " << roff(versions().at("crawler"))
-              << "\" \"User Commands\"\n.SH NAME\ncrawler \\- simulates limbless crawlers: earthworms, snails, soft "
-                 "robots\n.SH SYNOPSIS\n.B crawler\n.I COMMAND\n[\\fIARGUMENT\\fR] [\\fIOPTION\\fR]... [-- "
-                 "\\fIPETSC OPTION\\fR...]\n.br\n.B mpirun -n\n.I N\n.B crawler\n.I COMMAND\n\\&...\n"
-                 ".SH DESCRIPTION\n"
-              << roff(app.get_description())
-              << "\nThe scene is in a parameter file; what can be in it is printed by\n.BR \"crawler parameters\" .\n"
-                 ".SH OPTIONS\n";
+    std::cout
+      << ".\\\" Made by \"crawler man\".\n.TH CRAWLER 1 \"\" \"crawler " << roff(versions().at("crawler"))
+      << "\" \"User Commands\"\n.SH NAME\ncrawler \\- simulates limbless crawlers: earthworms, snails, soft "
+         "robots\n.SH SYNOPSIS\n.B crawler\n.I COMMAND\n[\\fIARGUMENT\\fR] [\\fIOPTION\\fR]... [-- "
+         "\\fIPETSC OPTION\\fR...]\n.br\n.B mpirun -n\n.I N\n.B crawler\n.I COMMAND\n\\&...\n"
+         ".SH DESCRIPTION\n"
+      << roff(app.get_description())
+      << "\nThe scene is described in a parameter file; its entries are listed by\n.BR \"crawler parameters\" .\n"
+         ".SH OPTIONS\n";
     for (const CLI::Option *option : app.get_options())
       print_option(*option);
-    print_item("-- PETSC OPTION...", "Everything behind a lone \"--\" is for PETSc");
+    print_item("-- PETSC OPTION...", "Everything after a lone \"--\" is passed to PETSc");
     std::cout << ".SH COMMANDS\n";
     for (const CLI::App *command : all_commands(app))
       print_command(*command);

@@ -104,6 +104,6 @@ namespace crawler
     hand_over_to_python("plot/" + chosen + ".py", arguments);
     std::error_code ignored;
     if (kind.empty() && fs::exists(fs::path(path) / "sensitivity_body.csv", ignored))
-      std::cout << fmt::format("Also there: crawler plot {} --kind sensitivity", path) << std::endl;
+      std::cout << fmt::format("Also available: crawler plot {} --kind sensitivity", path) << std::endl;
   }
 } // namespace crawler

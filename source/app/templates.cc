@@ -22,7 +22,7 @@ namespace crawler
     {
       std::FILE *const file = std::fopen(path.c_str(), "wx");
       if (file == nullptr && errno == EEXIST)
-        throw InputError(fmt::format("\"{}\" is there already; the name of a new file is expected", path));
+        throw InputError(fmt::format("\"{}\" already exists; the name of a new file is expected", path));
       bool good = file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size();
       int error = errno;
       if (file != nullptr && std::fclose(file) != 0 && good)

@@ -36,7 +36,7 @@ namespace crawler
         return fmt::format(
           "the {} is missing; \"crawler {} {}\" is expected", argument->meaning, command.get_name(), argument->usage);
       if (words.size() > most)
-        return fmt::format("found \"{}\" behind \"{}\", but {} is expected",
+        return fmt::format("found \"{}\" after \"{}\", but {} is expected",
                            words[most],
                            words[most - 1],
                            has_one ? fmt::format("one {}", argument->meaning) : "nothing");
@@ -56,8 +56,8 @@ namespace crawler
         {
           whole += " " + arguments[j];
           if (arguments[j].find('=') != std::string::npos)
-            throw InputError(fmt::format("\"--set {0}\" has blanks, at which a shell cuts; quotes around the whole are "
-                                         "expected: --set \"{0}\"",
+            throw InputError(fmt::format("\"--set {0}\" contains blanks, at which a shell splits it; quotes around the "
+                                         "whole are expected: --set \"{0}\"",
                                          whole));
         }
         if (!arguments[i + 1].starts_with("-") && !arguments[i + 1].ends_with(".prm"))
@@ -86,7 +86,7 @@ namespace crawler
       throw InputError(
         fmt::format("the command is missing before \"{0}\"; did you mean \"crawler run {0}\"?", arguments[0]));
     if (const std::string now = successor_of(arguments[0]); !now.empty())
-      throw InputError(fmt::format("the command \"{}\" is gone; {} is expected", arguments[0], now));
+      throw InputError(fmt::format("the command \"{}\" was removed; {} is expected", arguments[0], now));
     const auto near = nearest_names(arguments[0], names, 1);
     throw InputError(fmt::format("unknown command \"{}\"; {} is expected{}",
                                  arguments[0],
@@ -127,14 +127,13 @@ namespace crawler
       }
       const bool has_value = option != nullptr && option->get_items_expected_max() > 0;
       if (has_command && words.empty())
-        return fmt::format(
-          "\"{}\" stands before the command \"{}\", but behind it is expected", name, command->get_name());
+        return fmt::format("\"{}\" is before the command \"{}\", but is expected after it", name, command->get_name());
       if (has_value && arguments[i] == name + "=")
-        return fmt::format("found \"{}\", but a value is expected behind it", arguments[i]);
+        return fmt::format("found \"{}\", but a value is expected after it", arguments[i]);
       if (!has_value && name != arguments[i])
         return fmt::format("found \"{}\", but \"{}\" without a value is expected", arguments[i], name);
       if (has_value && name == arguments[i] && ++i == arguments.size())
-        return fmt::format("\"{}\" is the last word, but a value is expected behind it", name);
+        return fmt::format("\"{}\" is the last word, but a value is expected after it", name);
       if (has_value && dynamic_cast<const CLI::ConversionError *>(&error) != nullptr &&
           std::string(error.what()).find(": " + name + " = ") != std::string::npos)
         return fmt::format("\"{}\" is \"{}\", but a {} is expected",
@@ -142,7 +141,7 @@ namespace crawler
                            arguments[i].starts_with(name + "=") ? arguments[i].substr(name.size() + 1) : arguments[i],
                            option->get_type_name() == "NUMBER" ? "number" : "whole number of 0 or more");
       if (has_value && name != "--set" && option->count() > 1)
-        return fmt::format("\"{}\" is there {} times, but once is expected", name, option->count());
+        return fmt::format("\"{}\" is given {} times, but is expected only once", name, option->count());
     }
     if (std::string problem = has_command ? count_error(*command, words) : ""; !problem.empty())
       return problem;

@@ -24,6 +24,6 @@ namespace crawler
   void
   Archive::fail(const std::string_view what)
   {
-    throw FileError("a saved state does not fit to the program: " + std::string(what) + " is another one");
+    throw FileError("a saved state does not match the program: " + std::string(what) + " differs");
   }
 } // namespace crawler

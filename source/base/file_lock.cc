@@ -68,7 +68,7 @@ namespace crawler
     if (!is_in_place())
       throw FileError("\"" + path_.parent_path().string() +
                       "\" was removed or replaced by another program while this one wrote to it: its \"" +
-                      path_.filename().string() + "\" is not there any more");
+                      path_.filename().string() + "\" no longer exists");
   }
 
   void

@@ -68,10 +68,10 @@ namespace crawler
     const bool is_own           = std::filesystem::is_regular_file(std::filesystem::symlink_status(path, error));
     const std::uintmax_t before = is_own ? std::filesystem::file_size(path, error) : 0;
     if (!is_own || error || before < size)
-      throw FileError(fmt::format("cannot go on with \"{}\": a file of at least {} bytes is expected, but {}",
+      throw FileError(fmt::format("cannot continue \"{}\": a file of at least {} bytes is expected, but {}",
                                   path.string(),
                                   size,
-                                  is_own ? fmt::format("it has {}", before) : "it is not there"));
+                                  is_own ? fmt::format("it has {}", before) : "it does not exist"));
     std::filesystem::resize_file(path, size, error);
     if (error)
       throw FileError("cannot write \"" + path.string() + "\": " + error.message());

@@ -72,8 +72,8 @@ namespace crawler
       const std::size_t n_s = grid.s.size(), n_t = grid.t.size(), n = values.size();
       constexpr std::size_t max_gaps = 100; // grid points per row; above, the rows are not taken for a grid with gaps
       if (n_s * n_t > max_gaps * n)
-        source.refuse("\"{}\" has {} rows after the header with {} different values of s and {} of t, but a "
-                      "full grid, a row for each of them with each, is expected",
+        source.refuse("\"{}\" has {} rows after the header with {} different values of s and {} of t, but a full grid, "
+                      "a row for each pair of these, is expected",
                       source.file,
                       n,
                       n_s,
@@ -113,8 +113,8 @@ namespace crawler
             first += fmt::format(
               "{}s = {:g}, t = {:g}", first.empty() ? "" : "; ", grid.s[missing % n_s], grid.t[missing / n_s]);
           }
-        source.refuse("\"{}\" has {} rows after the header, but {} are expected, each of {} values of s with "
-                      "each of {} values of t; the first that {} missing {} {} (\"crawler table IN OUT\" fills gaps)",
+        source.refuse("\"{}\" has {} rows after the header, but {} are expected, one for each pair of {} values of s "
+                      "and {} values of t; the first that {} missing {} {} (\"crawler table IN OUT\" fills gaps)",
                       source.file,
                       n,
                       n_s * n_t,
@@ -147,7 +147,7 @@ namespace crawler
       const Hdf5Handle type(H5Dget_type(dataset), H5Tclose), space(H5Dget_space(dataset), H5Sclose);
       const H5T_class_t kind = H5Tget_class(type);
       if (kind != H5T_FLOAT && kind != H5T_INTEGER)
-        wrong("has a dataset " + name + " of something that is not a number");
+        wrong("has a dataset " + name + " that does not hold numbers");
       const auto wanted = static_cast<std::size_t>(1 + std::count(form.begin(), form.end(), ','));
       Dataset result;
       const int rank = H5Sget_simple_extent_ndims(space);
@@ -198,21 +198,20 @@ namespace crawler
       const auto read = [&]() {
         const Hdf5Handle file(H5Fopen(source.file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
         if (file < 0)
-          source.refuse("\"{}\" begins as an HDF5 file does, but HDF5 cannot open it", source.file);
+          source.refuse("\"{}\" begins like an HDF5 file, but HDF5 cannot open it", source.file);
         s     = read_dataset(file, "s", "ns", source);
         t     = read_dataset(file, "t", "nt", source);
         value = read_dataset(file, source.name, "nt,ns", source);
       };
       if (!hdf5::is_harmless(source.file, source.name, read))
-        source.refuse("\"{}\" begins as an HDF5 file does, but it is damaged: HDF5 crashes or never ends on it",
-                      source.file);
+        source.refuse("\"{}\" begins like an HDF5 file, but it is damaged: HDF5 crashes or hangs on it", source.file);
       read();
       GridTable grid;
       grid.s                = std::move(s.values);
       grid.t                = std::move(t.values);
       const std::size_t n_s = grid.s.size(), n_t = grid.t.size();
       if (value.extents != std::vector<hsize_t>{n_t, n_s})
-        source.refuse("{0}[{1},{2}] in \"{3}\" does not fit to s[{4}] and t[{5}]; {0}[{5},{4}] is expected{6}",
+        source.refuse("{0}[{1},{2}] in \"{3}\" does not match s[{4}] and t[{5}]; {0}[{5},{4}] is expected{6}",
                       source.name,
                       value.extents[0],
                       value.extents[1],
@@ -220,7 +219,7 @@ namespace crawler
                       n_s,
                       n_t,
                       value.extents == std::vector<hsize_t>{n_s, n_t}
-                        ? ": the order of s and t is turned round, as MATLAB, R and Fortran store arrays"
+                        ? ": the order of s and t is reversed, as MATLAB, R and Fortran store arrays"
                         : "");
       require_increasing(grid.s, "s", source);
       require_increasing(grid.t, "t", source);

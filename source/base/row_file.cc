@@ -26,11 +26,10 @@ namespace crawler
     found(const Result result, const std::filesystem::path &path, const std::string &what)
     {
       if (result < 0)
-        throw InputError(
-          fmt::format("\"{}\" {}: it is no file of results that crawler wrote, or it is damaged; a whole "
-                      "one is expected",
-                      path.string(),
-                      what));
+        throw InputError(fmt::format(
+          "\"{}\" {}: it is not a file of results that crawler wrote, or it is damaged; an intact one is expected",
+          path.string(),
+          what));
       return result;
     }
 
@@ -48,7 +47,7 @@ namespace crawler
           fmt::format("cannot open \"{}\": {}", path.string(), errno != 0 ? std::strerror(errno) : "unknown reason"));
       std::string start(8, '\0');
       in.read(start.data(), static_cast<std::streamsize>(start.size()));
-      return found(file, path, start == "\x89HDF\r\n\x1a\n" ? "cannot be read as HDF5 file" : "is no HDF5 file");
+      return found(file, path, start == "\x89HDF\r\n\x1a\n" ? "cannot be read as an HDF5 file" : "is not an HDF5 file");
     }
 
     /// Name of a dataset without "/", which HDF5 reserves for groups.
@@ -74,7 +73,7 @@ namespace crawler
       const Hdf5Handle type(H5Aget_type(attribute), H5Tclose), space(H5Aget_space(attribute), H5Sclose);
       const bool is_text =
         H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 && H5Sget_simple_extent_npoints(space) == 1;
-      found(is_text ? 0 : -1, path, "has an attribute \"" + name + "\" that is no text");
+      found(is_text ? 0 : -1, path, "has an attribute \"" + name + "\" that is not text");
       constexpr std::size_t most = 1 << 28;
       found(H5Tget_size(type) <= most ? 0 : -1, path, "has an attribute \"" + name + "\" that is too long");
       std::string text(H5Tget_size(type), '\0');
@@ -87,7 +86,7 @@ namespace crawler
     require_harmless(const std::filesystem::path &path, const std::string &purpose, const std::function<void()> &read)
     {
       H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own message instead of HDF5's stack
-      found(hdf5::is_harmless(path, purpose, read) ? 0 : -1, path, "crashes HDF5, or never ends");
+      found(hdf5::is_harmless(path, purpose, read) ? 0 : -1, path, "makes HDF5 crash or hang");
     }
 
     /// Writes rows @p first to @p first + @p n - 1 of a column; @p value gives the value of row @p first + i.
@@ -131,13 +130,13 @@ namespace crawler
                              (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0);
       const Hdf5Handle creation(H5Dget_create_plist(dataset), H5Pclose);
       if (!is_column || H5Sget_simple_extent_ndims(space) != 1 || H5Pget_layout(creation) != H5D_CONTIGUOUS)
-        found(-1, path, fmt::format("has a dataset \"{}\" that is no column of a table", name));
+        found(-1, path, fmt::format("has a dataset \"{}\" that is not a column of a table", name));
       hsize_t n = 0;
       H5Sget_simple_extent_dims(space, &n, nullptr);
       std::error_code error;
       const hsize_t bytes = std::min<hsize_t>(H5Dget_storage_size(dataset), std::filesystem::file_size(path, error));
       if (error || bytes / H5Tget_size(type) < n)
-        found(-1, path, fmt::format("has a dataset \"{}\" without a place for all its values", name));
+        found(-1, path, fmt::format("has a dataset \"{}\" without room for all its values", name));
       return n;
     }
 
@@ -258,7 +257,7 @@ namespace crawler
             H5Dcreate(file, checksums, H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT), path, "write"),
           H5Dclose);
         hdf5::write_attribute(
-          dataset, "description", "CRC-32 of what was written into each row, by which damage is found", path);
+          dataset, "description", "CRC-32 of what was written into each row, to detect damage", path);
       }
       hdf5::checked(H5Fflush(file, H5F_SCOPE_GLOBAL), path, "write");
     }
@@ -418,7 +417,7 @@ namespace crawler
         found(H5Dopen(handles_->file, checksums, H5P_DEFAULT), path, "has no dataset of checksums"), H5Dclose);
       const Hdf5Handle type(H5Dget_type(*handles_->checksums), H5Tclose);
       if (length_of(*handles_->checksums, type, checksums, path) != n_rows_)
-        found(-1, path, "has another number of checksums than of rows");
+        found(-1, path, "has different numbers of checksums and rows");
     }
   }
 

@@ -44,13 +44,13 @@ namespace crawler
   reason_against_stretch_form(const Scene &scene)
   {
     if (scene.ground.profile)
-      return "the friction of the ground depends on the place of each cell, and so on the stretches of all others";
+      return "the friction of the ground depends on the place of each cell, and thus on the stretches of all others";
     const StretchFeedback *feedback = scene.active_stress->feedback();
     if (feedback != nullptr && feedback->uses_rate() && scene.ground.direction.is_uneven())
       return "the active stress depends on the rate of the stretch, and friction on the direction: the method for the "
              "equations of a step does not converge";
     if (feedback != nullptr && (feedback->sees_near() || feedback->delay() > 0.))
-      return "the active stress sees the stretch of other places or times";
+      return "the active stress depends on the stretch at other places or times";
     return "";
   }
 

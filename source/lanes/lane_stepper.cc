@@ -41,7 +41,7 @@ namespace crawler
     course_ = course;
     y_.assign(y.begin(), y.end());
     if (goes_on_ && (old_z_.size() != tableau_.n * y_.size() || progress_.output_time >= course_.ends.size()))
-      throw FileError("a saved state does not fit to the program: its last step is one of another run");
+      throw FileError("a saved state does not match the program: its last step is from another run");
     job_ = {.k         = scene_.body.elastic_modulus,
             .a         = scene_.body.friction_exponent(),
             .tolerance = course_.tolerance,

@@ -33,10 +33,9 @@ namespace crawler
                     max_samples),
         entry);
     if (stress.feedback() != nullptr)
-      throw InputError(
-        "Active stress table is wanted, but the active stress depends on the stretch besides s and t; nothing "
-        "is expected here (the kymograph has the active stress of the run)",
-        entry);
+      throw InputError("Active stress table is wanted, but the active stress depends on the stretch besides s and t; "
+                       "an empty entry is expected here (the kymograph has the active stress of the run)",
+                       entry);
   }
 
   std::string

@@ -36,26 +36,28 @@ namespace crawler
     static const std::map<std::string, Layout> all = [] {
       const hsize_t arrows = 3 * n_grips, strips = 4 * Scenery::max_ground;
       std::map<std::string, Layout> layouts = {
-        {"time", {"time", "of each frame; NaN: it was not written", true, {}}},
+        {"time", {"time", "time of each frame; NaN: it was not written", true, {}}},
         {"step", {"1", "number of the time step", true, {}, true}},
-        {"n_points", {"1", "points of each frame; what follows them is NaN", true, {}, true}},
+        {"n_points", {"1", "number of points of each frame; what follows them is NaN", true, {}, true}},
         {"body/points", {"length", "x, y and z at the ground and at the upper edge", true, {n_points, 2, 3}}},
         {"body/s", {"length", "place at rest", true, {n_points, 2}}},
         {"line/cells", {"1", "the points in their order", false, {1, n_points}, true}},
         {"line/s", {"length", "place at rest", true, {n_points}}},
         {"line/points", {"length", "s on the x axis", true, {n_points, 3}}},
-        {"grip/points", {"length", "corners of triangles: forces of the ground on the body", true, {arrows, 3}}},
+        {"grip/points",
+         {"length", "corners of the triangles that show the forces of the ground on the body", true, {arrows, 3}}},
         {"grip/friction_force", {"force/length", "of each corner", true, {arrows}}},
         {"grip/cells", {"1", "corners of the triangles", false, {n_grips, 3}, true}},
-        {"ground/points", {"length", "corners of quadrilaterals: the ground", false, {strips, 3}}},
+        {"ground/points", {"length", "corners of the quadrilaterals that show the ground", false, {strips, 3}}},
         {"ground/cells", {"1", "their corners", false, {Scenery::max_ground, 4}, true}},
-        {"scale/points", {"length", "corners of a quadrilateral: scale of the fields", false, {4, 3}}},
+        {"scale/points", {"length", "corners of a quadrilateral that shows the scale of the fields", false, {4, 3}}},
         {"scale/cells", {"1", "its corners", false, {1, 4}, true}}};
       for (const FieldName &field : field_names)
       {
-        layouts[std::string("body/") + field.name]  = {field.unit, "at the points of the body", true, {n_points, 2}};
-        layouts[std::string("line/") + field.name]  = {field.unit, "at the points of the line", true, {n_points}};
-        layouts[std::string("scale/") + field.name] = {field.unit, "smallest and largest of the run", false, {4}};
+        layouts[std::string("body/") + field.name] = {
+          field.unit, "values at the points of the body", true, {n_points, 2}};
+        layouts[std::string("line/") + field.name] = {field.unit, "values at the points of the line", true, {n_points}};
+        layouts[std::string("scale/") + field.name] = {field.unit, "smallest and largest value of the run", false, {4}};
       }
       return layouts;
     }();
@@ -171,7 +173,7 @@ namespace crawler
   {
     const Hdf5Handle space(H5Dget_space(*datasets_.at("line/s")), H5Sclose);
     if (H5Sget_simple_extent_ndims(space) != 2)
-      throw FileError("cannot go on with \"" + path_.string() + "\": it has another form than was written");
+      throw FileError("cannot continue \"" + path_.string() + "\": its form differs from what was written");
     hsize_t size[2] = {0, 0};
     H5Sget_simple_extent_dims(space, size, nullptr);
     return {size[0], size[1]};

@@ -193,7 +193,7 @@ namespace crawler
     file_                              = std::make_unique<SnapshotHdf5>(path_);
     std::tie(max_frames_, max_points_) = file_->size();
     if (max_frames_ < frames_.size())
-      throw FileError("cannot go on with \"" + path_.string() + "\": it has fewer frames than were written");
+      throw FileError("cannot continue \"" + path_.string() + "\": it has fewer frames than were written");
     rewrite_descriptions(); // positions of the frames in the file may have changed
   }
 

@@ -30,11 +30,11 @@ namespace crawler
     refuse_call(const std::string &found, const std::string &function, const std::string &name)
     {
       throw InputError(
-        fmt::format("\"{}\": found \"{}\", but \"{}(first, last, count)\" with three numbers, and nothing beside it, "
-                    "is expected",
-                    name,
-                    found,
-                    function),
+        fmt::format(
+          "\"{}\": found \"{}\", but \"{}(first, last, count)\" with three numbers, and nothing else, is expected",
+          name,
+          found,
+          function),
         name);
     }
 
@@ -63,8 +63,7 @@ namespace crawler
         const double x = count == 1 ? numbers[0] : numbers[0] + (numbers[1] - numbers[0]) * i / (count - 1);
         const double y = function == "logspace" ? std::pow(10., x) : x;
         if (!std::isfinite(y) || (function == "logspace" && y == 0.))
-          throw InputError(
-            fmt::format("\"{}\": 10 to the power of {:g} is not a number that a computer knows", name, x), name);
+          throw InputError(fmt::format("\"{}\": 10^{:g} is beyond the range of a double", name, x), name);
         values.push_back(clean_text(y));
       }
       return values;
@@ -108,13 +107,12 @@ namespace crawler
             if (std::find(own_functions.begin(), own_functions.end(), word) != own_functions.end())
               refuse_call(value, word, name);
             throw InputError(
-              fmt::format(
-                "\"{}\": found \"{}\", but \"{}(...)\" with nothing beside it is expected", name, value, word),
+              fmt::format("\"{}\": found \"{}\", but \"{}(...)\" and nothing else is expected", name, value, word),
               name);
           }
           if (!are_parentheses_balanced(value))
             throw InputError(fmt::format("\"{}\": found \"{}\", but as many closing as opening parentheses are "
-                                         "expected; a value with a single one stands in double quotes",
+                                         "expected; a value with a single one must be in double quotes",
                                          name,
                                          value),
                              name);
@@ -189,7 +187,7 @@ namespace crawler
     {
       const auto near = nearest_names(call->function, functions, 1);
       throw InputError(fmt::format("\"{}\": unknown function \"{}\", but {} is expected{}; a formula that is the only "
-                                   "value stands in double quotes",
+                                   "value must be in double quotes",
                                    name,
                                    call->function,
                                    quoted_list(functions),

@@ -42,8 +42,8 @@ namespace crawler
       const std::string first = text.substr(0, static_cast<std::size_t>(end - text.c_str()));
       const std::string rest  = trimmed(text.substr(first.size()));
       if (is_decimal && !rest.empty() && to_number(first))
-        return fmt::format("; a number stands alone, without {}: {}",
-                           std::isalpha(static_cast<unsigned char>(rest[0])) ? "its unit" : "what is behind it",
+        return fmt::format("; a number must be alone, without {}: {}",
+                           std::isalpha(static_cast<unsigned char>(rest[0])) ? "its unit" : "what follows it",
                            first);
       return "";
     }
@@ -173,7 +173,7 @@ namespace crawler
     info_.documentation = documentation;
     if (info_.names_file)
       info_.documentation +=
-        " A file counts from the folder of this parameter file (with --set, from the current one).";
+        " A file name is relative to the folder of this parameter file (with --set, to the current one).";
     const auto of_trimmed = [](const auto &function) {
       return [function](const std::string &text) { return function(trimmed(text)); };
     };
@@ -479,7 +479,7 @@ namespace crawler
     if (std::find(sections_.begin(), sections_.end(), path) != sections_.end())
       return;
     if (const std::string now = successor_of(path); !now.empty())
-      throw InputError(fmt::format("the section \"{}\" is gone; {} is expected", path, now), path);
+      throw InputError(fmt::format("the section \"{}\" was removed; {} is expected", path, now), path);
     const auto near = nearest_names(path, sections_);
     if (near.empty())
     {

@@ -74,8 +74,8 @@ namespace crawler
         case EntryKind::profile:
           refuse(entry,
                  key,
-                 list.empty() ? fmt::format("names a number of a list, but \"{}\" is \"{}\"; numbers at places that "
-                                            "are equally spaced from tail to head are expected there, as 1, 1, 1, 1",
+                 list.empty() ? fmt::format("names a number of a list, but \"{}\" is \"{}\"; numbers at equally spaced "
+                                            "places from tail to head are expected there, like 1, 1, 1, 1",
                                             entry.path,
                                             text)
                               : fmt::format("names no number of the list; \"{}\" has {} of them, so [1] to [{}] are "

@@ -136,8 +136,8 @@ namespace crawler
   {
     n_bytes_ += text.size();
     if (n_bytes_ > max_bytes)
-      throw InputError(
-        fmt::format("{}: at most {} MB of parameters are expected, with all included files", name, max_bytes >> 20));
+      throw InputError(fmt::format(
+        "{}: at most {} MB of parameters, including all included files, are expected", name, max_bytes >> 20));
     if (const std::string found = foreign_format(text); !found.empty())
       throw InputError(fmt::format("{}: this is {}, but a text file of parameters in UTF-8 is expected", name, found));
     if (std::any_of(text.begin(), text.end(), [](const char c) { return static_cast<unsigned char>(c) < 9; }))
@@ -161,14 +161,14 @@ namespace crawler
         if (rest.empty())
           throw InputError(fmt::format("{}: \"subsection\" without a name", place));
         if (open.size() == deepest_section)
-          throw InputError(fmt::format("{}: sections stand in each other more than {} deep", place, deepest_section));
+          throw InputError(fmt::format("{}: sections are nested more than {} deep", place, deepest_section));
         sections_.push_back({path(rest), place});
         open.emplace_back(rest, first);
       }
       else if (statement == "end")
       {
         if (open.empty())
-          throw InputError(fmt::format("{}: \"end\" without a \"subsection\" that it could close", place));
+          throw InputError(fmt::format("{}: \"end\" without a matching \"subsection\"", place));
         open.pop_back();
       }
       else if (keyword == "set")
@@ -179,8 +179,10 @@ namespace crawler
         const Assignment assignment{
           path(trimmed(rest.substr(0, equals))), trimmed(rest.substr(equals + 1)), place, false, folder, depth};
         if (const Assignment *const other = assignment_of(assignment.path); other != nullptr && other->depth <= depth)
-          throw InputError(fmt::format(
-            "{}: \"{}\" is set a second time (first in {}); once is expected", place, assignment.path, other->place));
+          throw InputError(fmt::format("{}: \"{}\" is set a second time (first in {}), but is expected only once",
+                                       place,
+                                       assignment.path,
+                                       other->place));
         add(assignment);
       }
       else if (keyword == "include")
@@ -192,13 +194,11 @@ namespace crawler
       else
       {
         const std::string sign = foreign_sign(statement);
-        throw InputError(
-          !sign.empty()
-            ? fmt::format("{}: {}", place, sign)
-            : fmt::format(
-                "{}: found \"{}\", but a line begins with \"set\", \"subsection\", \"end\", \"include\" or \"#\"",
-                place,
-                statement.substr(0, 60)));
+        throw InputError(!sign.empty() ? fmt::format("{}: {}", place, sign)
+                                       : fmt::format("{}: found \"{}\", but \"set\", \"subsection\", \"end\", "
+                                                     "\"include\" or \"#\" is expected at the beginning of a line",
+                                                     place,
+                                                     statement.substr(0, 60)));
       }
     }
     if (!open.empty())
@@ -213,10 +213,10 @@ namespace crawler
                          const unsigned int depth)
   {
     if (depth == 10)
-      throw InputError(fmt::format("{}: files include each other more than 10 deep", place));
+      throw InputError(fmt::format("{}: included files are nested more than 10 deep", place));
     if (++n_included_ > max_included)
       throw InputError(fmt::format(
-        "{}: this is the included file number {}, but at most {} are expected", place, n_included_, max_included));
+        "{}: this is included file number {}, but at most {} are expected", place, n_included_, max_included));
     if (file_name.empty())
       throw InputError(fmt::format("{}: \"include\" without the name of a file", place));
     if (const std::string sign = home_sign(file_name); !sign.empty())

@@ -65,10 +65,10 @@ namespace crawler
     if (file != "~" && !file.starts_with("~/"))
       return "";
     const char *const home = std::getenv("HOME");
-    return fmt::format("\"{}\" begins with \"~\", which only a shell replaces by the home folder; the whole name is "
-                       "expected{}",
-                       file,
-                       home == nullptr ? "" : fmt::format(": {}{}", home, file.substr(1)));
+    return fmt::format(
+      "\"{}\" begins with \"~\", which only a shell replaces by the home folder; the full path is expected{}",
+      file,
+      home == nullptr ? "" : fmt::format(": {}{}", home, file.substr(1)));
   }
 
   std::string

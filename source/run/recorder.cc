@@ -187,7 +187,7 @@ namespace crawler
   Recorder::exchange(Archive &archive)
   {
     archive.require_same(cycle_stop_.has_value(), "the cycle stop");
-    archive.require_same(gait_meter_.has_value(), "the look at the gait");
+    archive.require_same(gait_meter_.has_value(), "the gait meter");
     archive(result, smallest_, largest_, started_, largest_friction_, largest_net_friction_, were_known_);
     if (cycle_stop_)
       archive(*cycle_stop_);

@@ -107,10 +107,9 @@ namespace crawler
             error.total * reduced_scene_.units().length,
             relative,
             accuracy)
-        : fmt::format(
-            "the error of the {} model cannot be estimated for this scene, since its corrections do not become "
-            "smaller; Model = auto is needed",
-            word_of(model_));
+        : fmt::format("the error of the {} model cannot be estimated for this scene, since its corrections do not "
+                      "decrease; Model = auto is needed",
+                      word_of(model_));
   }
 
   SimulationResult

@@ -87,8 +87,8 @@ namespace crawler
                       beyond),
           "Active stress/Generator");
       if (p.time.cycle_stop == CycleStopMode::on && !scene.is_alike_everywhere())
-        throw InputError(fmt::format("Cycle stop is on, but what the body does depends on its place or its past, since "
-                                     "the scene has {}; automatic or off is expected",
+        throw InputError(fmt::format("Cycle stop is on, but the motion of the body depends on its place or its past, "
+                                     "since the scene has {}; automatic or off is expected",
                                      features),
                          "Time/Cycle stop");
       const StretchFeedback *feedback = scene.active_stress->feedback();
@@ -117,14 +117,13 @@ namespace crawler
                              name.find_first_not_of("0123456789", term.size()) == std::string::npos;
       if (is_number && name[term.size()] != '0' &&
           (name.size() > term.size() + 6 || std::stoul(name.substr(term.size())) > n))
-        throw InputError(
-          fmt::format("{}: the section \"{}/{}\" is found, but \"{}{}\" is not; terms are expected to be "
-                      "numbered without a gap, from Term 1 on",
-                      file.name(),
-                      sum,
-                      name,
-                      term,
-                      n + 1));
+        throw InputError(fmt::format("{}: the section \"{}/{}\" is found, but \"{}{}\" is not; terms are expected to "
+                                     "be numbered from Term 1 without gaps",
+                                     file.name(),
+                                     sum,
+                                     name,
+                                     term,
+                                     n + 1));
     }
     // Names of the first term are known even if there is none, in case the file has a slip in them.
     active_stress.sum.terms.assign(names.empty() ? 0 : std::max<std::size_t>(n, 1), {});
@@ -136,15 +135,16 @@ namespace crawler
   RunParameters::add_parameters(Declarations &declarations)
   {
     declarations.choice("Model", model)
-      .means("The level of the model's ladder (doc/theory.md): the series for the optimal wave in closed form, a body "
+      .means("Level of the model hierarchy (doc/theory.md): the series for the optimal wave in closed form, a body "
              "whose strain is known, the equation for a = 0, or the full nonlinear equation; auto is the first of "
              "these whose estimated error is at most Accuracy.");
     declarations.number("Accuracy", accuracy, between(1e-12, 0.1), "1")
-      .means("Wanted error of the displacement, relative to it (or to 1e-4 of the largest deformation, if that is "
-             "larger). Chooses degree, cells and time tolerance where they are automatic (doc/numerics.md).");
-    declarations.flag("Error estimate", error_estimate)
       .means(
-        "Whether a second, finer run tells the error of the displacement; about as expensive as a run without output.");
+        "Accepted error of the displacement, relative to the displacement (or to 1e-4 of the largest deformation, if "
+        "that is larger). It determines degree, cells and time tolerance where they are automatic (doc/numerics.md).");
+    declarations.flag("Error estimate", error_estimate)
+      .means("Whether a second, finer run measures the error of the displacement; it costs about as much as a run "
+             "without output.");
     body.add_parameters(declarations);
     ground.add_parameters(declarations);
     active_stress.add_parameters(declarations);

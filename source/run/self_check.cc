@@ -60,8 +60,8 @@ namespace crawler
         const double lacking         = 0.5 * balance.residual() * balance.exchanged_work / energy * *efficiency;
         if (!(*efficiency > 1. + *error + lacking))
           return "";
-        return fmt::format("the gait efficiency {}is {:.6g} +- {:.2g}, but no gait has more than 1; a smaller Accuracy "
-                           "or a finer mesh is needed",
+        return fmt::format("the gait efficiency {}is {:.6g} +- {:.2g}, but no gait can exceed 1; a smaller Accuracy or "
+                           "a finer mesh is needed",
                            words,
                            *efficiency,
                            *error + lacking);

@@ -348,7 +348,7 @@ namespace crawler
       return Ending::cycles;
     if (step.number < time_.max_steps || step.time >= 1.)
       return Ending::none;
-    run_->diagnosis = {Status::stopped, "step_limit", "the maximum number of steps is reached"};
+    run_->diagnosis = {Status::stopped, "step_limit", "the maximum number of steps was reached"};
     return Ending::lost;
   }
 

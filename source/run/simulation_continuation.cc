@@ -93,7 +93,7 @@ namespace crawler
     }
     const auto is_same = [](const Cell &a, const Cell &b) { return a.left == b.left && a.size == b.size; };
     if (!std::ranges::equal((next ? *next : *mesh_.discretization).cells(), wanted, is_same))
-      throw FileError("a saved state does not fit to the program: its mesh cannot be made again");
+      throw FileError("a saved state does not match the program: its mesh cannot be rebuilt");
     if (next)
       build(std::move(next));
   }
@@ -113,7 +113,7 @@ namespace crawler
     Archive all(together);
     all(states);
     if (states.size() != size_of(communicator_))
-      throw FileError("a saved state does not fit to the program: it was made by another number of ranks");
+      throw FileError("a saved state does not match the program: it was made by another number of ranks");
     return states[rank_of(communicator_)];
   }
 

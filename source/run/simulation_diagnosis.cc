@@ -251,7 +251,7 @@ namespace crawler
                   s * units_.length,
                   t * units_.time,
                   positive ? "where the body itself stays uninverted (a <= -1)"
-                               : "which for a < 0 only the stretch form is believed",
+                               : "for which only the stretch form is trusted at a < 0",
                   mesh_.discretization->n_cells(),
                   mesh_.discretization->element().degree,
                   mesh_.position != nullptr ? "Discretization/Formulation = stretch, or " : "")};

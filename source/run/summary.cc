@@ -77,7 +77,8 @@ namespace crawler
         lines.push_back(fmt::format(
           "  uncertain entries make the displacement uncertain by {:.2g} (standard deviation)", *deviation));
       else if (std::ranges::any_of(result.sensitivities, [](const auto &one) { return one.standard_deviation > 0.; }))
-        lines.emplace_back("  what uncertain entries do to the displacement is not known, since a derivative is not");
+        lines.emplace_back(
+          "  the effect of uncertain entries on the displacement is not known, since a derivative is not");
     }
   } // namespace
 
@@ -161,7 +162,7 @@ namespace crawler
                     result.cycles->bound));
     if (result.energy_balance)
     {
-      lines.push_back(fmt::format("  stress power      {:.10g}{}{}",
+      lines.push_back(fmt::format("  stress work       {:.10g}{}{}",
                                   result.energy_balance->stress_work,
                                   error_bound_in_words(result, "stress_power"),
                                   units.behind("force length")));
@@ -185,13 +186,13 @@ namespace crawler
                   result.max_stretch.t));
     add_gait_lines(result, units, lines);
     if (result.gait_efficiency)
-      lines.push_back(
-        fmt::format("  efficiency        reaches {:.3g} % of what any gait with this {} and these strains could{}",
-                    100. * *result.gait_efficiency,
-                    starts_from_rest(*result.energy_balance) ? "work" : "dissipation",
-                    result.gait && result.gait->efficiency && result.gait->n_strides > 1.
-                      ? fmt::format("; the last stride {:.3g} % with its dissipation", 100. * *result.gait->efficiency)
-                      : ""));
+      lines.push_back(fmt::format(
+        "  efficiency        reaches {:.3g} % of the most that any gait with this {} and these strains can{}",
+        100. * *result.gait_efficiency,
+        starts_from_rest(*result.energy_balance) ? "work" : "dissipation",
+        result.gait && result.gait->efficiency && result.gait->n_strides > 1.
+          ? fmt::format("; the last stride {:.3g} % with its dissipation", 100. * *result.gait->efficiency)
+          : ""));
     add_sensitivity_lines(result, lines);
     return lines;
   }

@@ -144,7 +144,7 @@ namespace crawler
   ActiveStressParameters::add_generators(Declarations &declarations, const bool is_term)
   {
     std::vector<std::string> names, of_strain;
-    std::string documentation = "What makes the active stress: ";
+    std::string documentation = "Generator of the active stress: ";
     for (const Generator &entry : generators())
     {
       if (is_term && entry.name == name_of_sum)
@@ -155,7 +155,7 @@ namespace crawler
         of_strain.push_back(entry.name);
     }
     declarations.choice("Generator", generator, names)
-      .means(is_term ? "What makes the term, as in Active stress." : documentation + ".");
+      .means(is_term ? "Generator of the term, as in Active stress." : documentation + ".");
     optimal_wave.add_parameters(declarations);
     travelling_wave.add_parameters(declarations);
     standing_wave.add_parameters(declarations);

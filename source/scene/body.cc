@@ -27,8 +27,9 @@ namespace crawler
     declarations.constants("Constants", constants, {"Elastic modulus profile", "Friction profile", "Initial stretch"})
       .means("Constants that the formulas of this section may use.");
     declarations.choice("Profile interpolation", profile_interpolation, {"cubic", "linear"})
-      .means("Between the numbers of the lists and the rows of the CSV files of this section; beyond the first and the "
-             "last row their values hold. Cubic: a spline of the logarithms, which gives positive values.");
+      .means(
+        "Interpolation between the numbers of the lists and the rows of the CSV files of this section; their values "
+        "are kept beyond the first and the last row. Cubic: a spline of the logarithms, which gives positive values.");
     declarations.leave();
   }
 

@@ -72,7 +72,7 @@ namespace crawler
   TimeSegments::set_limits()
   {
     if (piece_ > breaks_.size())
-      throw FileError("a saved state does not fit to the program: its piece of time is not there");
+      throw FileError("a saved state does not match the program: its piece of time is missing");
     if (!clamps_)
       return;
     from_ = (piece_ == 0 ? 0. : breaks_[piece_ - 1]) + 2. * min_time_between_breaks;

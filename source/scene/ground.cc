@@ -176,19 +176,20 @@ namespace crawler
       .means("Factor of the friction along the ground; x is the place on the ground, where the body lies from 0 to L "
              "before it is stretched.");
     declarations.choice("Profile interpolation", interpolation, {"cubic", "linear"})
-      .means("Between the rows of the CSV file.");
+      .means("Interpolation between the rows of the CSV file.");
     declarations.choice("Outside", outside, {"hold", "error"})
-      .means("Beyond the first and the last row of the CSV file: their values hold, or the run ends.");
+      .means("What happens beyond the first and the last row of the CSV file: their values are kept, or the run ends.");
     declarations.choice("Friction law", friction_law, names).means(documentation + ".");
     declarations.text("Expression", expression, "a formula of w", "1")
-      .means("For the law expression: friction divided by gamma, as a function of the stretch w; positive.");
+      .means("Friction divided by gamma for the law expression, as a positive function of the stretch w.");
     declarations.constants("Constants", constants, {"Expression", "Profile"})
       .means("Constants that this formula and that of the Profile may use.");
     declarations.number("Backward ratio", backward_ratio, between(0.1, 10), "1")
-      .means("Resistance to backward motion (v < 0) over that to forward motion, r; in between the friction has the "
-             "factor (1+r)/2 + (1-r)/2 tanh(v/v_s).");
+      .means("Ratio r of the resistance to backward motion (v < 0) to that to forward motion; in between, the friction "
+             "has the factor (1+r)/2 + (1-r)/2 tanh(v/v_s).");
     declarations.number("Switching velocity", switching_velocity, positive(), "length/time")
-      .means("The velocity v_s of this transition; needed if the Backward ratio is not 1.");
+      .means(
+        "Velocity v_s of the transition between backward and forward motion; needed if the Backward ratio is not 1.");
     declarations.leave();
   }
 

@@ -16,11 +16,10 @@ namespace crawler
     const std::string name = "a name, like mm";
     declarations.enter("Units");
     declarations.text("Length", length, name)
-      .means(
-        "What the unit of length is called, in pictures, reports, headers of tables and on the screen. It is a name "
-        "alone: nothing is converted.");
-    declarations.text("Time", time, name).means("What the unit of time is called.");
-    declarations.text("Force", force, name).means("What the unit of force is called.");
+      .means("Name of the unit of length in pictures, reports, table headers and on the screen. It is only a name: "
+             "nothing is converted.");
+    declarations.text("Time", time, name).means("Name of the unit of time.");
+    declarations.text("Force", force, name).means("Name of the unit of force.");
     declarations.leave();
   }
 

@@ -222,7 +222,7 @@ namespace crawler
       words = error.text;
     }
     if (code != 0)
-      throw InputError("PETSc refuses an option behind \"--\": " + words);
+      throw InputError("PETSc refuses an option after \"--\": " + words);
 
     // Options that begin() resets each time.
     const auto option = [&](const char *option_name) {
@@ -528,7 +528,7 @@ namespace crawler
     else
     {
       result.reason  = "rejection_limit";
-      result.message = "a step was rejected too many times, its error stays above the tolerance";
+      result.message = "a step was rejected too many times: its error stays above the tolerance";
     }
     return result;
   }
@@ -610,7 +610,7 @@ namespace crawler
       self.end          = self.counts();
       self.end->status  = Status::stopped;
       self.end->reason  = "step_limit";
-      self.end->message = "the maximum number of steps is reached";
+      self.end->message = "the maximum number of steps was reached";
     }
     if (made != nullptr)
       self.show();

@@ -259,7 +259,7 @@ namespace crawler
   {
     static const RadauTableau three(3), five(5), seven(7);
     if (n_stages != 3 && n_stages != 5 && n_stages != 7)
-      throw std::logic_error("Radau IIA is there with 3, 5 and 7 stages");
+      throw std::logic_error("Radau IIA is available with 3, 5 and 7 stages");
     return n_stages == 3 ? three : n_stages == 5 ? five : seven;
   }
 } // namespace crawler

@@ -33,29 +33,29 @@ namespace crawler
         "Time integrator (PETSc TS). Automatic: radau 5, radau 9 or bdf, by accuracy and stretch (doc/numerics.md). "
         "Integrators of PETSc that are not sound for this equation are refused with the reason.");
     declarations.choice("Engine", engine)
-      .means("What carries the integrator out. Automatic: the fused engine of the program, which is several times "
+      .means("Engine that runs the integrator. Automatic: the fused engine of the program, which is several times "
              "faster, for the radau integrators in the position form on uniform meshes, and PETSc otherwise and where "
              "that gives up.");
-    declarations.whole_number("Order", order, 1, 5).means("Order of bdf; radau 5 and 9 have that of their name.");
+    declarations.whole_number("Order", order, 1, 5).means("Order of bdf; radau 5 and 9 have the order in their names.");
     declarations.choice("Step control", step_control)
       .means(
         "Whether step sizes follow the estimated error, or all are Initial step (shortened to end on output times).");
     declarations.number("Tolerance", tolerance, positive(), "length")
-      .means("Estimated error of the displacement that is admissible in a step (root mean square over the body). "
-             "Automatic: chosen from Accuracy.");
+      .means("Admissible estimated error of the displacement in a step (root mean square over the body). Automatic: "
+             "chosen from Accuracy.");
     declarations.number("Initial step", initial_step, positive(), "time")
       .means("Size of the first step. Automatic: chosen from Accuracy.");
     declarations.choice("Cycle stop", cycle_stop)
-      .means("Whether a run whose active stress has a period ends when a cycle repeats; the cycles that are left are "
+      .means("Whether a run with a periodic active stress ends when a cycle repeats; the remaining cycles are "
              "extrapolated, with a bound (doc/numerics.md). Automatic: if there are no snapshots and Step control is "
              "adaptive. A table of statistics ends with the cycles that are computed.");
     declarations.whole_number("Maximum number of steps", max_steps, 1, 999999999)
-      .means("The run stops after so many steps.");
+      .means("Number of steps after which the run stops.");
     declarations.number("Wall time limit", wall_time_limit, positive(), "s")
-      .means("A run stops in order after so much wall time, with exit code 5; --resume goes on. Automatic: none.");
+      .means("Wall time after which a run stops normally, with exit code 5; --resume continues it. Automatic: none.");
     declarations.number("Checkpoint interval", checkpoint_interval, between(0., 1e9), "s")
-      .means("Wall time between two states that a run keeps in restart.dat, from which --resume goes on after a crash. "
-             "What takes less writes none, unless it is stopped.");
+      .means("Wall time between two states that a run saves in restart.dat, from which --resume continues after a "
+             "crash. A run that takes less saves none unless it is stopped.");
     declarations.leave();
   }
 

@@ -53,7 +53,7 @@ def templates(folder):
         check(10 <= len(text.splitlines()) <= 24 and "# " in text and "Expect" not in text, f"{name} is short")
         (folder / f"{name}.prm").write_text(text)
         done = crawler("check", f"{name}.prm", folder=folder)
-        check(done.returncode == 0 and "is in order" in done.stdout, f"{name} is in order {done.stderr}")
+        check(done.returncode == 0 and "is valid" in done.stdout, f"{name} is valid {done.stderr}")
         command = name if name in ("sweep", "optimize", "fit") else "run"
         quick = ["--set", "Output/Number of snapshots=2"] if command == "run" else []
         done = crawler(command, f"{name}.prm", *quick, folder=folder)
@@ -62,7 +62,7 @@ def templates(folder):
     check(crawler("init", "snail", "--output", "my.prm", folder=folder).returncode == 0 and
           (folder / "my.prm").read_text() == (folder / "snail.prm").read_text(), "init --output writes the template")
     again = crawler("init", "robot", "--output", "my.prm", folder=folder)
-    check(again.returncode == 2 and '"my.prm" is there already' in again.stderr and
+    check(again.returncode == 2 and '"my.prm" already exists' in again.stderr and
           (folder / "my.prm").read_text() == (folder / "snail.prm").read_text(), "init never overwrites a file")
     wrong = crawler("init", "robbot")
     check(wrong.returncode == 2 and 'the nearest is "robot"' in wrong.stderr, "init names the nearest template")

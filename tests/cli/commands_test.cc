@@ -245,7 +245,7 @@ TEST_F(Commands, ParametersInThreeFormats)
   EXPECT_EQ(run_program(folder.path, {"parameters", "--format", "prm"}).out, prm.out);
   const ProgramResult checked = run_program(folder.path, {"check", "-"}, prm.out);
   EXPECT_EQ(checked.exit_code, 0) << checked.err;
-  EXPECT_TRUE(contains(checked.out, "standard input is in order")) << checked.out;
+  EXPECT_TRUE(contains(checked.out, "standard input is valid")) << checked.out;
 
   const ProgramResult list     = run_program(folder.path, {"parameters", "--format", "json"});
   const ProgramResult markdown = run_program(folder.path, {"parameters", "--format", "markdown"});

@@ -296,7 +296,7 @@ def two_at_once(place):
                "--set", "Output/Number of snapshots=10000", "--set", "Active stress/Generator=expression",
                "--set", "Active stress/Expression/Active stress=" + formula]
     with Paused(command, "write:000003.vtu:STOP") as first:
-        refused(crawler("run", scene, "--output", folder, "--overwrite"), 2, "writes to", "a second run in the same folder")
+        refused(crawler("run", scene, "--output", folder, "--overwrite"), 2, "is writing to", "a second run in the same folder")
         done = first.go_on(signal.SIGTERM)
     expect(done.returncode == 5 and not (folder / "study.lock").exists(), f"the first run leaves its lock: {done.returncode}")
 

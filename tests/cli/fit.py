@@ -190,7 +190,7 @@ def refuses():
         ended = crawler("fit", *arguments, *more)
         check(ended.returncode == code and phrase in ended.stderr and ended.stderr.count("\n") == 1,
               f"{arguments}: {ended.returncode}, {ended.stderr}")
-    for variables, code, phrase in (("Body/Elastic modulus : 0.3 to 4", 0, "Fit: 1 unknown, from"), ("Body/Friction profile[1] : 0.3 to 4", 2, "numbers at places")):
+    for variables, code, phrase in (("Body/Elastic modulus : 0.3 to 4", 0, "Fit: 1 unknown, from"), ("Body/Friction profile[1] : 0.3 to 4", 2, "numbers at equally spaced places")):
         ended = crawler("check", "fit_worm.prm", "--set", f"Fit/Variables={variables}")
         check(ended.returncode == code and phrase in ended.stdout + ended.stderr, f"check of {variables}: {ended.stdout}{ended.stderr}")
     check(pathlib.Path("output-fit_worm/summary.json").read_bytes() == before and pathlib.Path("other/kept.txt").exists()

@@ -301,11 +301,11 @@ def test_starts(place):
            f"a start without work: {nothing.stdout}{nothing.stderr}")
 
     # The check says what the starts give.
-    for settings, words in (([], "keeps to all limits"), (["Sweep/Axes=Optimize/Largest strain : 0.3, 0.1"],
+    for settings, words in (([], "is within all limits"), (["Sweep/Axes=Optimize/Largest strain : 0.3, 0.1"],
                                                           "with Largest strain = 0.1: merit 0.145"),
                             (["Optimize/Largest strain=0.1"], "exceeds Largest strain by")):
         check = call([CRAWLER, "check", PRM / "optimize_harmonics.prm", *with_settings(settings)])
-        expect(check.returncode == 0 and words in check.stdout and "is in order" in check.stdout,
+        expect(check.returncode == 0 and words in check.stdout and "is valid" in check.stdout,
                f"check {settings}: {check.stdout}{check.stderr}")
 
 

@@ -78,7 +78,7 @@ SCRIPTS = {"run": "kymograph", "named": "kymograph", "no_stride": "kymograph", "
 REFUSED = [
     ([], 2, "the folder is missing"), (["nowhere"], 2, '"nowhere" is not a folder'),
     (["empty"], 2, "has nothing to draw"), (["run", "--kind", "kymogaph"], 2, '"kymograph"'),
-    (["run", "--", "-ts_monitor"], 2, "no use for PETSc options"), (["run", "--lastt-stride"], 2, "--lastt-stride"),
+    (["run", "--", "-ts_monitor"], 2, "takes no PETSc options"), (["run", "--lastt-stride"], 2, "--lastt-stride"),
     (["many.csv"], 2, '"many.csv" has 4 columns, but s, t and m (or strain) are expected'),
     (["run", "--output", "no/picture.png"], 6, "no/picture.png")]
 # The same of scripts.

@@ -188,7 +188,7 @@ end
     command(compiler, "-std=c++20", "-shared", "-fPIC", include, os.path.join(HERE, "faulty_plugin.cc"), "-o", FAULTY)
     refused("missing", {"File": "no.so"}, "there is no file", f"{folder}/no.so", "missing.prm, line ")
     refused("folder", {"File": "source"}, "is not a file")
-    refused("text", {"File": "text.prm"}, "cannot be loaded", "invalid ELF header", "made with -shared is expected")
+    refused("text", {"File": "text.prm"}, "cannot be loaded", "invalid ELF header", "compiled with -shared on this machine")
     refused("empty", {"File": ""}, "name of the shared object is missing")
     with open("other.c", "w") as file:
         file.write("int f(void) { return 0; }\n")
@@ -203,7 +203,7 @@ end
     content[18:20] = (0x1234).to_bytes(2, "little")
     with open("machine.so", "wb") as file:
         file.write(content)
-    refused("machine", {"File": "machine.so"}, "cannot be loaded", "made with -shared is expected")
+    refused("machine", {"File": "machine.so"}, "cannot be loaded", "compiled with -shared on this machine")
     for name, interface, version in (("old", 0, "PLUGIN_VERSION"), ("version", 1, '"0.0.7"')):
         with open("old.cc", "w") as file:
             file.write("#include <crawler/scene/plugin_version.h>\n#define PLUGIN_VERSION crawler::plugin_version\n"
@@ -214,7 +214,7 @@ end
         refused(name, {"File": f"{name}.so"}, "was built against crawler", "but this program is crawler", "build it again")
     refused("factory", {"File": FAULTY, "Parameters": "kind=factory"}, "refuses the scene: this body is too short")
     refused("number", {"File": FAULTY, "Parameters": "t=soon"}, 'the parameter "t" is "soon"', "a number is expected")
-    refused("nothing", {"File": FAULTY, "Parameters": "kind=nothing"}, "has made nothing")
+    refused("nothing", {"File": FAULTY, "Parameters": "kind=nothing"}, "returned nothing")
     refused("period", {"File": FAULTY, "Parameters": "kind=period"}, "its period is -1")
     refused("breaks", {"File": FAULTY, "Parameters": "kind=breaks"}, "breaks_in_space(): no breaks here")
     refused("unknown", {"File": FAULTY, "Parameters": "knd=nan"}, 'does not know the parameter "knd"', '"kind"')
@@ -234,17 +234,17 @@ end
     fails("throws_adaptive", half, [throws, "the valve is shut"], 0.68, THROWN,
           more="subsection Discretization\nset Mesh = adaptive\nend")
     fails("throws_number", "kind=throw number, t=0.68", ["something that is not a std::exception"], 0.68, THROWN)
-    fails("gives_nan", "kind=nan, s=0.5, t=0.43", ["gave nan in values() at s = 0.5", "a finite number"], 0.43, 9)
+    fails("gives_nan", "kind=nan, s=0.5, t=0.43", ["returned nan in values() at s = 0.5", "a finite number"], 0.43, 9)
     # Only where the pictures look, and at an end, whose stress is no part of the equation inside.
-    fails("place", "kind=nan at place, s=0.5, t=0.35", ["nonfinite", "gave nan in values() at s = 0.5, t = 0.35"], 0.36, 7)
-    fails("end", "kind=nan at place, s=1, t=0.35", ["gave nan in values() at s = 1, t = "], 0.5, 0, snapshots=0)
+    fails("place", "kind=nan at place, s=0.5, t=0.35", ["nonfinite", "returned nan in values() at s = 0.5, t = 0.35"], 0.36, 7)
+    fails("end", "kind=nan at place, s=1, t=0.35", ["returned nan in values() at s = 1, t = "], 0.5, 0, snapshots=0)
     fails("at_once", "kind=throw", ["threw an exception in values() at s = ", "t = 0: "], 0., 0)
-    fails("no_evaluator", "kind=no evaluator", ["gave no evaluator in at()"], 0., 0)
+    fails("no_evaluator", "kind=no evaluator", ["returned no evaluator in at()"], 0., 0)
     fails("two_ranks", "kind=throw, s=0.75, t=0.68", [throws.replace("0.5", "0.75"), "the valve is shut"], 0.68, THROWN,
           before=(MPIRUN, "--oversubscribe", "-n", "2"))
     fails("shared", "kind=throw, s=0.75, t=0.68", [throws.replace("0.5", "0.75"), "the valve is shut"], 0.68, THROWN,
           before=(MPIRUN, "--oversubscribe", "-n", "2"), more="subsection Discretization\nset Number of cells = 300\nset Degree = 2\nset Share cells = yes\nend")
-    fails("shared_place", "kind=nan at place, s=0.5, t=0.35", ["gave nan in values() at s = 0.5, t = 0.35"], 0.36, 7,
+    fails("shared_place", "kind=nan at place, s=0.5, t=0.35", ["returned nan in values() at s = 0.5, t = 0.35"], 0.36, 7,
           before=(MPIRUN, "--oversubscribe", "-n", "2"), more="subsection Discretization\nset Number of cells = 300\nset Degree = 2\nset Share cells = yes\nend")
     code, err, _ = run("term", "sum", {}, f"""subsection Active stress
 subsection Sum

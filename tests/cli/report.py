@@ -196,7 +196,7 @@ def test_refused(program):
         check(result.returncode == code and words in result.stderr and result.stderr.count("\n") == 1 and not result.stdout,
               f"{name}: {result.returncode}, {result.stderr.strip()}")
     for arguments, words in (((), "the folder is missing"), (("run", "sweep"), "one folder is expected"),
-                             (("run", "--set", "Accuracy=1"), "unknown option \"--set\""), (("run", "--", "-ts_view"), "no use for PETSc")):
+                             (("run", "--set", "Accuracy=1"), "unknown option \"--set\""), (("run", "--", "-ts_view"), "takes no PETSc")):
         result = program("report", *arguments)
         check(result.returncode == 2 and words in result.stderr, f"report {' '.join(arguments)}: {result.stderr.strip()}")
 

@@ -222,7 +222,7 @@ def test_time_limits(folder):
     expect(left == [place.name, "mine.txt"], f"--overwrite removes the fields, and nothing of others ({left})")
     rest = sweep(folder, "slow", "--resume", "--set", "Sweep/Time limit=1e6", "--set", "Accuracy=1e-7")
     expect(rest.returncode == 0 and table(folder / "slow")["status"] == ["finished"] * 2,
-           f"--resume makes the rest {rest.stderr}")
+           f"--resume computes the rest {rest.stderr}")
 
 
 def refused(folder, output, words, what):
@@ -289,7 +289,7 @@ def test_killed_at_files(folder):
                f"killed before {place} has its name: {killed.returncode}, {names}")
         if place in ("original.prm", "results.csv"):
             plain = sweep(folder, output)
-            expect(plain.returncode == 2 and "--resume goes on" in plain.stderr, f"then it wants --resume: {plain.stderr}")
+            expect(plain.returncode == 2 and "--resume continues" in plain.stderr, f"then it wants --resume: {plain.stderr}")
         result = sweep(folder, output, "--resume")
         expect(result.returncode == 0 and same_columns(reference, table(output)) and (output / "results.csv").is_file()
                and json_of(output / "summary.json")["status"] == "finished" and not list(output.glob("*.part"))
@@ -323,7 +323,7 @@ def test_two_at_once(folder):
 
     with Paused(command, "write:summary.json:STOP", folder) as first:
         result = call(command, folder)
-        expect(result.returncode == 2 and "another study writes to" in result.stderr,
+        expect(result.returncode == 2 and "another study is writing to" in result.stderr,
                f"two sweeps at once are refused: {result.returncode} {result.stderr}")
         with waits() as second:  # noted once; then it ends at once
             while second.poll() is None:
@@ -356,7 +356,7 @@ def test_signals(folder):
     again = call(one, folder)
     sweep(folder, "rank_whole")
     expect(again.returncode == 0 and same_columns(table(folder / "rank_whole"), table(folder / "rank")),
-           "and --resume makes the rest")
+           "and --resume computes the rest")
 
 
 def test_crashes(folder):
@@ -530,7 +530,7 @@ def test_full_disk(folder):
         space = os.statvfs(disk)
         (disk / "filling").write_bytes(bytes(space.f_bavail * space.f_frsize - 60000))  # too little for results.csv
         end = sweep(folder, "disk/full", "--resume")
-        expect(killed.returncode == -signal.SIGKILL and end.returncode == 6 and "results.h5 is whole" in end.stderr
+        expect(killed.returncode == -signal.SIGKILL and end.returncode == 6 and "results.h5 is intact" in end.stderr
                and computed(table(disk / "full")).all(), f"a disk that is full at the end ({end.returncode}): {end.stderr}")
         (disk / "filling").unlink()
         more = sweep(folder, "disk/full", "--resume")
@@ -578,7 +578,7 @@ def test_damaged_table(folder):
     sweep(folder, "damaged")
     file = folder / "damaged" / "results.h5"
     whole = file.read_bytes()
-    for content, word in ((whole[:len(whole) // 2], "cannot be read"), (b"garbage" * 1000, "no HDF5"),
+    for content, word in ((whole[:len(whole) // 2], "cannot be read"), (b"garbage" * 1000, "not an HDF5"),
                           (whole.replace(b"scene files", b"Scene files"), "no attribute")):
         file.write_bytes(content)
         refused(folder, "damaged", ("results.h5", word, "damaged"), f"a table of {len(content)} bytes")

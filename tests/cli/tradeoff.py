@@ -234,7 +234,7 @@ def check_stops(output, expected):
         stopped = study(output, "--resume", *more, stop_at=stop_at)
         rows, summary = table(output), summary_of(output)
         check(stopped.returncode == 5 and summary["status"] == "stopped" and summary["reason"] == reason
-              and "--resume goes on" in stopped.stderr and len(rows) == tried(summary) < len(expected)
+              and "--resume continues" in stopped.stderr and len(rows) == tried(summary) < len(expected)
               and len(rows) >= len(lines) + (3 if reason == "signal" else 0) and answers(rows).items() <= expected.items(),
               f"stopped by {stop_at}{more} after {len(rows)} settings: {stopped}")
     before = written(output)
@@ -246,7 +246,7 @@ def check_stops(output, expected):
           and all(str(lines.get(index)) == str(row) for index, row in before.items()),
           f"rank 1 of two is killed after {len(lines)} settings, {len(before)} before: {killed}")
     done = study(output, "--resume", "--set", "Tradeoff/Time limit=1e6", ranks=2, picture=True)
-    check(done.returncode == 0 and "are done already" in done.stdout, f"resumed on two ranks {done.stderr}")
+    check(done.returncode == 0 and "are already done" in done.stdout, f"resumed on two ranks {done.stderr}")
     rows = table(output)
     check(answers(rows) == expected and len(rows) == len(expected), "the same settings and errors as without a break")
     after = {int(row["index"]): row for row in rows}
@@ -259,7 +259,7 @@ def check_stops(output, expected):
     other.mkdir()
     (other / "file").write_text("mine", encoding="utf-8")
     result = study(other, "--resume")
-    check(result.returncode == 2 and "no tradeoff that could be resumed" in result.stderr, "a strange folder is refused")
+    check(result.returncode == 2 and "no tradeoff that can be resumed" in result.stderr, "a strange folder is refused")
 
 
 def check_time_limit(output, expected):

@@ -277,7 +277,7 @@ def test_more_bad_input(folder):
         (folder / f"{name}.csv").write_text(text, encoding="utf-8")
     (folder / "binary.csv").write_bytes(bytes(range(256)) * 20)
     (folder / "a_folder").mkdir()
-    for axes, words in ((f"{P} : 4, column(good.csv, p)", ("column(good.csv, p)", "nothing beside it")),
+    for axes, words in ((f"{P} : 4, column(good.csv, p)", ("column(good.csv, p)", "nothing else")),
                         (f"{P} : linspace(1, 2)", ("linspace(first, last, count)",)),
                         (f"{P} : uniforms(2, 3)", ('nearest is "uniform"',)),
                         (f"{P} 1, 2", ("VALUES",)),
@@ -306,7 +306,7 @@ def test_more_bad_input(folder):
     call([PROGRAM, "sweep", "scene.prm", "--output", "damaged"], folder)
     file = folder / "damaged" / "results.h5"
     whole = file.read_bytes()
-    for content, word in ((whole[:100], "cannot be read"), (b"", "no HDF5"), (whole.replace(b"results", b"Results"), "results")):
+    for content, word in ((whole[:100], "cannot be read"), (b"", "not an HDF5"), (whole.replace(b"results", b"Results"), "results")):
         file.write_bytes(content)
         result = call([PROGRAM, "sweep", "scene.prm", "--output", "damaged", "--resume"], folder)
         expect(result.returncode == 2 and len(result.stderr.splitlines()) == 1 and "results.h5" in result.stderr

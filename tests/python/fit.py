@@ -445,7 +445,7 @@ class Refusals(unittest.TestCase):
                 ("Fit/Data is empty", {"data": []}), ("both have tracks of markers", {"data": [tracks(STRAIN), tracks(STRAIN)]}),
                 ("shape (41,)", {"data": Samples("centre", np.zeros(1), T, np.zeros(41))}),
                 ("[1] to [4] are", {"scene": {**STRAIN, BODY + "Friction profile": "1, 1, 1, 1"}, "variables": {BODY + "Friction profile[5]": (0.1, 2)}}),
-                ("numbers at places", {"variables": {BODY + "Friction profile[1]": (0.1, 2)}}),
+                ("numbers at equally spaced places", {"variables": {BODY + "Friction profile[1]": (0.1, 2)}}),
                 ('"rate" is expected', {"scene": {**STRAIN, BODY + "Friction profile": "1+rate*s", BODY + "Constants": "rate=1"}, "variables": {BODY + "Constants[rat]": (0.1, 2)}}),
                 ("is 0 at s = 1", {"scene": {**STRAIN, BODY + "Friction profile": "2+rate*s", BODY + "Constants": "rate=1"}, "variables": {BODY + "Constants[rate]": (-2, 2)}}),
                 ("cannot be run", {"scene": inverted, "variables": {AMPLITUDE: (4, 6)}})):

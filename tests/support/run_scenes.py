@@ -86,7 +86,7 @@ SCENES = {
                                ["Discretization/Number of cells=12", "Time/Tolerance=1e-8", "Time/Integrator=radau 5",
                                 "Time/End time=5"]),
 }
-GOES_ON = "goes on from the state"
+GOES_ON = "resumes from the state"
 STATES = ["--set", "Time/Checkpoint interval=0"]  # written as often as possible, the first at once
 # Multistep methods start anew, so their results differ by the error of the steps.
 STARTS_ANEW = {"bdf"}

@@ -18,13 +18,13 @@ namespace crawler
   EnvelopeParameters::add_parameters(Declarations &declarations)
   {
     declarations.number("Window start", window_start, not_negative, "length")
-      .means("Where the window begins outside of which the active stress is 0; automatic: it has no edge at s = 0.");
+      .means("Start of the window outside which the active stress is 0. Automatic: no edge at s = 0.");
     declarations.number("Window end", window_end, not_negative, "length")
-      .means("Where the window ends; automatic: it has no edge at s = L.");
+      .means("End of the window. Automatic: no edge at s = L.");
     declarations.number("Window edge", window_edge, not_negative, "length")
-      .means("Width of the window's edges, smooth steps inside of the window; with 0 the stress jumps there.");
+      .means("Width of the window's edges, which are smooth steps inside the window; with 0 the stress jumps there.");
     declarations.number("Ramp duration", ramp_duration, not_negative, "time")
-      .means("How long the stress takes to grow, by a smooth step, from 0 at t = 0 to its full size.");
+      .means("Time in which the stress grows by a smooth step from 0 at t = 0 to its full size.");
   }
 
   Envelope::Envelope(const EnvelopeParameters &parameters, const std::string &section, const double length)

@@ -28,8 +28,8 @@ namespace crawler
     declarations.enter("Expression");
     declarations.text("Active stress", active_stress, "a formula of s and t", "force")
       .means("The active stress m(s,t): s is the material coordinate, t the time; pi, L (body length) and T (end time) "
-             "are known, and sin, cos, tan, sinh, cosh, tanh, exp, log, sqrt, abs, sign, min, max, pow, mod, floor, "
-             "ceil, erf, erfc, ^, comparisons and a ? b : c.");
+             "are available, as are sin, cos, tan, sinh, cosh, tanh, exp, log, sqrt, abs, sign, min, max, pow, mod, "
+             "floor, ceil, erf, erfc, ^, comparisons and a ? b : c.");
     declarations.constants("Constants", constants, {"Active stress"}).means("Constants that the formula may use.");
     declarations.leave();
   }

@@ -44,12 +44,12 @@ namespace crawler
           known.push_back(name);
         names.insert(names.end(), known.begin(), known.end());
         const auto near = nearly_alike(token, names);
-        problem += near.empty() ? fmt::format("; known are {}, and functions", fmt::join(known, ", "))
+        problem += near.empty() ? fmt::format("; it may use {}, and functions", fmt::join(known, ", "))
                                 : "; the nearest name is " + quoted_list(near);
         const bool is_called =
           trimmed(formula.substr(std::min(error.GetPos() + token.size(), formula.size()))).starts_with("(");
         if (!is_called && input.constants_entry != input.formula_entry)
-          problem += fmt::format("; a constant is expected in \"{}\", as {}=1", input.constants_entry, token);
+          problem += fmt::format("; a constant is expected in \"{}\", like {}=1", input.constants_entry, token);
       }
       return fmt::format("error in the formula \"{}\" at position {}: {}",
                          formula,
@@ -69,10 +69,9 @@ namespace crawler
         depth += (c == '(') - (c == ')');
         if (c == '*' && after == '*')
           throw InputError(
-            fmt::format(
-              "error in the formula \"{}\" at position {}: \"**\" is found, but \"^\" is expected for a power",
-              formula,
-              i + 1),
+            fmt::format("error in the formula \"{}\" at position {}: found \"**\", but \"^\" is expected for a power",
+                        formula,
+                        i + 1),
             formula_entry);
         if (c == ',' && depth == 0)
           throw InputError(
@@ -83,10 +82,10 @@ namespace crawler
             formula_entry);
         if (c == '=' && after != '=' && std::string("=<>!").find(before) == std::string::npos)
           throw InputError(
-            fmt::format("error in the formula \"{}\" at position {}: \"=\" is found, but \"==\" is expected "
-                        "for a comparison",
-                        formula,
-                        i + 1),
+            fmt::format(
+              "error in the formula \"{}\" at position {}: found \"=\", but \"==\" is expected for a comparison",
+              formula,
+              i + 1),
             formula_entry);
       }
     }

@@ -74,7 +74,7 @@ namespace crawler
         if (thrown)
           fail(*failures_, fmt::format("threw an exception in {}: {}", maker, *thrown));
         else if (!at_points_)
-          fail(*failures_, fmt::format("gave no evaluator in {}", maker));
+          fail(*failures_, fmt::format("returned no evaluator in {}", maker));
       }
 
       /// Makes an evaluator that calls @p call, whose name is @p name. If that throws, or writes a value that is not
@@ -120,7 +120,7 @@ namespace crawler
         if (bad == result.end())
           return true;
         fail(*failures_,
-             fmt::format("gave {} in {} at s = {:.9g}, t = {:.9g}; a finite number is expected",
+             fmt::format("returned {} in {} at s = {:.9g}, t = {:.9g}; a finite number is expected",
                          *bad,
                          name,
                          points_[static_cast<std::size_t>(bad - result.begin())],
@@ -163,7 +163,7 @@ namespace crawler
         for (std::size_t i = 0; i < values.size(); ++i)
           if (!std::isfinite(values[i]))
             return fail(failures,
-                        fmt::format("gave {} = {} in values() of its feedback at s = {:.9g}, t = {:.9g}, stretch "
+                        fmt::format("returned {} = {} in values() of its feedback at s = {:.9g}, t = {:.9g}, stretch "
                                     "{:.9g}; a finite number is expected",
                                     name,
                                     values[i],
@@ -181,7 +181,7 @@ namespace crawler
       if (const auto thrown = thrown_by([&]() { at_points = feedback.at(points); }))
         fail(*failures, fmt::format("threw an exception in at() of its feedback: {}", *thrown));
       else if (!at_points)
-        fail(*failures, "gave no evaluator in at() of its feedback");
+        fail(*failures, "returned no evaluator in at() of its feedback");
       return feedback_at_points([failures, points, at_points](
                                   const double t, const StretchSeen &seen, const FeedbackStress &m) {
         const unsigned long n_before = failures->count;
@@ -214,11 +214,11 @@ namespace crawler
       if (handle == nullptr)
       {
         const char *words = dlerror();
-        throw InputError(fmt::format("\"{}\" cannot be loaded: {}; a file that a compiler of this machine has made "
-                                     "with -shared is expected",
-                                     name,
-                                     words != nullptr ? words : "unknown"),
-                         file_entry);
+        throw InputError(
+          fmt::format("\"{}\" cannot be loaded: {}; a file compiled with -shared on this machine is expected",
+                      name,
+                      words != nullptr ? words : "unknown"),
+          file_entry);
       }
       const auto function = reinterpret_cast<const Plugin *(*)()>(dlsym(handle, plugin_function));
       if (function == nullptr)
@@ -293,7 +293,7 @@ namespace crawler
     if (const auto thrown = thrown_by([&]() { stress_ = plugin.create(input); }))
       throw InputError(fmt::format("the plug-in \"{}\" refuses the scene: {}", plugin.name, *thrown), parameters_entry);
     if (!stress_)
-      throw InputError(fmt::format("the plug-in \"{}\" has made nothing; an active stress is expected", plugin.name),
+      throw InputError(fmt::format("the plug-in \"{}\" returned nothing; an active stress is expected", plugin.name),
                        file_entry);
     require_known(input.parameters, plugin.name);
     ask(body.length, end_time);
@@ -339,12 +339,12 @@ namespace crawler
       if (!(gait->period > 0. && std::isfinite(gait->period)))
         refuse(fmt::format("says that its period is {}; a positive number is expected", gait->period));
       if (!(gait->from >= 0. && std::isfinite(gait->from)))
-        refuse(fmt::format("says that it repeats from {} on; a number from 0 on is expected", gait->from));
+        refuse(fmt::format("says that it repeats from {} on; a number of at least 0 is expected", gait->from));
     }
     const auto require_inside = [&](const std::vector<double> &breaks, const char *name, const double end) {
       for (const double value : breaks)
         if (!(value > 0. && value < end))
-          refuse(fmt::format("gave {} in {}; a number above 0 and below {:g} is expected", value, name, end));
+          refuse(fmt::format("returned {} in {}; a number above 0 and below {:g} is expected", value, name, end));
     };
     require_inside(facts_.breaks_in_space, "breaks_in_space()", length);
     require_inside(facts_.breaks_in_time, "breaks_in_time()", end_time);

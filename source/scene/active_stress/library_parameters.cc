@@ -11,7 +11,7 @@ namespace crawler
     declarations.file("File", file, "the name of a shared object")
       .means("Shared object with the active stress as a plug-in (doc/generators/library.md).");
     declarations.text("Parameters", parameters, "a list name=value, name=value")
-      .means("What the plug-in is told; it says itself which names it knows.");
+      .means("Parameters that are passed to the plug-in, which defines their names.");
     declarations.leave();
   }
 } // namespace crawler

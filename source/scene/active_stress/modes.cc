@@ -78,23 +78,22 @@ namespace crawler
         "Number N of harmonics along the body. The modes there are 1, sin x, cos x, ..., sin Nx, cos Nx with x = 2 "
         "pi s/L.");
     declarations.choice("In time", in_time, {"travelling", "harmonics", "splines"})
-      .means("How they change: a wave that travels without changing its shape, Fourier modes of a period, or cubic "
-             "B-splines over the whole duration.");
+      .means("How the modes change in time: as a wave that travels without changing its shape, by Fourier modes of a "
+             "period, or by cubic B-splines over the whole duration.");
     declarations.number("Wave speed", wave_speed, any_number(), "length/time")
       .means("Speed c of a travelling wave m(s + ct); a positive one runs from s = L to s = 0.");
     declarations.number("Period", period, positive(), "time").means("Period P of the harmonics in time.");
     declarations.whole_number("Time harmonics", time_harmonics, 1, 64)
       .means("Number M of harmonics in time: 1, sin y, cos y, ..., cos My with y = 2 pi t/P.");
     declarations.whole_number("Time cells", time_cells, 1, 1000)
-      .means("Number of equal parts of the duration for the splines, of which there are three more.");
+      .means("Number of equal parts of the duration for the splines; there are three more splines than parts.");
     declarations.flag("From rest", from_rest)
-      .means(
-        "Whether what the modes give at t = 0 is subtracted; of the splines the first, which alone is not 0 there, "
-        "is left out. The nonlinear model needs this of a prescribed strain.");
+      .means("Whether the value of the modes at t = 0 is subtracted; of the splines, the first, the only one that is "
+             "not 0 there, is left out. The nonlinear model needs this for a prescribed strain.");
     declarations.numbers("Coefficients", coefficients, "force")
-      .means("The coefficients: of all modes along the body for a travelling wave; else of those of the first function "
-             "of time, then of the second, and so on. Those that are not there are 0. One of them is "
-             "Coefficients[2], counted from 1, where numbers of the scene are named, as in Optimize/Variables.");
+      .means("Coefficients of the modes: for a travelling wave, of all modes along the body; otherwise of those with "
+             "the first function of time, then with the second, and so on. Missing ones are 0. Where numbers of the "
+             "scene are named, as in Optimize/Variables, Coefficients[2] is the second of them.");
     declarations.leave();
   }
 

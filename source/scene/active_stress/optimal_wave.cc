@@ -33,8 +33,8 @@ namespace crawler
     declarations.number("Perturbation parameter", perturbation_parameter, any_number(), "1")
       .means("Perturbation parameter chi: the active stress is proportional to it, the displacement to its square.");
     declarations.choice("Shape", shape, {"Fourier", "expression", "table"})
-      .means("What gives the velocity wave V(x): Fourier coefficients, a formula or a table. The active stress moves V "
-             "along the body; x = s at t = 0.");
+      .means("How the velocity wave V(x) is given: by Fourier coefficients, a formula or a table. The active stress "
+             "moves V along the body; x = s at t = 0.");
     declarations.numbers("Sine coefficients", sine_coefficients, "length/time")
       .means("Fourier coefficients a_1, a_2, ... of the velocity wave.");
     declarations.numbers("Cosine coefficients", cosine_coefficients, "length/time")
@@ -76,11 +76,11 @@ namespace crawler
     if (shape_.a.size() == 1 && shape_.a[0] == 0.)
       shape_.a.assign(shape_.b.size(), 0.);
     if (shape_.a.size() != shape_.b.size())
-      throw InputError(fmt::format("{} sine and {} cosine coefficients; as many of the one as of the other are "
-                                   "expected, or a single 0",
-                                   shape_.a.size(),
-                                   shape_.b.size()),
-                       section + "Cosine coefficients");
+      throw InputError(
+        fmt::format("{} sine and {} cosine coefficients; equally many of both are expected, or a single 0",
+                    shape_.a.size(),
+                    shape_.b.size()),
+        section + "Cosine coefficients");
     if (shape_.delta_2() == 0.)
       throw InputError("all coefficients of the wave are 0; at least one that is not is expected (for a body at "
                        "rest set Active stress/Generator = none)",
@@ -116,8 +116,8 @@ namespace crawler
                        entry);
     for (const double value : {wave_.multiplier, wave_.displacement, wave_.min_stretch, wave_.max_stretch})
       if (!std::isfinite(value))
-        throw InputError(fmt::format("the wave with speed {:g} would deform the body beyond all numbers; one that is "
-                                     "faster, or a smaller Perturbation parameter, is expected",
+        throw InputError(fmt::format("the wave with speed {:g} would deform the body without bounds; a faster one, or "
+                                     "a smaller Perturbation parameter, is expected",
                                      wave_.speed),
                          entry);
   }
@@ -138,12 +138,13 @@ namespace crawler
     if (by_index)
     {
       if (parameters.root_index > list.size())
-        throw InputError(fmt::format("Root index is {}, but a whole number from 1 to {} is expected: so many waves "
-                                     "spend the energy H = {}",
-                                     parameters.root_index,
-                                     list.size(),
-                                     parameters.energy),
-                         section + "Root index");
+        throw InputError(
+          fmt::format(
+            "Root index is {}, but a whole number from 1 to {} is expected: that many waves spend the energy H = {}",
+            parameters.root_index,
+            list.size(),
+            parameters.energy),
+          section + "Root index");
       chosen_ = parameters.root_index - 1;
     }
     else

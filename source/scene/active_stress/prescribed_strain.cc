@@ -123,11 +123,10 @@ namespace crawler
                         parameters.given_by),
             prescribed_strain_section + "Given by");
         if (!generator->rate_at({0.}))
-          throw InputError(
-            fmt::format("Given by is {}, which does not know its rate of change here; a strain that can be "
-                        "differentiated in time is expected",
-                        parameters.given_by),
-            prescribed_strain_section + "Given by");
+          throw InputError(fmt::format("Given by is {}, whose rate of change is not known here; a strain that can be "
+                                       "differentiated in time is expected",
+                                       parameters.given_by),
+                           prescribed_strain_section + "Given by");
         return strain_by(
           [generator](const std::vector<double> &points) -> Strains {
             return {generator->at(points), generator->rate_at(points)};
@@ -163,9 +162,9 @@ namespace crawler
         choices.push_back(name);
     declarations.enter("Prescribed strain");
     declarations.choice("Given by", given_by, choices)
-      .means("What gives the strain e(s,t), the stretch minus 1: a formula, a sine wave, a table in a file, or another "
-             "generator with the entries of its own section, whose values are read as strain. The nonlinear model "
-             "starts from rest, so there e(s,0) must be 0.");
+      .means("How the strain e(s,t), the stretch minus 1, is given: by a formula, a sine wave, a table in a file, or "
+             "another generator with the entries of its own section, whose values are read as strain. The nonlinear "
+             "model starts from rest, so there e(s,0) must be 0.");
     declarations.text("Strain", strain, "a formula of s and t", "1")
       .means("The strain e(s,t) as a formula like that of Active stress/Expression. Used if given by expression.");
     declarations.constants("Constants", constants, {"Strain"})

@@ -41,16 +41,17 @@ namespace crawler
     const Range not_negative{.lower = 0., .lower_included = true};
     declarations.enter("Pulse");
     declarations.choice("Shape", shape, {"gaussian", "compact"})
-      .means("The bump over its distance z from the centre in widths: exp(-z^2), or exp(1 - 1/(1-z^2)) for |z| < 1 and "
-             "0 beyond.");
+      .means("Shape of the pulse as a function of the distance z from its centre in widths: exp(-z^2), or exp(1 - "
+             "1/(1-z^2)) for |z| < 1 and 0 beyond.");
     declarations.number("Amplitude", amplitude, any_number(), "force")
-      .means("Active stress in the middle of the pulse.");
+      .means("Active stress at the centre of the pulse.");
     declarations.number("Width", width, positive(), "length").means("Width of the pulse, see Shape.");
     declarations.number("Start position", start_position, any_number(), "length")
-      .means("Where the middle of the pulse is at t = 0, also outside of the body; automatic: so far outside that it "
-             "comes to the body without a jump.");
+      .means("Place of the centre of the pulse at t = 0, which may be outside the body. Automatic: so far outside that "
+             "the pulse enters the body without a jump.");
     declare_direction(direction, declarations);
-    declarations.number("Speed", speed, not_negative, "length/time").means("Speed of the pulse; with 0 it stays.");
+    declarations.number("Speed", speed, not_negative, "length/time")
+      .means("Speed of the pulse; with 0 it stays in place.");
     declarations.number("Repetition period", repetition_period, not_negative, "time")
       .means("Time from one pulse to the next; 0 for a single pulse.");
     envelope.add_parameters(declarations);
@@ -82,7 +83,7 @@ namespace crawler
     if (width_ < min_width)
       throw InputError(
         fmt::format(
-          "the pulse is {:g} wide, but at least {:g} is expected, a ten thousandth of the body", width_, min_width),
+          "the pulse is {:g} wide, but at least {:g} is expected, a ten-thousandth of the body", width_, min_width),
         pulse_section + "Width");
     if (period_ > 0.)
     {
@@ -98,7 +99,7 @@ namespace crawler
     }
     const double end = start_ + velocity_ * end_time;
     if (std::max(start_, end) <= -reach_ || std::min(start_, end) >= length_ + reach_)
-      throw InputError(fmt::format("the pulse goes from {:g} to {:g} until the end time, but a way that comes to the "
+      throw InputError(fmt::format("the pulse goes from {:g} to {:g} until the end time, but a path that reaches the "
                                    "body, from 0 to {:g}, is expected",
                                    start_,
                                    end,

@@ -47,8 +47,8 @@ namespace crawler
              "from s = 0 to s = L.");
     declarations.number("Frequency", frequency, positive(), "1/time").means("Frequency f of the switching.");
     declarations.number("Phase lag", phase_lag, between(0., 1.), "1")
-      .means("How much later a segment switches than its neighbour before it, as a share of the period; 1/N for one "
-             "wave on the body.");
+      .means("Delay of the switching of a segment after that of the segment before it, as a share of the period; 1/N "
+             "for one wave on the body.");
     declare_direction(direction, declarations);
     declarations.number("Duty cycle", duty_cycle, {.lower = 0., .upper = 1.}, "1")
       .means("Share of the period in which a segment is on.");
@@ -61,13 +61,13 @@ namespace crawler
     declarations.number("Gap", gap, {.lower = 0., .lower_included = true}, "1")
       .means("Length of the passive part between neighbouring segments as a share of the length of a segment.");
     declarations.number("Saturation", saturation, positive(), "force")
-      .means("Largest absolute value of the active stress; larger ones are cut to it. Automatic: no limit.");
+      .means("Largest absolute value of the active stress; larger ones are clipped to it. Automatic: no limit.");
     declarations.number("Rate limit", rate_limit, positive(), "force/time")
-      .means("Largest absolute value of the active stress's change per time: square signals become trapezoids. "
-             "Automatic: no limit.");
+      .means(
+        "Largest absolute rate of change of the active stress: square signals become trapezoids. Automatic: no limit.");
     declarations.number("Ramp duration", ramp_duration, {.lower = 0., .lower_included = true}, "time")
-      .means("How long the stress takes to grow, by a smooth step, from 0 at t = 0 to its full size; the rate limit "
-             "holds without this factor.");
+      .means("Time in which the stress grows by a smooth step from 0 at t = 0 to its full size; the rate limit applies "
+             "to the stress without this factor.");
     declarations.leave();
   }
 

@@ -124,7 +124,7 @@ namespace crawler
         rights.push_back(0.5 * (left + right));
         if (left_.size() + rights.size() > max_panels)
           throw InputError(fmt::format("the shape has more detail from x = {:g} to {:g} than a million polynomials of "
-                                       "degree {} have; a smoother one is expected",
+                                       "degree {} can represent; a smoother one is expected",
                                        from,
                                        to,
                                        degree_),

@@ -78,8 +78,8 @@ namespace crawler
           fmt::format("\"{}\" has {} rows after the header, but at least 4 are expected", name, x.size()), entry);
       const double most = 1e-6 * (to - from);
       if (x.front() > from + most || x.back() < to - most)
-        throw InputError(fmt::format("\"{}\" has x from {} to {}, but the whole range from {} to {} is expected, "
-                                     "which comes to the body until the end time",
+        throw InputError(fmt::format("\"{}\" has x from {} to {}, but the whole range from {} to {} is expected, which "
+                                     "reaches the body before the end time",
                                      name,
                                      told_apart(x.front(), {from}),
                                      told_apart(x.back(), {to}),

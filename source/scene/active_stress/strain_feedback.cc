@@ -53,14 +53,14 @@ namespace crawler
         "at s + Distance (or at the end of the body) and w_delayed that at t - Delay; functions as in Expression.");
     declarations.constants("Constants", constants, {"Active stress"}).means("Constants that the formula may use.");
     declarations.number("Distance", distance, any_number(), "length")
-      .means("From s to the place whose stretch is w_near; positive towards s = L.");
+      .means("Distance from s to the place whose stretch is w_near; positive towards s = L.");
     declarations
       .number("Sensor length", sensor_length, Range{0., std::numeric_limits<double>::infinity(), true, false}, "length")
       .means("If positive, w_near is the mean stretch of the piece of this length around that place; at the ends of "
-             "the body the piece is moved inside. 0: the stretch at the place.");
+             "the body the piece is shifted inwards. 0: the stretch at the place.");
     declarations.number("Delay", delay, Range{0., std::numeric_limits<double>::infinity(), true, false}, "time")
-      .means(
-        "How long ago the stretch was w_delayed; before t = 0 it was the initial one. Steps are not longer than this.");
+      .means("Time by which w_delayed lags behind the stretch; before t = 0 it is the initial stretch. Time steps are "
+             "not longer than this.");
     declarations.leave();
   }
 

@@ -322,16 +322,16 @@ namespace crawler
     const Range not_negative{.lower = 0., .lower_included = true};
     declarations.choice("Combine", combine, {"add", "multiply"})
       .means("m is the sum of all terms that add, times the product of all terms that multiply.");
-    declarations.number("Factor", factor, any_number(), "1").means("What the term's generator is multiplied with.");
+    declarations.number("Factor", factor, any_number(), "1").means("Factor that multiplies the term's generator.");
     const auto window = [&](WindowEntries &entries, const std::string &x, const std::string &whole, const char *unit) {
       declarations.numbers("Window in " + x, entries.interval, unit)
-        .means("From where to where in " + x + " the term acts, as two numbers; outside it is 0. Nothing: " + whole +
+        .means("Range of " + x + " in which the term acts, as two numbers; outside the term is 0. Empty: " + whole +
                ".");
       declarations.number("Edge width in " + x, entries.edge_width, not_negative, unit)
-        .means("Width of the window's edges, smooth steps inside of its ends; with 0 the term jumps there.");
+        .means("Width of the window's edges, which are smooth steps inside its ends; with 0 the term jumps there.");
     };
     window(in_s, "s", "the whole body", "length");
-    window(in_t, "t", "all the time", "time");
+    window(in_t, "t", "the whole duration", "time");
   }
 
   Sum::Sum(std::vector<SumTerm> terms, const double length, const double end_time)

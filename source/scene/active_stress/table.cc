@@ -122,19 +122,20 @@ namespace crawler
       .means("CSV with the header s,t,m and a row for each point of a full grid, in any order; or HDF5 with the "
              "datasets s[ns], t[nt] and m[nt,ns], s and t increasing.");
     declarations.choice("Interpolation", interpolation, {"cubic", "linear"})
-      .means("Cubic splines through the samples, in s and t; or linear between them.");
+      .means("Interpolation between the samples in s and t: cubic splines, or linear.");
     declarations.choice("Outside", outside, {"error", "hold", "periodic"})
-      .means("What m is before the first and after the last time of the table: an error if they are needed; the values "
-             "at these times; or a repetition, with equal values at both times.");
+      .means("What happens before the first and after the last time of the table: an error if m is needed there; m "
+             "keeps its values at these times; or it repeats, with equal values at both times.");
     declarations.choice("Outside in s", outside_in_s, {"error", "hold"})
-      .means("The same along the body, if the table does not reach both ends.");
+      .means("What happens beyond the places of the table, if it does not reach both ends of the body: an error, or m "
+             "keeps its values there.");
     declarations.number("Unit of s", unit_of_s, positive(), "length")
-      .means("Factor that turns s of the table into a length.");
+      .means("Factor that converts s of the table into a length.");
     declarations.number("Unit of t", unit_of_t, positive(), "time")
-      .means("Factor that turns t of the table into a time.");
+      .means("Factor that converts t of the table into a time.");
     declarations.number("Unit of m", unit_of_m, any_number(), "force")
-      .means("Factor that turns m of the table into an active stress; a negative one if the table has contractions as "
-             "positive numbers.");
+      .means("Factor that converts m of the table into an active stress; a negative one if the table has contractions "
+             "as positive numbers.");
     declarations.leave();
   }
 

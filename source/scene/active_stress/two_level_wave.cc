@@ -21,13 +21,12 @@ namespace crawler
     frequency_by_work(const TwoLevelWaveParameters &p, const Scene &scene, const double X)
     {
       if (!scene.profiles.is_plain())
-        throw InputError(
-          "the body is not the same everywhere, but no profile is expected where the work is given, since "
-          "that of others depends on the phase",
-          two_level_wave_section + "Given by");
+        throw InputError("the body is not uniform, but no profile is expected where the work is given, since the work "
+                         "of non-uniform bodies depends on the phase",
+                         two_level_wave_section + "Given by");
       if (p.wave_number != std::round(p.wave_number))
         throw InputError(fmt::format("the wave number is {:g}, but a whole one is expected where the work is given, "
-                                     "since that of others depends on the phase",
+                                     "since the work of other waves depends on the phase",
                                      p.wave_number),
                          two_level_wave_section + "Given by");
       if (p.ramp_duration > 0.)
@@ -48,7 +47,7 @@ namespace crawler
       const double low = p.smallest_strain, high = p.largest_strain;
       if (const auto stretch = stretch_without_friction(*scene.friction, 1. + low, 1. + high))
         throw InputError(fmt::format("the friction law has no positive value at the stretch {:.6g}, which is between "
-                                     "both strains; smaller ones, or another law, are expected",
+                                     "the two strains; smaller strains, or another law, are expected",
                                      *stretch),
                          two_level_wave_section + "Largest strain");
       const auto friction = [&](const double w) {
@@ -106,19 +105,19 @@ namespace crawler
     const Range strains{.lower = -1., .upper = 1e6, .upper_included = true};
     declarations.enter("Two-level wave");
     declarations.number("Smallest strain", smallest_strain, strains, "1")
-      .means("Strain emin on the rest of each period.");
+      .means("Smallest strain emin, on the rest of each period.");
     declarations.number("Largest strain", largest_strain, strains, "1")
-      .means("Strain emax on a share of each period, above the smallest one.");
+      .means("Largest strain emax, on a share of each period; above the smallest strain.");
     declarations.number("Share", share, {.lower = 0., .upper = 1.}, "1")
-      .means("Share of each period at the largest strain; automatic: the one with which the wave goes farthest, "
-             "1/(1 + ((1+emax)/(1+emin))^(a/2)) with a = 1 - p.");
+      .means("Share of each period at the largest strain; automatic: the one for which the wave goes farthest, 1/(1 + "
+             "((1+emax)/(1+emin))^(a/2)) with a = 1 - p.");
     declarations.number("Front width", front_width, {.lower = 0., .upper = 0.5, .upper_included = true}, "1")
       .means("Width of each front between the two strains, a smooth step, as a share of the period.");
     declarations.number("Wave number", wave_number, {.lower = 0., .upper = 1000., .upper_included = true}, "1")
       .means("Number n of waves on the body; only whole ones reach the bound.");
     declare_direction(direction, declarations);
     declarations.choice("Given by", given_by, {"frequency", "wave speed", "work"})
-      .means("What says how fast the wave runs; frequency = wave number * wave speed/L.");
+      .means("What determines the speed of the wave; frequency = wave number * wave speed/L.");
     const Range not_negative{.lower = 0., .lower_included = true};
     declarations.number("Frequency", frequency, not_negative, "1/time")
       .means("Frequency f; with 0 the wave stands still. Used if given by frequency.");
@@ -129,8 +128,8 @@ namespace crawler
              "and there is no ramp.");
     declarations.number("Phase", phase, any_number(), "1").means("Phase of the wave at s = 0, t = 0, in radians.");
     declarations.number("Ramp duration", ramp_duration, not_negative, "time")
-      .means("How long the strain takes to grow, by a smooth step, from 0 at t = 0 to its full size; the nonlinear "
-             "model starts from rest and needs it.");
+      .means("Time in which the strain grows by a smooth step from 0 at t = 0 to its full size; the nonlinear model "
+             "starts from rest and needs it.");
     declarations.leave();
   }
 
@@ -162,11 +161,10 @@ namespace crawler
                        frequency,
                        frequency * length_ / parameters_.wave_number);
     if (is_uniform_)
-      out << fmt::format(
-        "Displacement/sqrt(work * duration/(friction coefficient * length)) is {:.6g} for whole waves at "
-        "full strain; no gait with these strains is above {:.6g}\n",
-        merit,
-        bound);
+      out << fmt::format("Displacement/sqrt(work * duration/(friction coefficient * length)) is {:.6g} for whole waves "
+                         "at full strain; no gait with these strains exceeds {:.6g}\n",
+                         merit,
+                         bound);
     PrescribedStrain::report(out);
   }
 } // namespace crawler

@@ -62,7 +62,7 @@ namespace crawler
   declare_direction(std::string &direction, Declarations &declarations)
   {
     declarations.choice("Direction", direction, {"from head to tail", to_head})
-      .means("Where it runs; the head is at s = L, the tail at s = 0.");
+      .means("Direction in which it runs; the head is at s = L, the tail at s = 0.");
   }
 
   double

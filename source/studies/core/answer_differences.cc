@@ -87,7 +87,7 @@ namespace crawler
       if (task.error)
         sensitivity.reason = "a run with another value failed: " + failure_of(task.error).message;
       else if (other.time.status == Status::stopped)
-        sensitivity.reason = "it was stopped before it was known";
+        sensitivity.reason = "stopped before the sensitivity was known";
       else if (other.time.status != Status::finished)
         sensitivity.reason = "a run with another value did not finish: " + other.time.message;
       else if (!other.error || !std::isfinite(other.error->total))

@@ -226,14 +226,14 @@ namespace crawler
         notes.push_back(note + ", since " + reason);
     };
     if (parameters.time.engine == Engine::petsc && !fits_lanes(scene))
-      add("Time/Engine", "the fused engine is not for feedback by w_near or w_delayed");
+      add("Time/Engine", "the fused engine does not support feedback by w_near or w_delayed");
     if (parameters.time.cycle_stop == CycleStopMode::automatic)
       return;
     RunParameters with_stop   = parameters;
     with_stop.time.cycle_stop = CycleStopMode::on;
     if (!cycle_wish(with_stop, scene, /*has_pictures=*/false))
       add("Time/Cycle stop",
-          !scene.is_alike_everywhere() ? "what the body does depends on its place or its past"
+          !scene.is_alike_everywhere() ? "the motion of the body depends on its place or its past"
           : scene.keeps_its_centre()   ? "the displacement, by which cycles are judged, is 0 at a = 0"
           : !scene.active_stress->repetition()
             ? "no period of the active stress is known"

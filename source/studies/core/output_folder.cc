@@ -155,9 +155,8 @@ namespace crawler
       return;
     if (is_broken_off(folder))
       throw InputError("the output folder \"" + folder.string() +
-                       "\" has a run or study that was broken off; the same command with --resume goes on with it "
-                       "(--overwrite begins anew, "
-                       "--output gives another folder)");
+                       "\" has a run or study that was interrupted; the same command with --resume continues it "
+                       "(--overwrite starts over, --output gives another folder)");
     throw InputError("the output folder \"" + folder.string() +
                      "\" is not empty; give another one with --output, or --overwrite to replace the results in it");
   }
@@ -170,8 +169,8 @@ namespace crawler
       throw FileError("cannot make the output folder \"" + folder.string() + "\": " + error.message());
     lock_.emplace(folder / study_lock_name);
     if (lock_->lock() == FileLock::State::of_another_process)
-      throw InputError("a run or study writes to \"" + folder.string() +
-                       "\"; another folder is expected for --output, or that it has ended");
+      throw InputError("a run or study is writing to \"" + folder.string() +
+                       "\"; wait for it to end, or give another folder with --output");
     try
     {
       require_usable(folder, overwrite || is_free(folder)); // the previous owner of the lock may have written

@@ -6,11 +6,11 @@
 
 namespace crawler
 {
-  const std::string sweep_syntax          = "\"Section/Entry : VALUES\", several of them separated by semicolons";
-  const std::string variables_in_brackets = "Of a list, Section/Entry[2] is the second number, [1-5] are the first "
-                                            "five, each a variable, and [*] are all; of the "
-                                            "constants of a formula, Section/Constants[a] is a.";
-  const std::string variables_syntax      = "\"Section/Entry : FROM to TO\", several of them separated by semicolons";
+  const std::string sweep_syntax = "\"Section/Entry : VALUES\", several of them separated by semicolons";
+  const std::string variables_in_brackets =
+    "In a list, Section/Entry[2] is the second number, [1-5] are the first five, each a variable, and [*] are all of "
+    "them; among the constants of a formula, Section/Constants[a] is a.";
+  const std::string variables_syntax = "\"Section/Entry : FROM to TO\", several of them separated by semicolons";
 
   void
   SweepParameters::add_parameters(Declarations &declarations)
@@ -21,28 +21,27 @@ namespace crawler
              "together, then the second ones, and so on; random, points drawn from the axes independently; latin "
              "hypercube, random points that are spread evenly over each axis.");
     declarations.text("Axes", axes, sweep_syntax)
-      .means(
-        "What varies. VALUES is a list, linspace(first, last, count), logspace(first exponent, last exponent, count), "
-        "or column(file.csv, name), the values in a column of a CSV file; for random designs also uniform(from, to) "
-        "and loguniform(from, to). The name \"File\" instead of an entry stands for parameter files whose entries "
-        "replace those of this one. Names of files count from the folder of this parameter file (with --set, from the "
-        "current one).");
+      .means("Entries that vary, with their values. VALUES is a list, linspace(first, last, count), logspace(first "
+             "exponent, last exponent, count), or column(file.csv, name), the values in a column of a CSV file; for "
+             "random designs also uniform(from, to) and loguniform(from, to). The name \"File\" instead of an entry "
+             "stands for parameter files whose entries replace those of this one. File names are relative to the "
+             "folder of this parameter file (with --set, to the current one).");
     declarations.whole_number("Number of points", n_points, 1, max_points)
-      .means("Of a random or Latin hypercube design; the others count themselves.");
+      .means("Number of points of a random or Latin hypercube design; for the other designs it follows from the axes.");
     declarations.whole_number("Seed", seed, 0, std::numeric_limits<unsigned int>::max())
-      .means("Of the random numbers of a random or Latin hypercube design: the same seed gives the same points.");
+      .means("Seed of the random numbers of a random or Latin hypercube design: the same seed gives the same points.");
     declarations.text("Keep fields", keep_fields, "a list of numbers of points, or nothing")
       .means("Points whose fields are kept: for each there is a folder points/NUMBER with all files of a run.");
     declarations.flag("Cross-check", cross_check)
-      .means("Compares answers: each point is run in the position form, in the stretch form and refined, too, and its "
-             "row says whether all answers can be right, or one is silently wrong.");
+      .means("Whether answers are compared: each point is also run in the position form, in the stretch form and "
+             "refined, and its row says whether all answers can be right or one is silently wrong.");
     declarations.number("Cross-check refinement", refinement, between(1, 1e6), "1")
-      .means("The refined run asks for Accuracy divided by this and chooses mesh and time steps itself.");
+      .means("Number by which the refined run divides Accuracy; it chooses mesh and time steps itself.");
     declarations.number("Time limit per point", point_time_limit, positive(), "s")
-      .means("Wall time after which a point is given up; it becomes a row with the reason time_limit. With Cross-check "
-             "it holds for each run of a point. Automatic: none.");
+      .means("Wall time after which a point is abandoned; its row has the reason time_limit. With Cross-check the "
+             "limit applies to each run of a point. Automatic: none.");
     declarations.number("Time limit", time_limit, positive(), "s")
-      .means("Wall time after which no more points are computed; the rest is for --resume. Automatic: none.");
+      .means("Wall time after which no more points are computed; --resume computes the rest. Automatic: none.");
     declarations.leave();
   }
 
@@ -53,30 +52,32 @@ namespace crawler
                                 "exponent, last exponent, count)\"";
     declarations.enter("Tradeoff");
     declarations.text("Models", models, "a list of \"perturbation\", \"kinematic\" and \"nonlinear\"")
-      .means("The levels of the model that crawler tradeoff tries. The first two need no mesh; for nonlinear all other "
+      .means("Levels of the model that crawler tradeoff tries. The first two need no mesh; for nonlinear all other "
              "lists of this section are combined.");
     declarations.text("Formulations", formulations, "a list of \"position\" and \"stretch\"")
-      .means("The formulations that it tries.");
+      .means("Formulations that crawler tradeoff tries.");
     declarations.text("Meshes", meshes, "a list of \"uniform\" and \"adaptive\"")
-      .means("The kinds of meshes that it tries.");
+      .means("Kinds of meshes that crawler tradeoff tries.");
     declarations.text("Engines", engines, "a list of \"fused\", \"petsc\" and \"batch\"")
-      .means("What carries the integrators out: the fused engine, PETSc, or the fused engine with 8 bodies side by "
-             "side, where the cost is that of one body.");
+      .means("Engines that run the integrators: the fused engine, PETSc, or the fused engine with 8 bodies side by "
+             "side, whose cost is given per body.");
     declarations.text("Integrators", integrators, "a list of integrators as in the section Time")
-      .means("The time integrators that it tries.");
-    declarations.text("Degrees", degrees, "a list of whole numbers from 1 to 8").means("The degrees that it tries.");
-    declarations.text("Cells", cells, "a list of whole numbers").means("The numbers of cells of uniform meshes.");
+      .means("Time integrators that crawler tradeoff tries.");
+    declarations.text("Degrees", degrees, "a list of whole numbers from 1 to 8")
+      .means("Polynomial degrees that crawler tradeoff tries.");
+    declarations.text("Cells", cells, "a list of whole numbers")
+      .means("Numbers of cells of the uniform meshes that crawler tradeoff tries.");
     declarations.text("Mesh tolerances", mesh_tolerances, numbers, "1")
-      .means("The tolerances of adaptive meshes, as in the section Discretization.");
+      .means("Tolerances of the adaptive meshes that crawler tradeoff tries, as in section Discretization.");
     declarations.text("Tolerances", tolerances, numbers, "1")
-      .means("The time tolerances relative to the displacement.");
+      .means("Time tolerances that crawler tradeoff tries, relative to the displacement.");
     declarations.whole_number("Repetitions", repetitions, 1, 1000)
-      .means("The cost is the median of so many measurements, each of at least 5 ms.");
+      .means("Number of measurements, each of at least 5 ms, whose median is the cost.");
     declarations.number("Time limit per run", run_time_limit, positive(), "s")
       .means(
-        "A run that takes longer is stopped (reason time_limit), and tighter tolerances on its mesh are not tried.");
+        "Time after which a run is stopped (reason time_limit); tighter tolerances on its mesh are then not tried.");
     declarations.number("Time limit", time_limit, positive(), "s")
-      .means("After this time the command ends in order, as with a signal; it can be resumed.");
+      .means("Time after which the command ends normally, as after a signal; it can be resumed.");
     declarations.leave();
   }
 
@@ -86,15 +87,14 @@ namespace crawler
     declarations.enter("Optimize");
     declarations
       .choice("Objective", objective, {"displacement", "speed", "cost of transport", "merit", "periodic merit"})
-      .means("What is made as good as possible: the displacement; the speed of the last stride (of the whole duration "
-             "at the kinematic level); the work of the active stress per displacement; the merit D/sqrt(W T/(gamma "
-             "L)), which does not depend on how fast the gait is; or the same with the dissipation instead of the work "
-             "W, for gaits that repeat, whatever their period: the elastic energy that their start takes does not "
-             "count.");
+      .means("Quantity that is optimised: the displacement; the speed of the last stride (of the whole duration at the "
+             "kinematic level); the work of the active stress per displacement; the merit D/sqrt(W T/(gamma L)), which "
+             "does not depend on the pace of the gait; or the same with the dissipation instead of the work W, for "
+             "periodic gaits, whatever their period: the elastic energy that their start takes does not count.");
     declarations.choice("Direction", direction, {"forward", "backward"})
-      .means("Where the body should go: forward is towards growing s.");
+      .means("Direction in which the body should move; forward is towards increasing s.");
     declarations.text("Variables", variables, variables_syntax)
-      .means("The numbers of the scene that vary, with their ranges. The values in this file are the start. " +
+      .means("Numbers of the scene that vary, with their ranges. The values in this file are the start. " +
              variables_in_brackets);
     declarations.number("Work", work, positive(), "energy")
       .means("Largest work of the active stress over the duration. Automatic: no limit.");
@@ -102,29 +102,34 @@ namespace crawler
       .means(
         "Largest positive work of the active stress, for actuators that cannot recover energy. Automatic: no limit.");
     declarations.number("Dissipation", dissipation, positive(), "energy")
-      .means("Largest work against the friction, which is all that a gait that repeats needs. Automatic: no limit.");
+      .means(
+        "Largest work against the friction, which is all the work that a periodic gait needs. Automatic: no limit.");
     declarations.number("Smallest strain", smallest_strain, between(-1., 0.), "1")
-      .means("The strain w - 1 must be at least this. Automatic: no limit.");
+      .means("Lower limit of the strain w - 1. Automatic: no limit.");
     declarations.number("Largest strain", largest_strain, positive(), "1")
-      .means("The strain w - 1 must be at most this. Automatic: no limit.");
+      .means("Upper limit of the strain w - 1. Automatic: no limit.");
     declarations.number("Mean-square strain", mean_square_strain, positive(), "1")
-      .means("Largest mean over body and duration of the strain squared; at the kinematic level. Automatic: no limit.");
+      .means(
+        "Largest mean of the squared strain over body and duration; only at the kinematic level. Automatic: no limit.");
     declarations.number("Largest stress", largest_stress, positive(), "force")
-      .means("The size of the active stress must be at most this. Automatic: no limit.");
+      .means("Upper limit of the absolute value of the active stress. Automatic: no limit.");
     declarations.number("Largest stress rate", largest_stress_rate, positive(), "force/time")
-      .means("The size of its rate must be at most this. Automatic: no limit.");
+      .means("Upper limit of the absolute rate of change of the active stress. Automatic: no limit.");
     declarations.whole_number("Starts", n_starts, 1, 100000)
-      .means("Number of starts: the values in this file, and others at random about them. Ranks share the starts.");
+      .means("Number of starts: the values in this file, and others drawn at random around them. The ranks share the "
+             "starts.");
     declarations.number("Start spread", spread, between(0., 1.), "1")
-      .means("How far the other starts are from the values in this file, as a share of the ranges.");
+      .means("Largest distance of the other starts from the values in this file, as a share of the ranges.");
     declarations.whole_number("Seed", seed, 0, std::numeric_limits<unsigned int>::max())
-      .means("Of the random starts: the same seed gives the same starts.");
+      .means("Seed of the random starts: the same seed gives the same starts.");
     declarations.number("Tolerance", tolerance, between(1e-12, 0.1), "1")
-      .means("The optimiser stops when the gradient and the violation of limits, both relative, are below this.");
+      .means("Relative gradient and relative violation of limits below which the optimiser stops.");
     declarations.whole_number("Most iterations", max_iterations, 1, 1000000)
-      .means("Of the optimiser (its outer loop, in which the multipliers of the limits are found), for each start.");
+      .means("Largest number of iterations of the optimiser (its outer loop, which finds the multipliers of the "
+             "limits) per start.");
     declarations.number("Time limit", time_limit, positive(), "s")
-      .means("Wall time after which the best so far is the result; --resume goes on. Automatic: none.");
+      .means(
+        "Wall time after which the best gait so far is the result; --resume continues the search. Automatic: none.");
     declarations.leave();
   }
 
@@ -133,44 +138,38 @@ namespace crawler
   {
     declarations.enter("Fit");
     declarations.files("Data", data, "the name of a file, or of several, separated by semicolons")
-      .means("What was measured: tracks of markers or samples of strain, in a file as "
-             "crawler table reads it (doc/measured_data.md); or columns t and centre, the path of the centre of mass, "
-             "or t and speed, perhaps with a column deviation. Several files have data of different kinds. A name "
-             "counts from the folder of this parameter file; crawler fit --data has another one.");
+      .means("Measured data: tracks of markers or samples of strain, in a file that crawler table can read "
+             "(doc/measured_data.md); or columns t and centre, the path of the centre of mass, or t and speed, perhaps "
+             "with a column deviation. Several files must have data of different kinds. File names are relative to the "
+             "folder of this parameter file; crawler fit --data replaces them.");
     declarations.text("Variables", variables, variables_syntax)
-      .means("The numbers of the scene that are not known, with their ranges. The values in this file are the first "
-             "start. " +
+      .means("Unknown numbers of the scene, with their ranges. The values in this file are the first start. " +
              variables_in_brackets);
     declarations.text("Markers at", markers_at, "\"first\" or a list of numbers", "length")
-      .means("Where on the body the markers are, from tail to head, as the body is without strain. First: where they "
-             "are in the first frame, "
-             "the outermost ones at the ends of the body.");
+      .means("Places of the markers on the unstrained body, from tail to head. First: those in the first frame, with "
+             "the outermost markers at the ends of the body.");
     declarations.number("Place deviation", place_deviation, between(0., 1e100), "length")
-      .means("Standard deviation of the places of the markers: they are found with the variables, within it. "
-             "Automatic: 0 for a list; places of the first frame are free.");
+      .means("Standard deviation of the places of the markers, which are found together with the variables, within "
+             "this deviation. Automatic: 0 for a list; places of the first frame are free.");
     declarations.choice("Origin", origin, {"unknown", "tail"})
-      .means("From where the tracks count x: from a place that is not known and is found with the variables, or from "
-             "where the tail is at the "
-             "start of the run.");
+      .means("Origin of the x of the tracks: an unknown place that is found together with the variables, or the place "
+             "of the tail at the start of the run.");
     declarations.number("First time", first_time, between(0., 1e100), "time")
-      .means("When in the run the first of the data was measured; the times in the file count from there. Automatic: "
-             "the times in the file are those "
-             "of the run.");
+      .means("Time of the run at which the first datum was measured; the times in the file count from there. "
+             "Automatic: the times in the file are those of the run.");
     declarations
       .text("Standard deviation",
             deviation,
             "a positive number or the word \"automatic\", for several files one for each, separated by commas",
             "1")
       .means(
-        "Of one number of the data, in its unit. Automatic: that which the data have for each number, or else as they "
-        "scatter about the best fit; whether the "
-        "scene fits them at all can then "
-        "not be told.");
+        "Standard deviation of one datum, in its unit. Automatic: the one that the data give for each number, or else "
+        "their scatter about the best fit; in that case it cannot be told whether the scene fits them at all.");
     declarations.whole_number("Starts", n_starts, 1, 100000)
-      .means("Number of starts: the values in this file, and others at random in the ranges. The best of all is the "
-             "result.");
+      .means("Number of starts: the values in this file, and others drawn at random from the ranges. The best of all "
+             "is the result.");
     declarations.whole_number("Seed", seed, 0, std::numeric_limits<unsigned int>::max())
-      .means("Of the random starts: the same seed gives the same starts.");
+      .means("Seed of the random starts: the same seed gives the same starts.");
     declarations.leave();
   }
 

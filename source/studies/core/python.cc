@@ -36,13 +36,12 @@ namespace crawler
     const auto *const path =
       std::ranges::find_if(places, [&](const auto &place) { return std::filesystem::exists(place, ignored); });
     if (path == places.end())
-      return {
-        EX_UNAVAILABLE,
-        fmt::format("the script {} is neither {} nor {}; a copy of the program alone has no scripts, the installed "
-                    "one and that of the build folder have them",
-                    std::filesystem::path(script).filename().string(),
-                    places[0].lexically_normal().string(),
-                    places[1].string())};
+      return {EX_UNAVAILABLE,
+              fmt::format("the script {} is neither at {} nor at {}; a copy of the program alone has no scripts, the "
+                          "installed program and the one in the build folder have them",
+                          std::filesystem::path(script).filename().string(),
+                          places[0].lexically_normal().string(),
+                          places[1].string())};
     // Scripts that lack a module in this Python go on with Debian's (contrib/python/crawler/needs.py).
     for (const std::string python : {"python3", "/usr/bin/python3"})
     {
@@ -51,7 +50,7 @@ namespace crawler
       if (const ProgramEnd end = run_program(command, shown); end.started)
         return {end.status, trimmed(end.errors)};
     }
-    return {EX_UNAVAILABLE, "python3 is not there (Debian: apt install python3-h5py python3-matplotlib)"};
+    return {EX_UNAVAILABLE, "python3 was not found (Debian: apt install python3-h5py python3-matplotlib)"};
   }
 
   void
@@ -80,6 +79,6 @@ namespace crawler
       throw FileError(end.problem);
     if (end.status != 0)
       log.line(
-        fmt::format("There is no picture: {}. Draw it later with: crawler plot {}", end.problem, folder.string()));
+        fmt::format("No picture was drawn: {}. Draw it later with: crawler plot {}", end.problem, folder.string()));
   }
 } // namespace crawler

@@ -67,13 +67,12 @@ namespace crawler
     {
       for (const EntryInfo &entry : declarations_.entries())
         if (entry.path == path && entry.expected.starts_with("a whole number"))
-          throw InputError(
-            fmt::format("{} has \"{}\", which is a whole number, so that there are no derivatives by it; "
-                        "numbers are expected{}, and whole numbers as cases of section Sweep",
-                        word,
-                        path,
-                        or_else),
-            own);
+          throw InputError(fmt::format("{} has \"{}\", which is a whole number and so has no derivatives; numbers are "
+                                       "expected{}, and whole numbers as cases of section Sweep",
+                                       word,
+                                       path,
+                                       or_else),
+                           own);
       const auto near = nearest_names(path, all_, 1);
       throw InputError(
         fmt::format("{} has \"{}\", but entries of the body, the ground, the active stress or the end time that are "

@@ -53,7 +53,7 @@ namespace crawler
           one.sensitivity.reason.clear();
           for (const Scene &other : one.scenes)
             if (!have_similar_breaks(scene, other))
-              one.sensitivity.reason = "jumps of the active stress or the body come or go with it";
+              one.sensitivity.reason = "jumps of the active stress or the body appear or vanish with it";
           one.sensitivity.may_vary = !one.is_one_sided || one.sensitivity.reason.empty();
           break;
         }
@@ -88,9 +88,8 @@ namespace crawler
     {
       if (!values[0] || !finer[0])
       {
-        entry.reason =
-          "the displacement has a kink there: a limit is reached, or a jump of the active stress comes in or "
-          "goes out at the start or the end of the run";
+        entry.reason = "the displacement has a kink there: a limit is reached, or a jump of the active stress enters "
+                       "or leaves at the start or the end of the run";
         return;
       }
       for (std::size_t i = 0; i < values.size(); ++i)
@@ -188,7 +187,7 @@ namespace crawler
           VariedAnswers closer =
             vary(form, scene, one.sensitivity.entry, closer_answers * apart, around_answer).answers;
           if (!differentiate_answers(std::move(closer), result, one.sensitivity, keep_going))
-            one.sensitivity.reason = "the displacement has a kink there, or changes a lot between values that are near";
+            one.sensitivity.reason = "the displacement has a kink there, or changes a lot between nearby values";
         }
     }
     for (Varied &one : varied)

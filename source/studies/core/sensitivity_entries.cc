@@ -42,7 +42,7 @@ namespace crawler
       if (same == list.end())
         list.push_back(one);
       else if (same->deviation > 0. && one.deviation > 0.)
-        throw InputError(fmt::format("Uncertainty has \"{}\" twice; each entry once is expected", one.path),
+        throw InputError(fmt::format("Uncertainty has \"{}\" twice, but each entry is expected only once", one.path),
                          "Output/Uncertainty");
       else if (one.deviation > 0.)
         *same = one;

@@ -177,7 +177,7 @@ namespace crawler
     on_first_rank(communicator, [&]() {
       for (const std::string &one : problems)
         if (!one.empty())
-          throw FileError(one + "; the rows that were written are there, and --resume makes the rest");
+          throw FileError(one + "; the rows written so far are kept, and --resume computes the rest");
       return "";
     });
   }

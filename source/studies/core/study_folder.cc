@@ -72,7 +72,7 @@ namespace crawler
     lock_.emplace(path_ / study_lock_name);
     FileLock::State state = lock_->lock();
     if (state == FileLock::State::of_another_process)
-      log_.line(fmt::format("Another study writes to \"{}\"; it may be about to end: waiting for {} s at most",
+      log_.line(fmt::format("Another study is writing to \"{}\"; it may be about to end: waiting for at most {} s",
                             path_.string(),
                             longest_wait.count() / 1000));
     for (auto waited = pause; state == FileLock::State::of_another_process && waited < longest_wait; waited += pause)
@@ -81,9 +81,9 @@ namespace crawler
       state = lock_->lock();
     }
     if (state == FileLock::State::of_another_process)
-      throw InputError(fmt::format("another study writes to \"{}\"; another folder is expected for --output, or that "
-                                   "the other one has ended",
-                                   path_.string()));
+      throw InputError(
+        fmt::format("another study is writing to \"{}\"; wait for it to end, or give another folder with --output",
+                    path_.string()));
     if (state == FileLock::State::not_offered)
       log_.warn(fmt::format("warning: this file system has no locks, so nothing keeps another study from writing to "
                             "\"{}\"",
@@ -109,10 +109,10 @@ namespace crawler
   {
     const auto require_own = [&]() {
       if (options_.resume && state() == State::foreign)
-        throw InputError(fmt::format("\"{}\" has no {} that could be resumed; another folder is expected for --output, "
-                                     "or --overwrite",
-                                     path_.string(),
-                                     kind_.name));
+        throw InputError(
+          fmt::format("\"{}\" has no {} that can be resumed; another folder is expected for --output, or --overwrite",
+                      path_.string(),
+                      kind_.name));
     };
     require_own();
     require_usable(path_, options_.resume || options_.overwrite);
@@ -139,8 +139,8 @@ namespace crawler
       const std::vector<std::string> changes = find_changes();
       if (changes.empty())
         return;
-      throw InputError(fmt::format("the {} in \"{}\" was made with other parameters: {}; it can be resumed with the "
-                                   "same ones only (but for {})",
+      throw InputError(fmt::format("the {} in \"{}\" was made with other parameters: {}; it can only be resumed with "
+                                   "the same ones (except for {})",
                                    kind_.name,
                                    path_.string(),
                                    fmt::join(changes, ", "),

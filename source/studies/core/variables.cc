@@ -56,7 +56,7 @@ namespace crawler
           names.push_back(fmt::format("{}[{:.0f}]", list, i));
       }
       if (names.empty())
-        refuse("\"{0}\" is \"{2}\", so \"{1}\" is no number; a list with its numbers is expected there",
+        refuse("\"{0}\" is \"{2}\", so \"{1}\" is not a number; a list with its numbers is expected there",
                list,
                name,
                declarations.value(list));
@@ -85,7 +85,9 @@ namespace crawler
     std::string list = trimmed(form.declarations.value(entry));
     if (list.empty())
       throw InputError(
-        fmt::format("\"{}\" is empty, but \"Section/Entry : FROM to TO\" is expected: what may vary", entry), entry);
+        fmt::format("\"{}\" is empty, but \"Section/Entry : FROM to TO\" is expected: the entries that may vary",
+                    entry),
+        entry);
     const SceneNumbers numbers(form);
     std::vector<Variable> variables;
     if (list.ends_with(';'))
@@ -117,7 +119,7 @@ namespace crawler
                  widest,
                  text);
         if (std::ranges::find(variables, path, &Variable::path) != variables.end())
-          refuse("\"{}\" is there twice, but once is expected", path);
+          refuse("\"{}\" is given twice, but is expected only once", path);
         const EntryKind kind = form.declarations.info(path).values.kind;
         for (const double end : {from, to})
           try

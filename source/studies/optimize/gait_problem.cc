@@ -91,7 +91,7 @@ namespace crawler
     if (!std::isfinite(first))
       throw InputError(
         fmt::format(
-          "the start has no {}, since its work is {:g}; one that takes work is expected",
+          "the start has no {}, since its work is {:g}; a start that takes work is expected",
           parameters.objective,
           values.numbers[parameters.objective == "periodic merit" ? GaitNumber::dissipation : GaitNumber::work]),
         "Optimize/Variables");

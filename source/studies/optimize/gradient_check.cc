@@ -65,7 +65,7 @@ namespace crawler
         other[i] += around.places[k];
         const GaitValues there = model.evaluate(other, /*with_gradients=*/false);
         if (!there.problem.empty())
-          throw InputError("beside the start: " + there.problem, "Optimize/Variables");
+          throw InputError("near the start: " + there.problem, "Optimize/Variables");
         for (std::size_t c = 0; c < list.size(); ++c)
           differences[c][i] += around.weights[k] * list[c].value(there);
       }

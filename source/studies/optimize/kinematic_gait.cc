@@ -45,10 +45,9 @@ namespace crawler
       , reduced(physical)
     {
       if (reduced.strain() == nullptr)
-        throw InputError(
-          "the kinematic level needs a strain that is given, or an active stress that knows its rate and "
-          "does not jump",
-          "Model");
+        throw InputError("the kinematic level needs a prescribed strain, or an active stress whose rate is known and "
+                         "that does not jump",
+                         "Model");
     }
 
     BodyAtPoints
@@ -289,7 +288,7 @@ namespace crawler
       if (const double efficiency = result.numbers[GaitNumber::efficiency]; efficiency > 1. + accurate_enough)
       {
         result.problem =
-          fmt::format("gait_efficiency: the gait efficiency is {:.8g}, but no gait has more than 1", efficiency);
+          fmt::format("gait_efficiency: the gait efficiency is {:.8g}, but no gait can exceed 1", efficiency);
         return result;
       }
       if (wishes_.strain)

@@ -63,7 +63,7 @@ namespace crawler
     {
       std::error_code error;
       if (!fs::exists(folder / OptimizeMemory::file, error) && fs::exists(folder / "starts" / "1-0.json", error))
-        throw InputError(fmt::format("the optimization in \"{}\" was made by an earlier version of crawler, which kept "
+        throw InputError(fmt::format("the optimisation in \"{}\" was made by an earlier version of crawler, which kept "
                                      "its starts as starts/*.json instead of {}, so it cannot be resumed; another "
                                      "folder is expected for --output, or --overwrite",
                                      folder.string(),
@@ -147,7 +147,7 @@ namespace crawler
                 ExitCode::self_check_failed,
                 "an evaluation is better than any gait can be (column problem of results.csv), so it is wrong"};
       if (!stop.empty())
-        return {stop, ExitCode::stopped, clock.in_words(stop) + "; --resume goes on"};
+        return {stop, ExitCode::stopped, clock.in_words(stop) + "; --resume continues"};
       if (results.best.empty())
       {
         const auto first = std::ranges::find_if(results.starts, has_problem(""), &StartResult::best);
@@ -160,8 +160,8 @@ namespace crawler
           worst != results.best.end())
         return {"limits_exceeded",
                 ExitCode::numerical_failure,
-                fmt::format("no gait that keeps to all limits was found: the best one exceeds {} by {:.3g} %; the "
-                            "limits may contradict each other, or the start is far from them",
+                fmt::format("no gait within all limits was found: the best one exceeds {} by {:.3g} %; the limits may "
+                            "contradict each other, or the start is far from them",
                             results.starts[*worst].best.worst_limit,
                             100. * results.starts[*worst].best.violation)};
       if (of_best([](const StartResult &best) { return best.has_converged; }) != results.best.end())
@@ -171,7 +171,7 @@ namespace crawler
       if (!runs_are_good)
         return {"best_run_failed",
                 ExitCode::numerical_failure,
-                "the run of a best gait did not end as it should; its log.txt says why"};
+                "the run of a best gait did not end normally; its log.txt says why"};
       return {"", ExitCode::finished, ""};
     }
 
@@ -186,8 +186,9 @@ namespace crawler
     {
       const std::string number = cases.are_several() ? "-N" : "", place = folder.string();
       if (cases.parameters().optimize.n_starts == 1 && !results.best.empty())
-        log.line(fmt::format("{}1 start: the optimum may be a local one; Optimize/Starts = 8 looks from others, too.",
-                             cases.are_several() ? "Each case had " : ""));
+        log.line(
+          fmt::format("{}1 start: the optimum may be a local one; Optimize/Starts = 8 searches from others, too.",
+                      cases.are_several() ? "Each case had " : ""));
       log.line(fmt::format(
         "{} evaluations from {}{}, {:.1f} s. {}",
         results.n_evaluations(),
@@ -289,7 +290,7 @@ namespace crawler
             const double shift = beside * family.scale(start.x, i);
             start.x[i] += start.x[i] + shift <= family.variables()[i].to ? shift : -shift;
           }
-          log.line(fmt::format("Beside the start, all variables being {:g} % of their size away:", 100. * beside));
+          log.line(fmt::format("Near the start, with all variables {:g} % of their size away:", 100. * beside));
           result = check_gradient(*start.model, family, wishes, start.x, log);
         }
         agrees = agrees && result.value_or(true);
@@ -371,7 +372,7 @@ namespace crawler
                              cases.names().objective,
                              record.objective,
                              record.violation <= problem.admissible()
-                               ? "keeps to all limits"
+                               ? "is within all limits"
                                : fmt::format("exceeds {} by {:.3g} %", record.worst_limit, 100. * record.violation)));
       }
     }
@@ -379,7 +380,7 @@ namespace crawler
     {
       throw file.with_place(error);
     }
-    log.line(file.name() + " is in order: all variables and cases are admissible. Nothing was written.");
+    log.line(file.name() + " is valid: all variables and cases are admissible. Nothing was written.");
     return true;
   }
 } // namespace crawler

@@ -93,7 +93,7 @@ namespace crawler
           std::size_t widest = 1;
           for (const OptimizeNames::Case &one : names.cases)
             widest = std::max(widest, one.values[i].size());
-          fields.text({names.axes[i], "", "of the case", static_cast<unsigned int>(widest)}, value);
+          fields.text({names.axes[i], "", "value of the axis in the case", static_cast<unsigned int>(widest)}, value);
         }
       fields.whole({"start", "1", "number of the start"}, start.start);
       record.x.resize(its.paths.size(), NAN); // stopped before there was a gait
@@ -109,7 +109,8 @@ namespace crawler
       fields.number({"objective", names.unit, names.objective}, record.objective);
       for (std::size_t i = 0; i < n_gait_numbers; ++i)
         fields.number(number_columns[i], record.numbers[i]);
-      fields.number({"violation", "1", "of the limit that is exceeded most, relative to it"}, record.violation);
+      fields.number({"violation", "1", "excess over the limit that is exceeded most, relative to it"},
+                    record.violation);
       fields.text({"problem", "", "why there is no gait", width}, record.problem);
     }
 
@@ -149,22 +150,24 @@ namespace crawler
       std::string end              = start.has_converged ? converged : start.message;
       std::string status           = start.was_interrupted ? stopped : "finished";
       exchange(fields, names, start, start.best, width);
-      fields.whole({"iterations", "1", "of the optimiser"}, start.iterations);
-      fields.whole({"evaluations", "1", "of gaits"}, n_evaluations);
+      fields.whole({"iterations", "1", "iterations of the optimiser"}, start.iterations);
+      fields.whole({"evaluations", "1", "number of gaits that were evaluated"}, n_evaluations);
       fields.number({"seconds", "s", "wall time"}, start.seconds);
-      fields.text({"optimiser", "", "how it ended", width}, end);
-      fields.text({"exceeded limit", "", "the one that is exceeded most", 32}, start.best.worst_limit);
+      fields.text({"optimiser", "", "how the optimiser ended", width}, end);
+      fields.text({"exceeded limit", "", "limit that is exceeded most", 32}, start.best.worst_limit);
       for (const std::string &name : names.limits)
       {
         const auto known = std::ranges::find(start.limits, name, &GaitLimit::name);
         GaitLimit limit  = known == start.limits.end() ? GaitLimit{name, NAN, NAN} : *known;
-        fields.number({"limit of " + name, "", "as it was set"}, limit.value);
-        fields.number({"multiplier of " + name, "", "objective for one unit more"}, limit.multiplier);
+        fields.number({"limit of " + name, "", "value of the limit"}, limit.value);
+        fields.number({"multiplier of " + name, "", "gain of the objective for one unit more of the limit"},
+                      limit.multiplier);
         if (known == start.limits.end() && !std::isnan(limit.value))
           start.limits.push_back(limit);
       }
-      fields.number({"admissible", "1", "violation of a limit, relative to it"}, start.admissible);
-      fields.whole({"neighbour", "1", "number of the case from whose best gait it went on; 0: none"}, start.neighbour);
+      fields.number({"admissible", "1", "largest admissible violation of a limit, relative to it"}, start.admissible);
+      fields.whole({"neighbour", "1", "number of the case from whose best gait the search continued; 0: none"},
+                   start.neighbour);
       fields.text({"status", "", "finished or stopped; empty: there is no row", 16}, status);
       start.has_converged   = end == converged;
       start.message         = start.has_converged ? "" : end;
@@ -261,11 +264,10 @@ namespace crawler
             ++n_damaged;
         }
       if (n_damaged > 0)
-        folder.log().warn(
-          fmt::format("warning: the evaluations of {} are not what was written, so {} was damaged; they "
-                      "are computed anew",
-                      counted(n_damaged, "start"),
-                      evaluations_file));
+        folder.log().warn(fmt::format(
+          "warning: the evaluations of {} differ from what was written, so {} was damaged; they are computed again",
+          counted(n_damaged, "start"),
+          evaluations_file));
     }
     write_all(/*with_room=*/true);
   }

@@ -88,9 +88,18 @@ namespace crawler
         values.push_back(number_at(Json::parse(summary), place));
       table.push_back({name, unit, description, values});
     };
-    add("displacement_error", "length", "bound of its error, by the run of the optimum", "/displacement_error/total");
-    add("efficiency", "1", "part of what any gait with this work and these strains could", "/gait/efficiency");
-    add("stride_efficiency", "1", "the same of the last stride, with its dissipation", "/gait/stride_efficiency");
+    add("displacement_error",
+        "length",
+        "bound of the error of the displacement, from the run of the optimum",
+        "/displacement_error/total");
+    add("efficiency",
+        "1",
+        "displacement over the largest that any gait with this work and these strains can reach",
+        "/gait/efficiency");
+    add("stride_efficiency",
+        "1",
+        "efficiency of the last stride, with its dissipation as the work",
+        "/gait/stride_efficiency");
     return table;
   }
 
@@ -164,8 +173,7 @@ namespace crawler
         start.best.objective,
         cases.parameters().units.behind(results.names.unit),
         start.is_admissible() ? ""
-                              : fmt::format(" ({} is EXCEEDED, by {:.2g} %: no gait that keeps to all limits "
-                                            "was found)",
+                              : fmt::format(" ({} is EXCEEDED, by {:.2g} %: no gait within all limits was found)",
                                             start.best.worst_limit,
                                             100. * start.best.violation),
         start.has_converged ? "" : fmt::format(" (the optimiser did not converge: {})", start.message)));
@@ -175,17 +183,17 @@ namespace crawler
         const double efficiency =
           number_at(Json::parse(summaries[i]), is_stride ? "/gait/stride_efficiency" : "/gait/efficiency");
         if (std::isfinite(efficiency))
-          lines.push_back(fmt::format("  reaches {:.0f} % of what any gait with this {} and these strains could{}",
-                                      100. * efficiency,
-                                      is_stride ? "dissipation" : "work",
-                                      is_stride ? ", in the last stride" : ""));
+          lines.push_back(
+            fmt::format("  reaches {:.0f} % of the most that any gait with this {} and these strains can{}",
+                        100. * efficiency,
+                        is_stride ? "dissipation" : "work",
+                        is_stride ? ", in the last stride" : ""));
         const double stretch = number_at(Json::parse(summaries[i]), "/min_stretch/value");
         const bool has_own = std::ranges::find(start.limits, "Smallest strain", &GaitLimit::name) != start.limits.end();
         if (stretch < near_inversion && !has_own)
-          lines.push_back(
-            fmt::format("  Here the body is pressed together to a stretch of {:.2g}: inversion holds the gait "
-                        "back, not a limit that was set. Optimize/Smallest strain sets one",
-                        stretch));
+          lines.push_back(fmt::format("  Here the body is compressed to a stretch of {:.2g}: inversion holds the gait "
+                                      "back, not a limit that was set. Optimize/Smallest strain sets one",
+                                      stretch));
       }
       for (std::size_t k = 0; k < std::min(its.paths.size(), max_variables); ++k)
         lines.push_back(fmt::format("  {} = {:.8g}", its.paths[k], start.best.x[k]));

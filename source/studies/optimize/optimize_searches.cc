@@ -22,7 +22,8 @@ namespace crawler
       return start.number_of_case << 40 | start.start << 20 | start.neighbour;
     }
 
-    /// Gait @p x in a case, if it keeps to all limits and is better than @p own by more than the optimiser's tolerance.
+    /// Gait @p x in a case, if it is within all limits and is better than @p own by more than the optimiser's
+    /// tolerance.
     std::optional<GaitRecord>
     better_gait(OptimizeCases &cases, const StartResult &own, const std::vector<double> &x)
     {
@@ -233,7 +234,7 @@ namespace crawler
       if (!found)
         continue;
       log_.line(
-        fmt::format("With {} the gait of {} is better ({:.6g}) than its own ({:.6g}): the search goes on there.",
+        fmt::format("With {} the gait of {} is better ({:.6g}) than its own ({:.6g}): the search continues there.",
                     cases_.in_words(number),
                     cases_.in_words(found->neighbour - 1),
                     leader.best.objective,

@@ -175,8 +175,8 @@ namespace crawler
           is_rough = is_rough && !is_fine;
         }
         result_.has_converged = false;
-        result_.message = is_fine ? "strain or stress exceed their limits between the points where they are looked at"
-                                  : "the grid became finer and finer";
+        result_.message = is_fine ? "strain or stress exceed their limits between the points where they are checked"
+                                  : "the grid had to be refined again and again";
       }
 
       /// Optimises from x on; @p is_rough: the grid may be too coarse, so that a rough optimum is enough.
@@ -216,7 +216,7 @@ namespace crawler
           scale_                   = problem.scale();
           const std::string at_end = end.has_converged ? problem.at(end.y, /*with_gradients=*/true).problem : "";
           result_.has_converged    = end.has_converged && at_end.empty();
-          result_.message          = at_end.empty() ? end.message : "what it ends at has no derivatives, " + at_end;
+          result_.message = at_end.empty() ? end.message : "the gait it ended at has no derivatives, " + at_end;
           keep(result_.has_converged ? &problem.record(end.y) : nullptr);
           if (result_.has_converged && problem.unused_limits(end.y, end.multipliers) > max_unused)
           {
@@ -296,12 +296,13 @@ namespace crawler
           result_.message =
             nothing_moves_the_body()
               ? "friction does not depend on the stretch here (Anchoring exponent 1), so that no gait moves the body"
-              : "what was found does not move the body in the wanted direction; another start is needed";
+              : "the gait that was found does not move the body in the wanted direction; another start is needed";
         }
         constexpr double far = 10.;
         if (!result_.has_converged && !result_.records.empty() && result_.records.front().violation > far)
-          result_.message += fmt::format("; the start exceeds a limit {:.2g} times, one that is nearer to it is needed",
-                                         1. + result_.records.front().violation);
+          result_.message +=
+            fmt::format("; the start exceeds a limit by a factor of {:.2g}, and one nearer to it is needed",
+                        1. + result_.records.front().violation);
         for (GaitLimit &limit : result_.limits)
         {
           if (!result_.is_admissible()) // multipliers are meaningless then

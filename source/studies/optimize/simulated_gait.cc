@@ -211,7 +211,7 @@ namespace crawler
       for (std::size_t i = 0; i < n_gait_numbers; ++i)
         if (wishes_.numbers[i] && !std::isfinite(values.numbers[i]))
           values.problem = i == static_cast<std::size_t>(GaitNumber::speed)
-                             ? "the speed is not known, since the active stress does not say how long its stride is"
+                             ? "the speed is not known, since the active stress does not tell the duration of a stride"
                              : "a work is not known there";
       if (wishes_.strain)
       {

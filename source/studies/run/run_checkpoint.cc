@@ -53,7 +53,7 @@ namespace crawler
       const std::string text  = read_whole_file(path);
       const std::size_t first = text.find('\n') + 1;
       if (first == 0 || text.substr(0, first) != heading(text.substr(first)))
-        throw FileError("\"" + path.string() + "\" is damaged: its checksum is another one");
+        throw FileError("\"" + path.string() + "\" is damaged: its checksum differs");
       RunCheckpoint checkpoint;
       Archive archive(text.substr(first));
       archive(checkpoint.program);
@@ -102,9 +102,9 @@ namespace crawler
         is_begun = is_begun && early.contains(file.path().filename().string());
       const bool is_study = has("results.h5") || has("tradeoff.h5");
       if (!is_begun && (is_study || !has("parameters.prm") || !has("log.txt")))
-        throw InputError(fmt::format(
-          "\"{}\" has no run that could be resumed; another folder is expected for --output, or --overwrite",
-          folder.string()));
+        throw InputError(
+          fmt::format("\"{}\" has no run that can be resumed; another folder is expected for --output, or --overwrite",
+                      folder.string()));
     }
 
     bool
@@ -170,13 +170,13 @@ namespace crawler
     {
       if (checkpoint->petsc_options != own.petsc_options)
         changes.push_back(fmt::format(
-          "the options behind \"--\" were \"{}\" and are \"{}\"", checkpoint->petsc_options, own.petsc_options));
+          "the options after \"--\" were \"{}\" and are \"{}\"", checkpoint->petsc_options, own.petsc_options));
       if (checkpoint->files != own.files)
         changes.emplace_back("a file that the parameters name has changed");
     }
     if (!changes.empty())
-      throw InputError(fmt::format("the run in \"{}\" was made with other parameters: {}; it can be resumed with the "
-                                   "same ones only (but for {})",
+      throw InputError(fmt::format("the run in \"{}\" was made with other parameters: {}; it can only be resumed with "
+                                   "the same ones (except for {})",
                                    folder.string(),
                                    fmt::join(changes, ", "),
                                    fmt::join(free_entries, " and ")));

@@ -56,10 +56,11 @@ namespace crawler
       {
         case Resumption::begins:
           log.line(
-            fmt::format("There is no state in \"{}\" with which the run could go on: it begins.", folder.string()));
+            fmt::format("There is no state in \"{}\" from which the run can resume: it starts from the beginning.",
+                        folder.string()));
           break;
         case Resumption::goes_on:
-          log.line("The run goes on from the state in restart.dat.");
+          log.line("The run resumes from the state in restart.dat.");
           break;
         case Resumption::is_whole:
           log.line(fmt::format("The run in \"{}\" is complete; nothing was computed.", folder.string()));
@@ -256,7 +257,7 @@ namespace crawler
   {
     const Parameters &parameters   = input_.parameters;
     const OutputParameters &output = parameters.output;
-    other_runs_.emplace(log_, "runs on other meshes come before");
+    other_runs_.emplace(log_, "runs on other meshes come first");
     guarded([&]() {
       const KeepGoing keep_going(
         [&]() {
@@ -305,7 +306,7 @@ namespace crawler
       const TimeOutcome &latest = result_.time;
       log_.line((latest.status == Status::failed ? latest.reason + ": " + latest.message
                                                  : "The error is larger than Accuracy asks for") +
-                ": once more, " + (choice.is_family ? "in the stretch form." : "finer."));
+                ": running again, " + (choice.is_family ? "in the stretch form." : "finer."));
       if (sharing_.has_output)
         on_first_rank(sharing_.ranks, [&]() {
           if (journal_.was_written()) // older states need the files that are about to be removed
@@ -386,7 +387,7 @@ namespace crawler
       sweep_error(input_.parameters, input_.scene, *choice_, result_, [&]() { return !is_stopped(); });
     other_runs_.reset();
     if (is_first_ && !input_.sensitivities.empty() && result_.time.status != Status::finished)
-      log_.warn("there are no sensitivities, since the run did not end as it should");
+      log_.warn("there are no sensitivities, since the run did not end normally");
     else if (is_first_ && !input_.sensitivities.empty())
     {
       WaitProgress progress(log_, "runs for the sensitivities");
@@ -417,7 +418,7 @@ namespace crawler
     if (!is_for_later) // a kill before this loses nothing
       remove_checkpoints(folder_);
     else if (journal_.was_written())
-      log_.line("The state of the run is in restart.dat: the same command with --resume goes on with it.");
+      log_.line("The state of the run is in restart.dat: the same command with --resume continues it.");
   }
 
   void

@@ -63,7 +63,7 @@ namespace crawler
     constexpr double unknown                 = std::numeric_limits<double>::quiet_NaN();
     constexpr unsigned int explanation_width = 256;
     const char *const ratio_meaning =
-      "difference of the displacement to that of the refined run, over the sum of both promised errors";
+      "difference between the displacement and that of the refined run, over the sum of both promised errors";
     /// Numbers of a sweep that the table has of each run.
     constexpr const char *numbers_of_run[] = {
       "displacement", "inversion.s", "inversion.t", "min_stretch.value", "steps"};
@@ -252,13 +252,13 @@ namespace crawler
     std::vector<RowFile::Column> columns = {
       {"outcome", "", "what became of the point, or that an answer is wrong", 48},
       {"verdict", "", "agree, unchecked or silent wrong answer", 24},
-      {"explanation", "", "of a wrong answer", explanation_width},
-      {"promised error", "length", "error of the displacement that Accuracy stands for", 0},
+      {"explanation", "", "why an answer is wrong", explanation_width},
+      {"promised error", "length", "error of the displacement that Accuracy promises", 0},
       {"error ratio", "1", ratio_meaning, 0}};
     for (const auto run : {Checked::position, Checked::stretch, Checked::refined})
     {
       const std::string name = std::string(Checked::names[run]) + " ";
-      columns.push_back({name + "status", "", "as status; empty if this run was not asked for", 24});
+      columns.push_back({name + "status", "", "status of this run; empty if it was not requested", 24});
       columns.push_back({name + "reason", "", "name of what went wrong", 32});
       for (const char *key : numbers_of_run)
         columns.push_back({name + key, entry_of(key).unit, entry_of(key).meaning, 0});

@@ -89,7 +89,7 @@ namespace crawler
       }
       if (n_damaged > 0)
         log.warn(
-          fmt::format("warning: {} of the table {} not what was written, so the file was damaged; {} computed anew",
+          fmt::format("warning: {} of the table {} not what was written, so the file was damaged; {} computed again",
                       counted(n_damaged, "row"),
                       n_damaged == 1 ? "is" : "are",
                       n_damaged == 1 ? "it is" : "they are"));
@@ -103,13 +103,12 @@ namespace crawler
       for (const auto &[name, version] : provenance("", ""))
         if (name.starts_with("version of "))
           if (const std::string was = read_attribute(folder.path() / table.file, table.group, name); was != version)
-            folder.log().warn(
-              fmt::format("warning: the {} was {} when the {} began and is {}: new rows may differ from "
-                          "old ones by round-off or more",
-                          name,
-                          was,
-                          folder.kind().name,
-                          version));
+            folder.log().warn(fmt::format("warning: the {} was {} when the {} began and is now {}: new rows may differ "
+                                          "from old ones by round-off or more",
+                                          name,
+                                          was,
+                                          folder.kind().name,
+                                          version));
     }
   } // namespace
 

@@ -46,7 +46,7 @@ namespace crawler
         "stopped",
         time_limit_reason,
         task.computed.result.time.status == Status::finished
-          ? "it took longer than Sweep/Time limit per point when its errors were measured; the run itself is whole"
+          ? "it took longer than Sweep/Time limit per point while its errors were measured; the run itself is complete"
           : "it took longer than Sweep/Time limit per point"};
     const TimeOutcome &time = task.computed.result.time;
     return time.status == Status::finished ? PointStatus{word_of(time.status), "", ""}

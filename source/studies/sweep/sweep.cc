@@ -179,7 +179,7 @@ namespace crawler
       if (!counts.verdicts.empty())
         report_check(counts, log);
       if (end.status != "finished")
-        log.warn(clock.in_words(end.reason) + "; --resume goes on");
+        log.warn(clock.in_words(end.reason) + "; --resume continues");
       log.line(fmt::format("Results are in {0}/results.h5 and {0}/results.csv; draw them with: crawler plot {0}",
                            folder.string()));
     }
@@ -218,7 +218,7 @@ namespace crawler
     log.line(fmt::format("Sweep: {}, on {}{}",
                          in_words(design, own.design),
                          counted(n_ranks, "rank"),
-                         n_done > 0 ? fmt::format("; {} are done already", n_done) : ""));
+                         n_done > 0 ? fmt::format("; {} are already done", n_done) : ""));
     for (const std::string &note : points.notes())
       log.line(note);
     announce_petsc_options(options, log);
@@ -256,7 +256,7 @@ namespace crawler
     }
     catch (const FileError &error)
     {
-      throw FileError(fmt::format("{}; results.h5 is whole, and --resume makes the rest", error.what()),
+      throw FileError(fmt::format("{}; results.h5 is intact, and --resume computes the rest", error.what()),
                       /*on_all_ranks=*/true);
     }
   }
@@ -311,8 +311,8 @@ namespace crawler
       log.line(note);
     const double all = each * static_cast<double>(design.n_points());
     log.line(
-      fmt::format("  About {} a point (measured on {} of them): {} on one rank{}; results.h5 will have {}, results.csv "
-                  "somewhat less.",
+      fmt::format("  About {} per point (measured on {} of them): {} on one rank{}; results.h5 will have {}, "
+                  "results.csv somewhat less.",
                   duration_in_words(each),
                   n_computed,
                   duration_in_words(all),
@@ -320,7 +320,7 @@ namespace crawler
                     ? fmt::format(", {} on {}", duration_in_words(all / size_of(communicator)), size_of(communicator))
                     : "",
                   size_in_words(static_cast<double>(bytes * design.n_points()))));
-    log.line(file.name() + " is in order: all swept names and values are admissible. Nothing was written.");
+    log.line(file.name() + " is valid: all swept names and values are admissible. Nothing was written.");
     return true;
   }
 } // namespace crawler

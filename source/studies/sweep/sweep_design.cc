@@ -257,7 +257,7 @@ namespace crawler
     if (call && (call->function == "uniform" || call->function == "loguniform"))
     {
       if (kind_ == Kind::grid || kind_ == Kind::zip)
-        refuse("{} belongs to a random or latin hypercube design, and this is a {}", call->function, design);
+        refuse("{} is only for a random or latin hypercube design, but this is a {}", call->function, design);
       axis.values         = read_range(*call);
       axis.is_range       = true;
       axis.is_logarithmic = call->function == "loguniform";
@@ -275,8 +275,8 @@ namespace crawler
       if (!call)
         for (const std::string &value : split_parts(text, ','))
           if (split_parts(value, ':').size() > 1 && value.find('?') == std::string::npos) // not "x<0 ? 1 : 2"
-            refuse("found the value \"{}\" of \"{}\"; is a semicolon missing before the next entry? (a "
-                   "value with a colon stands in double quotes)",
+            refuse("found the value \"{}\" of \"{}\"; is a semicolon missing before the next entry? (a value with a "
+                   "colon must be in double quotes)",
                    value,
                    entry);
       axis.values =
@@ -319,7 +319,7 @@ namespace crawler
       if (kind_ == Kind::grid)
         n *= static_cast<double>(axis.values.size());
       else if (kind_ == Kind::zip && axis.values.size() != axes_[0].values.size())
-        refuse("a zip has as many values on each axis, but \"{}\" has {} and \"{}\" has {}",
+        refuse("a zip must have equally many values on all axes, but \"{}\" has {} and \"{}\" has {}",
                axes_[0].entry,
                axes_[0].values.size(),
                axis.entry,

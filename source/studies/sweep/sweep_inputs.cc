@@ -115,8 +115,8 @@ namespace crawler
     }
     catch (const InputError &) // the message may contain bytes that no terminal can show
     {
-      throw InputError("the parameters that are kept in the table cannot be read: it is damaged, or of another version "
-                       "of crawler; a whole one is expected");
+      throw InputError("the parameters that are kept in the table cannot be read: it is damaged, or from another "
+                       "version of crawler; an intact one is expected");
     }
     const auto scene_in = [](const SweepInputs &inputs, const std::string &name) {
       const auto found = inputs.scenes.find(name);

@@ -119,7 +119,7 @@ namespace crawler
         const ParameterFile its = scene(name);
         for (const Assignment &assignment : its.assignments())
           if (assignment.path.starts_with("Sweep/"))
-            throw InputError(fmt::format("{}: \"{}\" stands in a file of a sweep, but section Sweep belongs to {}",
+            throw InputError(fmt::format("{}: \"{}\" is in a file of a sweep, but section Sweep must be in {}",
                                          assignment.place,
                                          assignment.path,
                                          file_.name()));
@@ -226,10 +226,9 @@ namespace crawler
                                word_of(first.model)),
                    "Model"));
     if (has_feedback(first))
-      throw file_.with_place(
-        InputError("Generator is strain feedback, or a sum with it, but Sweep/Cross-check must know "
-                   "the stretch of the ends beforehand; another one is expected",
-                   "Active stress/Generator"));
+      throw file_.with_place(InputError("Generator is strain feedback, or a sum with it, but Sweep/Cross-check must "
+                                        "know the stretch of the ends in advance; another one is expected",
+                                        "Active stress/Generator"));
   }
 
   Form &

@@ -115,18 +115,17 @@ namespace crawler
           "sensitivities.{}.{}", entry.path, number == std::string("displacement") ? "" : std::string(number) + ".");
         const std::string unit = unit_of(number) + " per unit of the entry";
         columns.push_back({key + "value", unit, fmt::format("d({})/d({})", number, entry.path), 0});
-        columns.push_back({key + "error", unit, "its error bound", 0});
+        columns.push_back({key + "error", unit, "bound of the error of this derivative", 0});
       }
     if (are_uncertain(points.sensitivities()))
       for (const auto &[number, of] : differentiated_numbers)
         columns.push_back({std::string("uncertainty.") + number,
                            unit_of(number),
-                           std::string("standard deviation of ") + number + " by that of uncertain entries",
+                           std::string("standard deviation of ") + number + " from that of the uncertain entries",
                            0});
     if (points.sweep().cross_check)
       std::ranges::move(checked_columns(), std::back_inserter(columns));
-    columns.push_back(
-      {"seconds", "s", "wall time of the point; points that were computed side by side share theirs", 0});
+    columns.push_back({"seconds", "s", "wall time of the point; points that were computed side by side share it", 0});
     columns.push_back({"reason", "", "name of what went wrong", reason_width});
     columns.push_back({"message", "", "what went wrong, in a sentence", message_width});
     columns.push_back({"status", "", "finished, inverted, failed or stopped; empty: not computed yet", word_width});

@@ -48,20 +48,20 @@ namespace crawler
         {"status", "", "finished, inverted, failed, stopped, refused, or not offered; empty: not tried yet", 16},
         {"reason", "", "name of what went wrong", 32},
         {"message", "", "what went wrong, or what the level says about its error, in words", 256},
-        {"time limit", "s", "after which the setting was given up"},
-        {"displacement", "length", "of the centre of mass at the end time"},
-        {"error", "1", "distance of the displacement to the reference, over the size of the displacement"},
-        {"shown error", "1", "the same, but no smaller than the reference's bar"},
+        {"time limit", "s", "time after which the setting was abandoned"},
+        {"displacement", "length", "displacement of the centre of mass at the end time"},
+        {"error", "1", "distance of the displacement from the reference, over the size of the displacement"},
+        {"shown error", "1", "error, but no smaller than the bar of the reference"},
         {"below bar", "", "true if the error cannot be told from 0: it is below the reference's bar", 8},
-        {"seconds", "s", "processor time to build the simulation and run it, median; of a body, in a batch"},
+        {"seconds", "s", "processor time to build the simulation and run it, median; in a batch, per body"},
         {"spread", "1", "largest minus smallest measurement over the median"},
-        {"repetitions", "1", "runs that were timed"},
+        {"repetitions", "1", "number of runs that were timed"},
         {"choice seconds", "s", "processor time of the pilot runs of an adaptive mesh, which is not in seconds"},
-        {"memory", "byte", "largest heap in use by the simulation at the ends of steps; of a batch: by all bodies"},
+        {"memory", "byte", "largest heap in use by the simulation at the ends of steps; in a batch, by all bodies"},
         {"steps", "1", "accepted time steps"},
-        {"rejected steps", "1", "time steps that were done again"},
-        {"newton iterations", "1", "of all steps"},
-        {"most cells", "1", "of an adaptive mesh, largest over time"}};
+        {"rejected steps", "1", "time steps that were rejected and repeated"},
+        {"newton iterations", "1", "Newton iterations of all steps"},
+        {"most cells", "1", "largest number of cells of an adaptive mesh over time"}};
       table.columns.insert(table.columns.end(), results.begin(), results.end());
       return table;
     }
@@ -193,8 +193,8 @@ namespace crawler
         log.line(fmt::format(
           "  Checked by {}: it differs by {:.1e}.", check.method, std::abs(check.displacement - displacement) / size));
       if (relative_bar > accuracy)
-        log.warn(fmt::format(
-          "the bar is above Accuracy, {:g}: nothing can be said about settings that are as good as that", accuracy));
+        log.warn(fmt::format("the bar is above Accuracy, {:g}: nothing can be said about settings of that accuracy",
+                             accuracy));
       return ExitCode::finished;
     }
 
@@ -225,7 +225,7 @@ namespace crawler
                                  input.file.name(),
                                  study.settings.size(),
                                  counted(size_of(study.communicator), "rank"),
-                                 n_done > 0 ? fmt::format("; {} are done already", n_done) : ""));
+                                 n_done > 0 ? fmt::format("; {} are already done", n_done) : ""));
       for (const std::string &note : input.notes)
         study.log.line(note);
       if (!text.empty())
@@ -260,7 +260,7 @@ namespace crawler
           throw FileError(python.problem);
         if (python.status != 0)
           study.log.line(fmt::format(
-            "There are no fronts, no recommendations and no picture: {}. Make them later with: crawler plot {}",
+            "No fronts, no recommendations and no picture were made: {}. Make them later with: crawler plot {}",
             python.problem,
             path.string()));
         else
@@ -271,7 +271,7 @@ namespace crawler
       }
       study.log.line(fmt::format("{:.1f} s. Results are in {}/.", end.seconds, path.string()));
       if (end.status == "stopped" && reference.status == "finished")
-        study.log.warn(fmt::format("{} after {} settings; --resume goes on",
+        study.log.warn(fmt::format("{} after {} settings; --resume continues",
                                    study.clock.in_words(end.reason),
                                    end.n_before + n_computed(counts, end)));
     }

@@ -78,7 +78,7 @@ namespace crawler
         SimulationResult given_up;
         given_up.time.status  = Status::failed;
         given_up.time.reason  = "gave_up";
-        given_up.time.message = "the batch engine gave the run up, which then is for a single run";
+        given_up.time.message = "the batch engine gave up; the run needs an engine for single runs";
         return given_up;
       }
     };

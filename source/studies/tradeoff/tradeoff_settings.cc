@@ -151,7 +151,7 @@ namespace crawler
       {{"integrator", "", "time integrator", 24}, "Time/Integrator"},
       {{"degree", "1", "polynomial degree"}, "Discretization/Degree"},
       {{"cells", "1", "cells of a uniform mesh"}, "Discretization/Number of cells"},
-      {{"mesh tolerance", "1", "of an adaptive mesh, relative to the square of the strain"},
+      {{"mesh tolerance", "1", "tolerance of an adaptive mesh, relative to the square of the strain"},
        "Discretization/Mesh tolerance"},
       {{"tolerance", "1", "time tolerance over the size of the displacement; of a level without a mesh: Accuracy"},
        "Time/Tolerance"}};

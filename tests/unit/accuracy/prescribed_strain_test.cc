@@ -261,9 +261,10 @@ TEST(StrainTable, SaysWhatIsWrong)
   EXPECT_EQ(table_complaint(grid(3, wave_of)), "FILE has 3 different values of s, but at least 4 are expected");
   EXPECT_EQ(table_complaint(grid(5, wave_of) + "0.5,0.25,0\n"),
             "row 27 of FILE gives s = 0.5, t = 0.25 a second time, after row 9");
-  EXPECT_EQ(table_complaint(grid(5, wave_of, "0.5,0.25")),
-            "FILE has 24 rows after the header, but 25 are expected, each of 5 values of s with each of 5 values of t; "
-            "the first that is missing is s = 0.5, t = 0.25 (\"crawler table IN OUT\" fills gaps)");
+  EXPECT_EQ(
+    table_complaint(grid(5, wave_of, "0.5,0.25")),
+    "FILE has 24 rows after the header, but 25 are expected, one for each pair of 5 values of s and 5 values of t; "
+    "the first that is missing is s = 0.5, t = 0.25 (\"crawler table IN OUT\" fills gaps)");
   EXPECT_NE(complaint({{"Active stress/Generator", "prescribed strain"},
                        {"Active stress/Prescribed strain/Given by", "table"},
                        {"Active stress/Prescribed strain/File", "/there/is/no/such/file.csv"}})

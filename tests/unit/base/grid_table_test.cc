@@ -175,20 +175,20 @@ TEST(GridTable, SaysWhatIsWrongInCsv)
             "row 2 of FILE is \"x\", " + three + "; 5 more rows are like it: 3, 4, 5, 6, ...");
   EXPECT_EQ(complaint("s,t,m\n0,0,1\n0,1,2\n1,0,3\n1,1,4\n0,1,5\n0,0,6\n"),
             "row 6 of FILE gives s = 0, t = 1 a second time, after row 3; 1 more row is like it: 7");
-  EXPECT_EQ(complaint("s,t,m\n0,0,1\n0,1,2\n1,0,3\n"),
-            "FILE has 3 rows after the header, but 4 are expected, each of 2 values of s with each of 2 values of t; "
-            "the first that is missing is s = 1, t = 1 (\"crawler table IN OUT\" fills gaps)");
+  EXPECT_EQ(
+    complaint("s,t,m\n0,0,1\n0,1,2\n1,0,3\n"),
+    "FILE has 3 rows after the header, but 4 are expected, one for each pair of 2 values of s and 2 values of t; "
+    "the first that is missing is s = 1, t = 1 (\"crawler table IN OUT\" fills gaps)");
   EXPECT_EQ(
     complaint("s,t,m\n0,0,1\n1,1,2\n2,2,3\n"),
-    "FILE has 3 rows after the header, but 9 are expected, each of 3 values of s with each of 3 values of t; "
+    "FILE has 3 rows after the header, but 9 are expected, one for each pair of 3 values of s and 3 values of t; "
     "the first that are missing are s = 1, t = 0; s = 2, t = 0; s = 0, t = 1 (\"crawler table IN OUT\" fills gaps)");
   std::string scattered = "s,t,m\n";
   for (unsigned int i = 0; i < 200; ++i)
     scattered += to_text(i) + "," + to_text(i) + ",0\n";
-  EXPECT_EQ(
-    complaint(scattered),
-    "FILE has 200 rows after the header with 200 different values of s and 200 of t, but a full grid, a row for "
-    "each of them with each, is expected");
+  EXPECT_EQ(complaint(scattered),
+            "FILE has 200 rows after the header with 200 different values of s and 200 of t, but a full grid, a row "
+            "for each pair of these, is expected");
   const std::string nothing = "cannot read FILE, or it is empty; the name of a CSV file with the header s,t,m or of an "
                               "HDF5 file is expected";
   EXPECT_EQ(complaint(""), nothing);
@@ -210,10 +210,9 @@ TEST(GridTable, SaysWhatIsWrongInHdf5)
   EXPECT_EQ(complaint({s, t, m}), "nothing");
   EXPECT_EQ(complaint({s, m}), "FILE has no dataset t" + expected);
   EXPECT_EQ(complaint({s, t, {"m", {6}, m.values}}), "FILE has a dataset m with 1 dimensions" + expected);
-  EXPECT_EQ(
-    complaint({s, t, {"m", {3, 2}, m.values}}),
-    "m[3,2] in FILE does not fit to s[3] and t[2]; m[2,3] is expected: the order of s and t is turned round, as "
-    "MATLAB, R and Fortran store arrays");
+  EXPECT_EQ(complaint({s, t, {"m", {3, 2}, m.values}}),
+            "m[3,2] in FILE does not match s[3] and t[2]; m[2,3] is expected: the order of s and t is reversed, as "
+            "MATLAB, R and Fortran store arrays");
   EXPECT_EQ(complaint({{"s", {3}, {0., 1., 0.5}}, t, m}),
             "s[2] = 0.5 follows s[1] = 1 in FILE, but increasing values are expected");
   EXPECT_EQ(complaint({{"s", {3}, {0., 0., 1.}}, t, m}),
@@ -222,7 +221,7 @@ TEST(GridTable, SaysWhatIsWrongInHdf5)
   EXPECT_EQ(complaint({s, t, {"m", {2, 3}, {1., 2., 3., 4., std::nan(""), 6.}}}),
             "m[1,1] in FILE (s = 0.5, t = 1) is nan, but a finite number is expected");
   test::write_text(file, test::read_text(file).substr(0, 300));
-  EXPECT_EQ(complaint_about(file), "FILE begins as an HDF5 file does, but HDF5 cannot open it");
+  EXPECT_EQ(complaint_about(file), "FILE begins like an HDF5 file, but HDF5 cannot open it");
 }
 
 /// Value, slope and curvature go on over the seam, and where the period begins does not matter.

@@ -150,12 +150,12 @@ namespace
     for (const std::string &text : {whole.substr(0, whole.size() / 2), whole.substr(0, 20)})
     {
       write_file(path, text);
-      expect_bad_input("results", "made by", "cannot be read as HDF5 file");
+      expect_bad_input("results", "made by", "cannot be read as an HDF5 file");
     }
     for (const std::string text : {"", "index,A/x\n0,1\n"})
     {
       write_file(path, text);
-      expect_bad_input("results", "made by", "is no HDF5 file");
+      expect_bad_input("results", "made by", "is not an HDF5 file");
     }
     std::filesystem::remove(path);
   }

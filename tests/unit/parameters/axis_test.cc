@@ -74,7 +74,7 @@ TEST(Axis, WhatIsWrongIsSaid)
 {
   expect_error("linspce(0, 1, 2)", {"\"linspce\"", "the nearest is \"linspace\""});
   expect_error("max(1, x)", {"\"max\"", "\"linspace\" or \"logspace\"", "in double quotes"});
-  expect_error("1, linspace(0, 1, 2)", {"\"linspace(0, 1, 2)\"", "nothing beside it"});
+  expect_error("1, linspace(0, 1, 2)", {"\"linspace(0, 1, 2)\"", "nothing else"});
   expect_error("1, max(1, (x)", {"as many closing as opening parentheses"});
   expect_error("1, \"2", {"a second double quote is expected"});
   expect_error("linspace(0, 1)", {"\"linspace(0, 1)\"", "three numbers"});

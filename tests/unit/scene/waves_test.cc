@@ -400,7 +400,7 @@ TEST(Waves, RefuseWhatMakesNoSense)
                    {"Active stress/Pulse/Repetition period: ", "at a distance of 0.05", "their width, 0.1"});
   expect_complaint(pulse({{"Repetition period", "1"}, {"Speed", "0"}}),
                    {"Active stress/Pulse/Repetition period: ", "at a distance of 0,"});
-  expect_complaint(pulse({{"Speed", "0"}}), {"Active stress/Pulse/Start position: ", "a way that comes to the body"});
+  expect_complaint(pulse({{"Speed", "0"}}), {"Active stress/Pulse/Start position: ", "a path that reaches the body"});
   expect_complaint(pulse({{"Start position", "2"}}), {"Active stress/Pulse/Speed: ", "from 2 to 7"});
   expect_complaint(pulse({{"Width", "1e-5"}}), {"Active stress/Pulse/Width: ", "at least 0.0001"});
   // Refused by the ranges of their entries.

@@ -106,7 +106,7 @@ namespace crawler
   class StandingWave : public KnownStress
   {
   public:
-    static constexpr const char *description = "a wave whose nodes stay in their places";
+    static constexpr const char *description = "a wave whose nodes stay in place";
 
     /// Throws InputError if fronts or window do not fit, or if there are more than 1e8 periods (1e6 of a square wave).
     StandingWave(const StandingWaveParameters &parameters, double length, double end_time);
