@@ -111,7 +111,7 @@ def resumes():
         check(ended.returncode == code and ended.stderr.count("\n") == 1, f"{place}: {ended.returncode}, {ended.stderr}")
         summary = pathlib.Path("part/summary.json")
         left = json.loads(summary.read_text(encoding="utf-8")) if summary.exists() else {"status": None}
-        check(left["status"] == status and ("--resume goes on" in ended.stderr or code == 3), f"{place} leaves {left['status']}: {ended.stderr}")
+        check(left["status"] == status and ("--resume continues" in ended.stderr or code == 3), f"{place} leaves {left['status']}: {ended.stderr}")
         if status and str(n_steps) in place:
             check(len(left["starts"]) == 2 and all(one["value"] is not None and one["deviation"] is None for one in left["variables"].values())
                   and "(so far)" in ended.stdout, f"{place}: {left}")
@@ -120,13 +120,13 @@ def resumes():
             check(ended.returncode == 0 if has_values or command == "report" else ended.returncode == 2 and left["message"] in ended.stderr,
                   f"{command} of a fit that was stopped: {ended.stderr}")
         ended = crawler(*THREE, "--output", "part")
-        check(ended.returncode == 2 and "--resume goes on" in ended.stderr, f"{place}, called again: {ended.stderr}")
+        check(ended.returncode == 2 and "--resume continues" in ended.stderr, f"{place}, called again: {ended.stderr}")
         ended = crawler(*THREE, "--output", "part", "--resume")
         check(ended.returncode == 0 and contents("part") == whole, f"{place} and --resume: {ended.stderr}")
         check(("2 of 3 starts" in ended.stdout) == (str(n_steps) in place), f"{place}: --resume searches again: {ended.stdout}")
     ended = crawler(*THREE, "--output", "shared", "--workers", "2", stop_at="step:1200:KILL")  # in a second start
     check(ended.returncode == 5 and json.loads(pathlib.Path("shared/summary.json").read_text(encoding="utf-8"))["message"] in ended.stderr
-          and "--resume goes on" in ended.stderr, f"a process that is killed: {ended.returncode}, {ended.stderr}")
+          and "--resume continues" in ended.stderr, f"a process that is killed: {ended.returncode}, {ended.stderr}")
     ended = crawler(*THREE, "--output", "shared", "--workers", "2", "--resume")
     check(ended.returncode == 0 and contents("shared") == whole, f"two processes find something else: {ended.stderr}")
     with subprocess.Popen([PROGRAM, *THREE, "--output", "orphan"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
@@ -153,7 +153,7 @@ def resumes():
     shutil.copy("fit_worm.csv", "same.csv")
     check(crawler(*THREE, "--output", "part", "--resume", "--data", "same.csv", "--quiet").returncode == 0, "the same data in another file are refused")
     for arguments, phrase in ((("--set", "Body/Length=3.1"), "Body/Length was 3 and is 3.1"), (("--data", "other.csv"), "other data"),
-                              (("--overwrite",), "contradict"), (("--output", "run"), "no fit that could be resumed")):
+                              (("--overwrite",), "contradict"), (("--output", "run"), "no fit that can be resumed")):
         ended = crawler(*THREE, "--output", "part", "--resume", *arguments)
         check(ended.returncode == 2 and phrase in ended.stderr and ended.stderr.count("\n") == 1, f"--resume {arguments}: {ended.stderr}")
 
@@ -168,10 +168,10 @@ def resumes_a_comparison():
         check(ended.returncode == 2 and all(word in ended.stderr for word in ("finished: three.prm,", "fit_worm.prm", "--resume")) and ended.stderr.count("\n") == 1,
               f"{command} of a comparison that was stopped: {ended.stderr}")
     ended = crawler(*words)
-    check(ended.returncode == 2 and "--resume goes on" in ended.stderr, f"a comparison that was stopped, called again: {ended.stderr}")
+    check(ended.returncode == 2 and "--resume continues" in ended.stderr, f"a comparison that was stopped, called again: {ended.stderr}")
     ended = crawler(*words, "--resume")
     check(ended.returncode == 0 and "1 of 1 starts" in ended.stdout and crawler("plot", "stopped").returncode == 0, f"--resume of a comparison: {ended.stderr}")
-    for option, phrase in ((None, "not empty"), ("--overwrite", "not the folder of a comparison"), ("--resume", "no comparison that could be resumed")):
+    for option, phrase in ((None, "not empty"), ("--overwrite", "not the folder of a comparison"), ("--resume", "no comparison that can be resumed")):
         ended = crawler("fit", "fit_worm.prm", "three.prm", "--output", "other", *filter(None, [option]))
         check(ended.returncode == 2 and phrase in ended.stderr and not pathlib.Path("other/three").exists(), f"a comparison beside a foreign file: {ended.stderr}")
     ended = crawler("fit", "fit_worm.prm", "three.prm", "--output", "new", "--set", "Active stress/Travelling wave/Amplitude=3",

@@ -354,7 +354,7 @@ def test_obstacles(place):
     short = [] if LONG else ["Time/End time=1", "Optimize/Tolerance=1e-2"]
     flat = run("optimize_robot", place / "flat", "Sweep/Axes=Body/Anchoring exponent : 1",
                f"Optimize/Variables={LAG} : 0.1 to 0.2", *short, picture=True)
-    expect(flat.returncode == 3 and "no gait moves the body" in flat.stdout and "There is no picture" not in flat.stdout,
+    expect(flat.returncode == 3 and "no gait moves the body" in flat.stdout and "No picture was drawn" not in flat.stdout,
            f"a = 0: {flat.stdout}{flat.stderr}")
     short = [] if LONG else [SEGMENTS + "Number of segments=2", "Accuracy=1e-2", "Time/End time=2"]
     strong = run("optimize_robot", place / "strong", f"Optimize/Variables={AMPLITUDE} : 0.1 to 0.95",

@@ -86,7 +86,7 @@ REFUSED_BY_SCRIPTS = [
     (["run", "--kind", "sweep"], 2, "results.h5"), (["sweep", "--kind", "kymograph"], 2, "kymograph.vts"),
     (["run", "--from", "soon"], 2, "soon"), (["run", "--from", "2", "--to", "1"], 2, "from 2 to 1"),
     (["run", "--to", "4"], 2, "from 0 to 4"), (["run", "--from", "1", "--to", "1.001"], 2, "has 1 times"),
-    (["run", "--last-stride", "--to", "1"], 2, "one of the two ways"), (["no_stride", "--last-stride"], 2, "has no stride"),
+    (["run", "--last-stride", "--to", "1"], 2, "only one of the two"), (["no_stride", "--last-stride"], 2, "has no stride"),
     (["run", "--output", "picture.doc"], 2, ".png, .svg or .pdf"),
     (["optimum", "--optimum", "2"], 2, "the number of a case is expected: 1"), (["calibration.csv", "--value", "x"], 2, "--value")]
 checks = Checks()

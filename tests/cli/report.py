@@ -189,7 +189,7 @@ def test_refused(program):
     shutil.copytree(folder / "run", folder / "full")
     (folder / "full/report.html").unlink()
     (folder / "full/report.html/x").mkdir(parents=True)
-    for name, code, words in (("nothing", 2, "is not there"), ("run.prm", 2, "is a file"), ("empty", 2, "has no results"),
+    for name, code, words in (("nothing", 2, "does not exist"), ("run.prm", 2, "is a file"), ("empty", 2, "has no results"),
                               ("no_json", 2, "summary.json\" is damaged"), ("no_picture", 2, "kymograph.vts\" is damaged"),
                               ("no_table", 2, "results.h5\""), ("full", 6, "cannot write \"full/report.html\"")):
         result = program("report", name)

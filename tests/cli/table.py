@@ -58,7 +58,7 @@ end
 REFUSED = [
     ([], 2, "IN, OUT missing"), (["larva_raw.csv", "out.csv", "--gap", "few"], 2, '"--gap" is "few", but a whole number is expected'),
     (["larva_raw.csv", "out.csv", "--noise", "low"], 2, '"--noise" is "low", but a number is expected'),
-    (["larva_raw.csv", "out.csv", "--gap"], 2, 'a value is expected behind "--gap"'), (["larva_raw.csv"], 2, "OUT"), (["a.csv", "b.csv", "c.csv"], 2, "c.csv"),
+    (["larva_raw.csv", "out.csv", "--gap"], 2, 'a value is expected after "--gap"'), (["larva_raw.csv"], 2, "OUT"), (["a.csv", "b.csv", "c.csv"], 2, "c.csv"),
     (["nowhere.csv", "out.csv"], 6, "nowhere.csv"), (["larva_raw.csv", "larva.csv"], 2, "--overwrite"),
     (["larva_raw.csv", "larva_raw.csv"], 2, "another name"), (["larva_raw.csv", "out.txt"], 2, ".csv"),
     (["larva_raw.csv", "no/out.csv"], 6, "no/out"), (["larva_raw.csv", "out.csv", "--smoth-t", "1"], 2, "--smooth-t"),

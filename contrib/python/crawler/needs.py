@@ -100,7 +100,7 @@ def write_whole(path, content):
 SLIPS = ((r"^argument (\S+): invalid float value: '(.*)'$", r'"\1" is "\2", but a number is expected'),
          (r"^argument (\S+): invalid int value: '(.*)'$", r'"\1" is "\2", but a whole number is expected'),
          (r"^argument (\S+): invalid choice: '(.*)' \(choose from (.*)\)$", r'"\1" is "\2", but one of \3 is expected'),
-         (r"^argument (\S+): expected one argument$", r'a value is expected behind "\1"'),
+         (r"^argument (\S+): expected one argument$", r'a value is expected after "\1"'),
          (r"^the following arguments are required: (.*)$", r"\1 missing"),
          (r"^unrecognized arguments: (.*)$", r'found "\1", but nothing more is expected'))
 
@@ -115,7 +115,7 @@ class Parser(argparse.ArgumentParser):
             message = f'unknown option "{word}"; the nearest is "{near[0]}"'
         for pattern, sentence in SLIPS:
             message = re.sub(pattern, sentence, message)
-        complain(f"{message} (--help tells the arguments)")
+        complain(f"{message} (--help lists the arguments)")
         self.exit(InputError.code)
 
 

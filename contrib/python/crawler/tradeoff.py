@@ -124,7 +124,7 @@ def evaluate(rows):
               f"Pareto fronts; gaps: {', '.join(f'{reason} {n}' for reason, n in sorted(gaps.items())) or 'none'}.",
               *lines(rows, found[0], "For {} use "), *lines(rows, found[1], "Many bodies, for {}: ")]
     if not found[0]:
-        advice.append("No single run has a displacement that is good for 1e-2: there is nothing to recommend.")
+        advice.append("No single run has a displacement that is accurate to 1e-2: there is nothing to recommend.")
     return {"pareto": sorted(fronts), "recommendations": items(rows, found[0]), "batch_recommendations": items(rows, found[1]),
             "advice": advice}
 
@@ -146,7 +146,7 @@ def read_rows(folder):
         raise InputError(f'cannot read "{path}" ({getattr(error, "strerror", None) or error}); the output folder of crawler '
                          "tradeoff is expected") from None
     if not rows or "entries" not in rows[0]:
-        raise InputError(f'"{path}" has no column "entries": it is of another version of crawler, or not whole; the output folder of '
+        raise InputError(f'"{path}" has no column "entries": it is from another version of crawler, or incomplete; the output folder of '
                          "crawler tradeoff is expected")
     return rows
 

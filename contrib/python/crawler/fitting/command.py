@@ -25,14 +25,14 @@ def command_line():
     """Parses the options."""
     parser = Parser(prog="crawler fit", description=DESCRIPTION, allow_abbrev=False)
     parser.add_argument("files", metavar="FILE", nargs="+", help="parameter file with a section Fit")
-    parser.add_argument("--data", action="append", metavar="FILE", help="what was measured (repeatable, of data of several kinds; default: Fit/Data)")
+    parser.add_argument("--data", action="append", metavar="FILE", help="measured data (repeatable, for data of several kinds; default: Fit/Data)")
     parser.add_argument("--set", action="append", default=[], metavar="ENTRY=VALUE", help="sets an entry (repeatable)")
     parser.add_argument("--output", metavar="DIR", help="output folder (default: output-NAME for NAME.prm; of several "
                         "files output-comparison, with a folder NAME for each)")
-    parser.add_argument("--resume", action="store_true", help="goes on with a fit that was stopped or killed; begins it if there is nothing yet")
+    parser.add_argument("--resume", action="store_true", help="resumes a fit that was stopped or killed; starts it if there is nothing yet")
     parser.add_argument("--overwrite", action="store_true", help="replaces the results in the output folder")
-    parser.add_argument("--workers", metavar="N", type=int, default=1, help="so many processes share the starts (Fit/Starts)")
-    parser.add_argument("--quiet", action="store_true", help="prints nothing but errors")
+    parser.add_argument("--workers", metavar="N", type=int, default=1, help="number of processes that share the starts (Fit/Starts)")
+    parser.add_argument("--quiet", action="store_true", help="prints only errors")
     add_reading_options(parser)
     return parser
 
@@ -56,7 +56,7 @@ def lines_of(found):
         return
     fits = (f"chi-square {goodness.chi_square:.5g} with {goodness.degrees_of_freedom} degrees of freedom (probability {goodness.probability:.2g})"
             if goodness.deviation_is_given else f"standard deviation of a datum {goodness.series[0]['deviation']:.3g}, from the residuals")
-    yield f"data: {goodness.n_data}, variables: {len(found.variables)}, besides for origin and places: {goodness.n_constants}; {fits}"
+    yield f"data: {goodness.n_data}, variables: {len(found.variables)}, further unknowns for origin and places: {goodness.n_constants}; {fits}"
     for one in goodness.series if len(goodness.series) > 1 else ():
         yield f"of {one['kind']}: {one['n_data']} data, chi-square {one['chi_square']:.5g}"
     is_open = len(found.starts) == 1 and (goodness.probability or 0) < GOOD
@@ -92,7 +92,7 @@ def found_and_written(name, folder, model, options, say):
     except (Interrupted, Stopped) as stop:
         so_far = getattr(stop, "so_far", None)
         if so_far is None:
-            message = f"{str(stop) or 'stopped by a signal before there were values'}; --resume goes on"
+            message = f"{str(stop) or 'stopped by a signal before there were values'}; --resume continues"
             folder.write_summary({"status": "stopped", "reason": "signal", "message": message, **origin_of(model, options, start)})
             raise Stopped(message) from None
         write(so_far)
@@ -129,13 +129,13 @@ def require_sense(options):
         raise InputError(f'"--workers" is {options.workers}, but a number of processes from 1 is expected')
     ranks = max(int(os.environ.get(name, "1")) for name in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"))
     if ranks > 1:
-        raise InputError(f'{ranks} processes of mpirun or srun were started, but a fit begins its own; "crawler fit --workers {ranks}" is expected')
+        raise InputError(f'{ranks} processes of mpirun or srun were started, but a fit starts its own; "crawler fit --workers {ranks}" is expected')
     stems = {}
     for name in options.files:
         if (other := stems.setdefault(pathlib.Path(name).stem, name)) is not name:
-            raise InputError(f'"{other}" and "{name}" have the same name, but names of their own are expected, as their folders have them')
+            raise InputError(f'"{other}" and "{name}" have the same name, but different names are expected, as their folders are named after them')
         if pathlib.Path(name).suffix in (".csv", ".h5", ".hdf5", ".txt"):
-            raise InputError(f'"{name}" stands where parameter files are expected; "--data" is expected before each file of data')
+            raise InputError(f'"{name}" is where parameter files are expected; "--data" is expected before each file of data')
     for setting in options.set:
         if "=" not in setting:
             raise InputError(f'"--set" is "{setting}", but "Section/Entry=value" is expected')

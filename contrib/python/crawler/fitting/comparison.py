@@ -38,7 +38,7 @@ class Comparison:
         """Records in words which scenes are finished, for readers of a comparison that was interrupted."""
         there = f"finished: {', '.join(finished)}, each in a folder of its own" if finished else "none of them is finished"
         write_whole(self.path / SUMMARY, bytes_of({"status": "stopped", "reason": "signal", "comparison": [], "message":
-                                                   f"the comparison of {', '.join(self.files)} has not ended ({there}); --resume goes on"}))
+                                                   f"the comparison of {', '.join(self.files)} has not ended ({there}); --resume continues"}))
 
     def leave(self):
         """Removes the folder if no scene has left anything in it."""
@@ -78,7 +78,7 @@ def require_comparable(models):
         if not len(series) == len(one.data.series) == len(other.data.series) or any(
                 not np.array_equal(getattr(here, key), getattr(there, key), equal_nan=key != "deviation")
                 for here, there in series for key in ("t", "values", "relative", "deviation")):
-            raise InputError(f'"{first}" and "{name}" do not fit the same data, which are expected of scenes that are compared (--data names those of all)')
+            raise InputError(f'"{first}" and "{name}" are not fitted to the same data, which is expected of scenes that are compared (--data gives them for all)')
 
 
 def _text(value):

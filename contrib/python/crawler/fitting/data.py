@@ -239,8 +239,8 @@ def _require_sound(samples, name):
         raise InputError(f"{name} have values of the shape {values.shape}, but {(np.size(t), len(samples.s))}, [time, place], is expected")
     falls = np.flatnonzero(~(np.diff(t) > 0))
     if not np.all(np.isfinite(t)) or len(falls):
-        where = f"{t[falls[0] + 1]:g} behind {t[falls[0]]:g}" if len(falls) else f"{t[~np.isfinite(t)][0]:g}"
-        raise InputError(f"{name} have the time {where}, but times that ascend are expected")
+        where = f"{t[falls[0] + 1]:g} after {t[falls[0]]:g}" if len(falls) else f"{t[~np.isfinite(t)][0]:g}"
+        raise InputError(f"{name} have the time {where}, but increasing times are expected")
     if np.any(np.isinf(values)):
         j, i = np.argwhere(np.isinf(values))[0]
         place = f"marker {samples.names[i] if samples.names else i + 1}, " if samples.quantity == "x" else f"s = {samples.s[i]:g}, " if values.shape[1] > 1 else ""
@@ -253,8 +253,8 @@ def _places_of_markers(samples, parameters, length, name):
     if wanted == "first":
         whole = ~np.isnan(x[0])
         if not np.all(whole):
-            raise InputError(f'marker {samples.names[int(np.argmin(whole))] if samples.names else int(np.argmin(whole)) + 1} of {name} is not '
-                             "there in the first frame, but Fit/Markers at = first needs all; a list of places is expected")
+            raise InputError(f'marker {samples.names[int(np.argmin(whole))] if samples.names else int(np.argmin(whole)) + 1} of {name} is '
+                             "missing in the first frame, but Fit/Markers at = first needs all; a list of places is expected")
         span = x[0, -1] - x[0, 0]
         if abs(span / length - 1) > CLOSE:
             raise InputError(f"the outermost markers of {name} are {span:g} apart in the first frame, but Fit/Markers at = first expects them "
@@ -269,5 +269,5 @@ def _places_of_markers(samples, parameters, length, name):
     if len(places) != x.shape[1]:
         raise InputError(f'"Fit/Markers at" has {len(places)} places, but {name} has {x.shape[1]} markers')
     if any(not math.isfinite(one) or not 0 <= one <= length for one in places) or any(np.diff(places) <= 0):
-        raise InputError(f'"Fit/Markers at" is "{wanted}", but growing places from 0 to Body/Length = {length:g} are expected')
+        raise InputError(f'"Fit/Markers at" is "{wanted}", but increasing places from 0 to Body/Length = {length:g} are expected')
     return np.array(places), 0.0 if free == "automatic" else float(free)

@@ -85,7 +85,7 @@ class Problem:
         columns = self.model.jacobian(self.real(z), None if both_sides else values) * self.width
         if not np.all(np.isfinite(columns)):
             values = ", ".join(f"{name} = {value:.6g}" for name, value in zip(self.model.names, self.real(z)))
-            raise Failed(f"beside {values} there is no run: {self.model.problem}; narrower ranges are expected")
+            raise Failed(f"near {values} there is no run: {self.model.problem}; narrower ranges are expected")
         return np.stack([self.scaled(one, basis) for one in np.moveaxis(columns, -1, 0)], axis=-1)
 
     def search(self, z):
@@ -153,7 +153,7 @@ def find(model, progress=lambda text: None, kept=None, workers=1):
             if best.worst <= SHARE or refinement == MOST_REFINEMENTS or model.accuracy <= LEAST_ACCURACY:
                 break
             model.accuracy = max(model.accuracy * min(0.3, 0.3 * SHARE / best.worst), LEAST_ACCURACY)
-            progress(f"accuracy {model.accuracy:.1g}, so that the numerical error is small beside the statistical one")
+            progress(f"accuracy {model.accuracy:.1g}, so that the numerical error is small compared with the statistical one")
             problem.last = None
             _, z, ended = problem.search(z)
         return described(problem, best, table_of_starts(problem, kept))

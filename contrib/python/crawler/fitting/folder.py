@@ -31,13 +31,13 @@ def require_usable(path, kind, marks, resume, overwrite):
     names = {file.name for file in path.iterdir()} - {LOCK} if path.exists() else set()
     is_own = marks[0] in names or names <= {*marks[1:], *(f"{name}.part" for name in marks)}
     if resume and not is_own:
-        raise InputError(f'"{path}" has no {kind} that could be resumed; another folder is expected for --output, or --overwrite')
+        raise InputError(f'"{path}" has no {kind} that can be resumed; another folder is expected for --output, or --overwrite')
     if overwrite and not is_own:
         raise InputError(f'"{path}" is not the folder of a {kind}, so "--overwrite" replaces nothing in it; another folder is expected')
     if names and not resume and not overwrite:
         if is_own and not is_finished(path):
-            raise InputError(f'the output folder "{path}" has a {kind} that was broken off; the same command with --resume goes on with it (--overwrite begins '
-                             "anew, --output gives another folder)")
+            raise InputError(f'the output folder "{path}" has a {kind} that was interrupted; the same command with --resume continues it '
+                             "(--overwrite starts over, --output gives another folder)")
         raise InputError(f'the output folder "{path}" is not empty; give another one with --output, or --overwrite to replace the '
                          "results in it")
 
@@ -97,16 +97,16 @@ class Folder:
             files = kept["files"]
             other_data = kept["data"] != inputs["data"]
         except (OSError, LookupError, TypeError, ValueError):
-            raise InputError(f'the fit in "{self.path}" is damaged: {INPUTS} or parameters.prm cannot be read; --overwrite begins anew') from None
+            raise InputError(f'the fit in "{self.path}" is damaged: {INPUTS} or parameters.prm cannot be read; --overwrite starts over') from None
         before = parameters_of(effective)
         changes = [f"{entry} was {_text(before.get(entry))} and is {_text(model.parameters.get(entry))}" for entry in sorted({*before, *model.parameters})
                    if before.get(entry) != model.parameters.get(entry) and entry not in FREE]
         changes += [f'the file "{file}" has changed' for file in sorted({*files, *inputs["files"]}) if files.get(file) != inputs["files"].get(file)]
         if changes:
-            raise InputError(f'the fit in "{self.path}" was made with other parameters: {", ".join(changes)}; it can be resumed with the same '
-                             "ones only (but for Fit/Starts)")
+            raise InputError(f'the fit in "{self.path}" was made with other parameters: {", ".join(changes)}; it can only be resumed '
+                             "with the same ones (except for Fit/Starts)")
         if other_data:
-            raise InputError(f'the fit in "{self.path}" was made with other data; it can be resumed with the same ones only')
+            raise InputError(f'the fit in "{self.path}" was made with other data; it can only be resumed with the same ones')
         write_whole(self.path / "parameters.prm", model.effective.encode())
 
     def clear(self):
@@ -132,7 +132,7 @@ class Folder:
         """Writes the files of a fit. settings: ["Body/Length=2", ...], of the parameter file name."""
         again = " ".join(["crawler fit fitted.prm", *words_of(found["measured"]["reading"])])
         entries = {**dict(one.split("=", 1) for one in settings), **found.settings, "Fit/Data": "; ".join(found["measured"]["files"])}
-        text = f"# The scene with the values that a fit found; the fit again: {again}\ninclude {os.path.abspath(name)}\n{to_prm(entries)}"
+        text = f"# The scene with the values that a fit found; to repeat the fit: {again}\ninclude {os.path.abspath(name)}\n{to_prm(entries)}"
         write_whole(self.path / "fitted.prm", text.encode())
         rows = ["kind,t,place,data,model,residual"]
         for one, model, residuals in zip(found.data.series, *(of if isinstance(of, list) else [of] for of in (found.model, found.residuals))):
@@ -150,7 +150,7 @@ class Folder:
 def drawn(path):
     """Draws the picture of a folder; returns an error message if there is none."""
     ended = subprocess.run([sys.executable, PICTURE, path], capture_output=True, text=True, check=False)
-    return "" if ended.returncode == 0 else f"There is no picture: {ended.stderr.strip()}. Draw it later with: crawler plot {path}"
+    return "" if ended.returncode == 0 else f"No picture was drawn: {ended.stderr.strip()}. Draw it later with: crawler plot {path}"
 
 
 class Starts(dict):
@@ -211,8 +211,7 @@ def _locked(path):
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             os.close(lock)
-            raise InputError(f'another study writes to "{path.parent}"; another folder is expected for --output, or that the other one has '
-                             "ended") from None
+            raise InputError(f'another study is writing to "{path.parent}"; wait for it to end, or give another folder with --output') from None
         except OSError:
             return lock  # a file system without locks
         if path.exists() and os.path.samestat(os.fstat(lock), os.stat(path)):

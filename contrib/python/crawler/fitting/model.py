@@ -41,7 +41,7 @@ class Model:
     def _require_seen(self):
         """Raises InputError for variables that do not affect the data, or with which a body ends before its data do."""
         if "Time/End time" in self.names:
-            raise InputError('"Fit/Variables" has "Time/End time", but the data do not depend on it: all of them are measured before; another '
+            raise InputError('"Fit/Variables" has "Time/End time", but the data do not depend on it: all of them were measured earlier; another '
                              "variable is expected")
         for one in self.data.series if LENGTH in self.names else ():
             j, last, is_marker = self.names.index(LENGTH), float(one.places[-1]) if len(one.places) else 0.0, one.kind == "markers"

@@ -41,7 +41,7 @@ def value_in_words(one):
     if one["determined"] is None:
         return f"{one['value']:.6g} (so far)"
     if not one["determined"]:
-        return "not told by the data"
+        return "not determined by the data"
     numerical = "?" if one["numerical_error"] is None else f"{one['numerical_error']:.1g}"
     return f"{one['value']:.6g} +- {one['deviation']:.2g} +- {numerical} (numerical)"
 
@@ -85,8 +85,8 @@ def unfinished(problem, starts, is_stopped):
                  for name, value, low, high in zip(model.names, values, model.low, model.high)}
     goodness = {"n_data": data.n, "n_variables": len(z), "n_constants": data.n_constants,
                 "series": [{"kind": one.kind, "n_data": int(one.is_there.sum())} for one in data.series]}
-    message = (f"stopped by a signal after {len(starts)} of {int(model.parameters['Fit/Starts'])} starts; --resume goes on" if is_stopped else
-               f"the search did not end within {MOST_STEPS} steps: the values are those so far, and not the best ones; a start that is nearer, "
+    message = (f"stopped by a signal after {len(starts)} of {int(model.parameters['Fit/Starts'])} starts; --resume continues" if is_stopped else
+               f"the search did not end within {MOST_STEPS} steps: the values are those so far, and not the best ones; a nearer start, "
                "narrower ranges or fewer variables are expected")
     found = {"status": "stopped" if is_stopped else "failed", "reason": "signal" if is_stopped else "no_convergence", "message": message,
              "variables": variables, "undetermined": [], "notes": [*data.notes, *([] if is_stopped else [message])],
@@ -119,7 +119,7 @@ def _untold(problem, best, variables, values):
         yield in_words(direction, members, problem.model.names, values, problem.width)
     for (name, one), is_involved in zip(variables.items(), best.involved):
         if not one["determined"] and not is_involved:
-            yield f"the data do not tell {name}: its interval of 95 % reaches both limits of its range"
+            yield f"the data do not determine {name}: its interval of 95 % reaches both limits of its range"
 
 
 def _variables(problem, best, values):
@@ -200,13 +200,13 @@ def _notes(best, variables, goodness, data, parameters):
         if one["at_limit"] and one["determined"]:
             yield f"{name} is at the limit of its range, {one[one['at_limit']]:g}: the best value may lie beyond it"
         if abs(one["bias"] or 0) > BIASED * (one["deviation"] or math.inf):
-            yield (f"of many such data the mean of {name} would be about {abs(one['bias']):.2g} too {'large' if one['bias'] > 0 else 'small'}, as the run "
+            yield (f"over many such data sets the mean of {name} would be about {abs(one['bias']):.2g} too {'large' if one['bias'] > 0 else 'small'}, as the run "
                    "is not linear in it; the interval allows for that")
     for one in goodness["series"]:
         if one["correlation_in_time"] > ALIKE / math.sqrt(one["n_data"]):
             of = f" of the {one['kind']}" if len(goodness["series"]) > 1 else ""
-            yield (f"residuals{of} that are neighbours in time are alike (correlation {one['correlation_in_time']:.2g}): the scene does not describe "
-                   "all that the data have, or their errors are not independent, and the deviations are too small")
+            yield (f"residuals{of} that are neighbours in time are similar (correlation {one['correlation_in_time']:.2g}): the scene does not "
+                   "describe everything in the data, or their errors are not independent, and the deviations are too small")
     if not best.worst <= SHARE:
         yield ("the numerical error is not known" if math.isnan(best.worst) else
                f"the numerical error is up to {best.worst:.2g} of the statistical one")

@@ -27,7 +27,7 @@ def best_of_starts(problem, kept, workers, progress):
     for one in wanted_of(problem, kept):
         _see(problem, one)
     if len(missing) < len(points):
-        progress(f"{len(points) - len(missing)} of {len(points)} starts are there already")
+        progress(f"{len(points) - len(missing)} of {len(points)} starts are already done")
     searched = _searched_by_others if min(workers, len(missing)) > 1 else _searched_here
     for found in searched(problem, missing, min(workers, len(missing))):
         kept[found["start"]] = found
@@ -104,7 +104,7 @@ def _searched_by_others(problem, missing, workers):
             for future in concurrent.futures.as_completed(futures):
                 yield future.result()
         except concurrent.futures.process.BrokenProcessPool:
-            raise Stopped("a process of the fit was killed, perhaps for want of memory") from None
+            raise Stopped("a process of the fit was killed, perhaps for lack of memory") from None
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             for worker in multiprocessing.active_children():

@@ -60,7 +60,7 @@ def in_words(direction, members, names, values, widths):
     change = direction * widths
     parts = [(name, dx, value) for name, dx, value, is_part in zip(names, change, values, members) if is_part]
     if len(parts) == 1:
-        return f"the data do not tell {parts[0][0]}: they fit as well with any value of its range"
+        return f"the data do not determine {parts[0][0]}: they fit as well with any value in its range"
     relative = [dx / value if value else math.inf for _, dx, value in parts]
     if np.all(np.isfinite(relative)) and max(map(abs, relative)) < 1e3 * min(map(abs, relative)):
         first = relative[0]
@@ -69,7 +69,7 @@ def in_words(direction, members, names, values, widths):
         first = parts[0][1]
         changes = [f"{name} by {dx / first:+.3g}" for name, dx, _ in parts]
     if all(abs(ratio / relative[0] - 1) < 0.02 for ratio in relative):
-        return f"the data tell {_and([name for name, _, _ in parts])} only up to a common factor: their ratios, but not their sizes"
+        return f"the data determine {_and([name for name, _, _ in parts])} only up to a common factor: their ratios, but not their sizes"
     return f"the data do not tell {_and([name for name, _, _ in parts])} apart: changed together ({', '.join(changes)}) they fit as well"
 
 

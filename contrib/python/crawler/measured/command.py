@@ -20,7 +20,7 @@ from .preparation import prepare
 from .samples import read_samples
 from .settings import Settings
 
-DESCRIPTION = """Turns measured samples or tracks of markers into a table that a scene reads. IN: s, t, m; or t, marker, x; or t
+DESCRIPTION = """Turns measured samples or tracks of markers into a table that a scene can read. IN: s, t, m; or t, marker, x; or t
 and a column for each place or marker; or a file of DeepLabCut, SLEAP, TrackMate, Tierpsy, Tracker, FIMTrack, ImageJ or the
 Multi-Worm Tracker (doc/measured_data.md)."""
 
@@ -35,7 +35,7 @@ def command_line():
             ("gap", WHOLE, "largest number of samples in a row that are filled in (default: 3)"),
             ("smooth-t", NUMBER, "width of the smoothing in t: waves of this length are halved (default: 0)"),
             ("smooth-s", NUMBER, "the same in s"),
-            ("period", TEXT, "find, whole or a number: makes one cycle of all, that closes"),
+            ("period", TEXT, "find, whole or a number: makes a single closed cycle of all"),
             ("cycles", WHOLE, "how often the cycle is written (default: 1)"),
             ("points-s", WHOLE, "equally spaced places of the table (default: those of the samples; markers: 33)"),
             ("points-t", WHOLE, "equally spaced times of the table (default: those of the samples)"),
@@ -45,12 +45,12 @@ def command_line():
             ("ends", TEXT, "strain beyond the outermost markers: hold (default) or linear"),
             ("noise", NUMBER, "standard deviation of a sample, in units of the table (default: estimated)"),
             ("scene", TEXT, "parameter file that uses the table: how uncertain the noise makes its displacement"),
-            ("copies", WHOLE, "noisy copies from which that is found (default: 64)"),
-            ("seed", WHOLE, "of their random numbers (default: 1)")))
+            ("copies", WHOLE, "number of noisy copies from which that is found (default: 64)"),
+            ("seed", WHOLE, "seed of their random numbers (default: 1)")))
     parser.add_argument("--set", action="append", default=[], metavar="TEXT",
                         help='sets an entry of the scene: "Section/Entry=value" (repeatable)')
     parser.add_argument("--overwrite", action="store_true", help="replaces OUT")
-    parser.add_argument("--quiet", action="store_true", help="prints nothing but errors")
+    parser.add_argument("--quiet", action="store_true", help="prints only errors")
     return parser
 
 

@@ -171,7 +171,7 @@ def read_hdf5(path, animal):
                 if {"s", "t", name} <= set(file):
                     s, t, values = (np.asarray(file[key], dtype=float) for key in ("s", "t", name))
                     if values.shape != (len(t), len(s)):
-                        turned = " (the order is turned round)" if values.shape == (len(s), len(t)) else ""
+                        turned = " (the order is reversed)" if values.shape == (len(s), len(t)) else ""
                         raise InputError(f'"{name}" of "{path}" has {" x ".join(map(str, values.shape))} numbers, but {len(t)} times x '
                                          f'{len(s)} places are expected{turned}')
                     return s, t, values, name

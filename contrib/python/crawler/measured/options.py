@@ -7,12 +7,12 @@ READING = (("quantity", TEXT, "m, strain, stretch or markers (default: by the na
            ("columns", TEXT, 'other names of columns: "t=Frame time, x=X"'),
            ("animal", TEXT, "which one of several is read"),
            ("head", TEXT, "the marker at the head (default: that with the largest x)"),
-           ("decimal", TEXT, "comma or point: what stands before decimals, where a comma may also group thousands"),
-           ("confidence", NUMBER, "markers that are less certain are gaps (default: 0)"),
-           ("unit-of-s", TEXT, "factor of s and x, or the unit they are turned into: mm"),
+           ("decimal", TEXT, "comma or point: the decimal separator, where a comma may also group thousands"),
+           ("confidence", NUMBER, "markers with less confidence are gaps (default: 0)"),
+           ("unit-of-s", TEXT, "factor of s and x, or the unit they are converted into: mm"),
            ("unit-of-t", TEXT, "the same for t; 1/30: frames of a film of 30 a second"),
            ("unit-of-m", TEXT, "the same for m (may be negative) or strain"),
-           ("shift-s", TEXT, 'is added to s; "first": the first s becomes 0'),
+           ("shift-s", TEXT, 'number that is added to s; "first": the first s becomes 0'),
            ("shift-t", TEXT, "the same for t"))
 
 

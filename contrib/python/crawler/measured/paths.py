@@ -20,11 +20,11 @@ def path_in(sheet):
     kind, column = found[0]
     time = next((i for i, one in enumerate(names) if one in TIMES), None)
     if time is None:
-        raise InputError(f'"{sheet.name}" has the columns {", ".join(sheet.names)}, but t is expected beside {sheet.names[column]}')
+        raise InputError(f'"{sheet.name}" has the columns {", ".join(sheet.names)}, but t is expected in addition to {sheet.names[column]}')
     t = sheet.times(time)
     if np.any(np.isnan(t)) or np.any(np.diff(t) <= 0):
         k = int(np.argmax(np.isnan(t))) if np.any(np.isnan(t)) else int(np.argmax(np.diff(t) <= 0)) + 1
-        raise InputError(f'"{sheet.name}" has times that are missing or do not grow (row {sheet.lines[k]}), but growing times are expected')
+        raise InputError(f'"{sheet.name}" has times that are missing or do not increase (row {sheet.lines[k]}), but increasing times are expected')
     deviation = next((sheet.column(i)[:, None] for i, one in enumerate(names) if one in DEVIATIONS), None)
     return kind, t, sheet.column(column)[:, None], deviation, sheet.units[column], sheet.units[time]
 

@@ -146,7 +146,7 @@ def strain_of_tracks(tracks, settings, words):
                  f"{length:g}")
     if s[0] > 0 or s[-1] < length * (1 - 1e-9):
         words.append(f"beyond the outermost markers, over {s[0]:g} at the tail and {max(0, length - s[-1]):g} at the head, the strain "
-                     f"{'is held' if settings.ends == 'hold' else 'goes on linearly'}")
+                     f"{'is held' if settings.ends == 'hold' else 'continues linearly'}")
     return Samples("strain", places, tracks.t, strain)
 
 
@@ -267,7 +267,7 @@ def _without_ragged_ends(tracks, most, words):
         end -= 1
     n = len(tracks.t) - (end - begin)
     if n:
-        words.append(f"{n} frame{'s' if n > 1 else ''} at the begin or end left out, in which markers are missing")
+        words.append(f"{n} frame{'s' if n > 1 else ''} at the beginning or end left out, in which markers are missing")
     return dataclasses.replace(tracks, t=tracks.t[begin:end], values=tracks.values[begin:end])
 
 
@@ -378,7 +378,7 @@ def _require_agreement(samples, rest, counts, period, noise, words):
     spread, largest = np.nanstd(samples.values), np.nanmax(np.abs(samples.values))
     duration = samples.t[-1] - samples.t[0]
     if duration < LEAST_CYCLES * period and scatter > max(MUCH_OF_NOISE * noise, 1e-9 * largest):
-        raise InputError(f"{samples.quantity} at the begin and the end of the period {period:g} differs by {scatter:.3g} (as a standard "
+        raise InputError(f"{samples.quantity} at the beginning and the end of the period {period:g} differs by {scatter:.3g} (as a standard "
                          f"deviation), which is more than {MUCH_OF_NOISE} times the noise of {noise:.3g}; another \"--period\", or a "
                          'larger "--noise", is expected')
     if duration >= LEAST_CYCLES * period and scatter > 0.7 * spread:

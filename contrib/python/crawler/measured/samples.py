@@ -85,7 +85,7 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
     else:
         s, t, values, column = found
         if head or confidence:
-            raise InputError('"--head" and "--confidence" are for markers, which this file has not')
+            raise InputError('"--head" and "--confidence" are for markers, which this file does not have')
         samples = Samples("m" if column == "m" else "strain", s, t, values)
         _require_increasing(samples, str(path))
     samples.notes = notes
@@ -107,7 +107,7 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
     if factor_s < 0 or factor_t < 0:
         raise InputError("a unit is negative, but only that of m may be")
     if isinstance(found, Tracks) and found.counts_frames and not unit_of_t:
-        words.append('t counts frames; "--unit-of-t 1/30" turns those of a film of 30 frames a second into seconds')
+        words.append('t counts frames; "--unit-of-t 1/30" converts those of a film of 30 frames a second into seconds')
     return samples
 
 
@@ -144,7 +144,7 @@ def _factor_of_values(column, unit, wanted, name):
     base, size = unit_of(unit or "1") or ("", 0)
     if base != "1" or wanted not in ("", "1", "-"):
         raise InputError(f'the {column} of "{name}" is wanted in "{wanted or unit}", but its unit is 1; "--unit-of-m" with a number '
-                         "turns it")
+                         "converts it")
     return size
 
 
@@ -322,8 +322,8 @@ def note_fallen_times(t, falls, notes, lines=None):
     k = int(np.argmax(t_before - t_here))
     n = len(set(t_here))
     where = "" if lines is None or len(set(lines[:-1][falls]) & set(lines[1:][falls])) else f" in row {lines[1:][falls][k]}"
-    note = (f"times do not ascend in the file: t = {t_here[k]:g}{where} stands behind {t_before[k]:g}"
-            f"{f', and {n - 1} more times so' if n > 1 else ''}; they are put in order")
+    note = (f"times do not increase in the file: t = {t_here[k]:g}{where} comes after {t_before[k]:g}"
+            f"{f', and {n - 1} more like it' if n > 1 else ''}; they are sorted")
     if note not in notes:
         notes.append(note)
 
@@ -443,7 +443,7 @@ def _from_tail_to_head(x, names, head, words, notes):
     order = np.argsort(np.nanmean(x[together] if together.any() else x, axis=0), kind="stable")
     if not np.array_equal(order, np.arange(len(names))):
         turned = np.array_equal(order[::-1], np.arange(len(names)))
-        notes.append("the last marker lies at the smallest x, so it is the first from the tail: the order is turned round" if turned
+        notes.append("the last marker lies at the smallest x, so it is the first from the tail: the order is reversed" if turned
                      else f"the markers put in order along the body: {', '.join(names[i] for i in order)}")
     x, names = x[:, order], [names[i] for i in order]
     if not head and names[0].lower() in HEADS or names[-1].lower() in TAILS:
@@ -453,6 +453,6 @@ def _from_tail_to_head(x, names, head, words, notes):
         if names[0] != head:
             raise InputError(f'"--head" is "{head}", which lies between {names[0]} and {names[-1]}, but one of these two is expected')
         x, names = -x[:, ::-1], names[::-1]
-        notes.append(f"the head {head} lies at the smallest x: x is turned round, so that it points from tail to head")
+        notes.append(f"the head {head} lies at the smallest x: x is reversed, so that it points from tail to head")
     words.append(f"the head is marker {names[-1]}" + ("" if head else f', as its x is the largest; "--head {names[0]}" would be the other'))
     return x, names

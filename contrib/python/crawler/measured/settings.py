@@ -31,7 +31,7 @@ class Settings:
         """Raises InputError where an entry for markers is set and there are none."""
         for name in ("markers_at", "first_marker", "length", "ends"):
             if getattr(self, name) != getattr(Settings, name):
-                raise InputError(f'"--{name.replace("_", "-")}" is for markers, which these samples have not')
+                raise InputError(f'"--{name.replace("_", "-")}" is for markers, which these samples do not have')
 
     def require_sound(self):
         """Raises InputError for settings that can be refused without samples."""

@@ -104,7 +104,7 @@ class Sheet:
         except (TypeError, ValueError) as error:
             if isinstance(error, InputError):
                 raise
-            raise InputError(f'"{self.label(i)}" of "{self.name}" has clock times that are none: {error}') from None
+            raise InputError(f'"{self.label(i)}" of "{self.name}" has invalid clock times: {error}') from None
         self.words.append(f'"{self.label(i)}" are clock times; t is in seconds from {cells[0]} on')
         return np.round(np.array(clock) - clock[0], 9)
 
@@ -224,7 +224,7 @@ def read_sheet(data, name, decimal=""):
         if len(cells) != width:
             raise InputError(f'row {number} of "{name}" has {len(cells)} cells, but {width} are expected, as in row {rows[-1][0]}')
         if all(is_gap(cells[i]) for i in filled):
-            raise InputError(f'row {number} of "{name}" has no number, but one at least is expected')
+            raise InputError(f'row {number} of "{name}" has no number, but at least one is expected')
         sheet.rows.append(cells)
         sheet.lines.append(number)
     _drop_empty_columns(sheet, width)

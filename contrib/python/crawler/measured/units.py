@@ -44,10 +44,10 @@ def unit_factor(found, wanted, option):
         return number
     to = unit_of(wanted)
     if to is None:
-        raise InputError(f'"{option}" is "{wanted}", but a number, a fraction as 1/30 or a unit is expected: m, s, min, h, N, '
+        raise InputError(f'"{option}" is "{wanted}", but a number, a fraction like 1/30 or a unit is expected: m, s, min, h, N, '
                          "Pa, g, %, or one of them with n, u, m, c, k or M before it")
     unit = unit_of(found)
     if unit is None or unit[0] != to[0]:
         unit_found = f'the unit "{found}"' if found else "no unit"
-        raise InputError(f'"{option}" is "{wanted}", but the file has {unit_found}, which cannot be turned into it; a factor is expected')
+        raise InputError(f'"{option}" is "{wanted}", but the file has {unit_found}, which cannot be converted into it; a factor is expected')
     return unit[1] / to[1]

@@ -61,7 +61,7 @@ def draw(table):
     right.axvline(1, color=INK, linewidth=0.9)
     right.axvline(10, color=INK, linewidth=0.7, linestyle=(0, (4, 3)))
     right.set(xscale="log", xlim=(0.3, 1e3), ylim=(0, 1), xlabel="reported error / true error [1]",
-              ylabel="part of the runs below [1]", title="how sharp the reported error is")
+              ylabel="share of the runs below [1]", title="how sharp the reported error is")
     right.legend(**below)
     return figure
 

@@ -60,7 +60,7 @@ def draw_variables(axes, variables):
         low, width = one["from"], one["to"] - one["from"]
         axes.plot([0, 1], [row, row], color="0.8", linewidth=6, solid_capstyle="butt")
         if one["determined"] is False:
-            text = "not told by the data"
+            text = "not determined by the data"
         elif one["determined"] is None:
             text = f"{one['value']:.5g} so far"
         else:

@@ -72,7 +72,7 @@ class Optimisation:
                 keeps = number(row["violation"]) <= admissible
                 (self.starts if keeps else self.excessive)[key].append((evaluation, value))
         if not self.starts or not self.optima:
-            raise InputError(f"{folder / 'results.csv'} has no gait that keeps to all limits; there is nothing to draw")
+            raise InputError(f"{folder / 'results.csv'} has no gait within all limits; there is nothing to draw")
 
     def quality(self, value, case):
         """Quality of an objective: the larger, the better. Costs in the wrong direction are worst."""

@@ -177,7 +177,7 @@ class Kymograph:
     def keep(self, begin, end, last_stride=False):
         """Keeps the times of the command line; returns begin and end. None stands for the begin or end of the run."""
         if last_stride and (begin is not None or end is not None):
-            raise InputError("--last-stride is there besides --from or --to, but one of the two ways is expected")
+            raise InputError("--last-stride is given with --from or --to, but only one of the two is expected")
         if last_stride:
             begin, end = self.last_stride()
         begin = self.t[0] if begin is None else begin

@@ -86,7 +86,7 @@ def main():
     try:
         figure, laws = draw(options)
     except (KeyError, ValueError) as error:
-        raise InputError(f"{options.folder} is no sweep over {options.table} ({error})") from None
+        raise InputError(f"{options.folder} is not a sweep over {options.table} ({error})") from None
     save(figure, options.output or options.folder / "scaling.png", dpi=150, few_colours=True)
     worst = max(off for _, _, off in laws.values())
     if options.require is not None and not worst <= options.require:

@@ -95,7 +95,7 @@ class Sweep:
             return found[0]
         if found:
             listed = ", ".join(found[:8]) + (f" and {len(found) - 8} others" if len(found) > 8 else "")
-            raise InputError(f'"{name}" ends several names: {listed}; more of the one that is meant is expected')
+            raise InputError(f'"{name}" is the end of several names: {listed}; more of the name that is meant is expected')
         if len(among) <= 8:
             raise InputError(f'"{name}" is no {what}; one of {", ".join(among)} is expected')
         raise InputError(f'"{name}" is no {what}; the nearest of {len(among)} names are {", ".join(nearest(name, among))}; '

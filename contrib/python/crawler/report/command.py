@@ -28,12 +28,12 @@ def kind_of(folder):
     """Entry of KINDS for a folder. Raises InputError if it is not that of a command."""
     expected = "the output folder of a run, sweep, tradeoff, optimisation, fit or comparison of fits is expected"
     if not os.path.isdir(folder):
-        raise InputError(f'"{folder}" is {"a file" if os.path.exists(folder) else "not there"}, but {expected}')
+        raise InputError(f'"{folder}" {"is a file" if os.path.exists(folder) else "does not exist"}, but {expected}')
     for kind in KINDS:
         if os.path.exists(os.path.join(folder, kind[1])):
             return kind
     raise InputError(f'"{folder}" has no results: none of summary.json, statistics.csv, results.h5, tradeoff.h5 '
-                     f"is there; {expected}")
+                     f"exists; {expected}")
 
 
 def program():
@@ -91,7 +91,7 @@ def main():
     parser = Parser(prog="crawler report", description="Makes a page for browsers, report.html, of the output folder of "
                     "any other command.")
     parser.add_argument("folder", metavar="DIR", help="Output folder of a run, sweep, tradeoff, optimisation or fit")
-    parser.add_argument("--quiet", action="store_true", help="Prints nothing but errors")
+    parser.add_argument("--quiet", action="store_true", help="Prints only errors")
     options = parser.parse_args(sys.argv[2:])
     kind, folder = kind_of(options.folder), pathlib.Path(options.folder)
     write_whole(folder / "report.html", page_of(data_of(folder, kind)))

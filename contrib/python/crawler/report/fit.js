@@ -11,7 +11,7 @@ function showValues() {
   const unit = entry => unitText(page.parameters.entries.find(one => one.entry === entry.replace(/\[[^\]]*\]$/, ''))?.unit), between = (ends, one) => !ends ? '–'
     : [0, 1].flatMap(i => [i ? ' to ' : '', ends[i] === null ? 'the limit' : exactly(ends[i], showWith(ends[i], one.deviation))]);
   const box = section('Values'), rows = Object.entries(summary.variables ?? {}).map(([entry, one]) => [[...brokenAtSlashes(entry)],
-    one.determined === false ? 'not told by the data' : [exactly(one.value, showWith(one.value, one.deviation)), known(one.deviation) ? ` ± ${show(one.deviation, 2)}` : '', el('span', {class: 'unit'}, ' ' + unit(entry))],
+    one.determined === false ? 'not determined by the data' : [exactly(one.value, showWith(one.value, one.deviation)), known(one.deviation) ? ` ± ${show(one.deviation, 2)}` : '', el('span', {class: 'unit'}, ' ' + unit(entry))],
     show(one.numerical_error, 2), show(one.bias, 2), between(one.interval_68, one), between(one.interval_95, one), `${show(one.from)} to ${show(one.to)}`]);
   box.append(tableOf(['entry', 'value ± deviation', 'numerical error', 'bias', '68 %', '95 %', 'range'], rows));
   const {goodness: fit = {}} = summary;
@@ -93,7 +93,7 @@ function showComparison() {
   }});
   legend(chart, criteria.map(([, name], i) => [name, `var(--c${i + 1})`]));
   const entries = [...new Set(rows.flatMap(one => Object.keys(page.fits[one.folder].variables ?? {})))];
-  const words = one => !one ? '–' : one.determined === false ? 'not told by the data' : [exactly(one.value, showWith(one.value, one.deviation)), known(one.deviation) ? ` ± ${show(one.deviation, 2)}` : ''];
+  const words = one => !one ? '–' : one.determined === false ? 'not determined by the data' : [exactly(one.value, showWith(one.value, one.deviation)), known(one.deviation) ? ` ± ${show(one.deviation, 2)}` : ''];
   section('Values', tableOf(['entry', ...rows.map(one => one.scene)], entries.map(entry => [[...brokenAtSlashes(entry)], ...rows.map(one => words(page.fits[one.folder].variables?.[entry]))])));
   for (const {scene, folder} of rows) for (const text of page.fits[folder].notes ?? []) main.append(el('div', {class: 'notice unfinished', role: 'note'}, el('p', {}, el('b', {}, scene), ` ${sentence(text)}`)));
 }

@@ -71,7 +71,7 @@ def run_in(folder, title, most_times):
         try:
             kymograph = read_kymograph(path)
         except FileError:
-            raise InputError(f'"{path}" is damaged: a whole kymograph that crawler wrote is expected') from None
+            raise InputError(f'"{path}" is damaged: an intact kymograph that crawler wrote is expected') from None
         run["kymograph"] = fields_of(kymograph, most_times)
         if "ground_factor" in kymograph:
             run["ground"] = {name: plain(kymograph[f"ground_{name}"], DIGITS) for name in ("x", "factor")}
@@ -153,4 +153,4 @@ def table_in(path, group):
                     free -= column.size
             return table
     except (OSError, LookupError, ValueError, RuntimeError, AttributeError, TypeError):
-        raise InputError(f'"{path}" is damaged: a whole table that crawler wrote is expected') from None
+        raise InputError(f'"{path}" is damaged: an intact table that crawler wrote is expected') from None

@@ -45,7 +45,7 @@ function gaitInWords(summary) {
 function showCurves(parent, run, clock, fields) {
   const columns = run.statistics && columnsOf(run.statistics), time = columns?.get('time')?.numbers();
   if (!time || time.length < 2) {
-    parent.append(el('p', {class: 'soft small'}, 'There are no curves over time: statistics.csv is not there (Output/Statistics = true makes it).'));
+    parent.append(el('p', {class: 'soft small'}, 'There are no curves over time: statistics.csv does not exist (Output/Statistics = true makes it).'));
     return;
   }
   const end = time[time.length - 1];
