@@ -383,7 +383,7 @@ def _require_agreement(samples, rest, counts, period, noise, words):
                          'larger "--noise", is expected')
     if duration >= LEAST_CYCLES * period and scatter > 0.7 * spread:
         raise InputError(f"the cycles of the period {period:g} differ from each other by {scatter:.3g}, nearly as much as all samples "
-                         f'({spread:.3g}), so that this is no period; "--period find" looks for one')
+                         f'({spread:.3g}), so that this is not a period; "--period find" looks for one')
     words.append(f"period {period:.6g} closed: where cycles meet or repeat, {samples.quantity} differs by {scatter:.3g} (noise "
                  f"{noise:.3g}), and the mean is taken")
 

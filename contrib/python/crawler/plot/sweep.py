@@ -85,9 +85,9 @@ class Sweep:
         whole = name if name in self.data else next((own for own in self.data if own.lower() == name.lower()), None)
         if whole in among:
             return whole
+        kind = f"{'an' if what == 'axis' else 'a'} {what}"
         if whole and not self.is_number(whole):
-            raise InputError(f'the column "{whole}" holds texts, which cannot be drawn; '
-                          f'{"an" if what == "axis" else "a"} {what} is expected')
+            raise InputError(f'the column "{whole}" holds texts, which cannot be drawn; {kind} is expected')
         found = [column for column in among if column.lower().endswith(name.lower())]
         whole = [column for column in found if column.lower()[:-len(name)].endswith(("/", ".", "_"))]
         found = whole if len(whole) == 1 else found
@@ -97,8 +97,8 @@ class Sweep:
             listed = ", ".join(found[:8]) + (f" and {len(found) - 8} others" if len(found) > 8 else "")
             raise InputError(f'"{name}" is the end of several names: {listed}; more of the name that is meant is expected')
         if len(among) <= 8:
-            raise InputError(f'"{name}" is no {what}; one of {", ".join(among)} is expected')
-        raise InputError(f'"{name}" is no {what}; the nearest of {len(among)} names are {", ".join(nearest(name, among))}; '
+            raise InputError(f'"{name}" is not {kind}; one of {", ".join(among)} is expected')
+        raise InputError(f'"{name}" is not {kind}; the nearest of {len(among)} names are {", ".join(nearest(name, among))}; '
                       'the first line of results.csv has all')
 
     def where(self, condition):

@@ -31,7 +31,7 @@ function gaitInWords(summary) {
     `${show(gait.strides, 4)} stride${gait.strides === 1 ? ' fits' : 's fit'} into the run.`);
   const wave = gait.wave ?? {};
   const direction = {retrograde: 'The wave of stretch is retrograde: it travels against the motion, as in an earthworm.',
-    prograde: 'The wave of stretch is prograde: it travels with the motion, as in a snail.', standing: 'The wave of stretch stands.'}[wave.direction];
+    prograde: 'The wave of stretch is prograde: it travels with the motion, as in a snail.', standing: 'The wave of stretch stands still.'}[wave.direction];
   if (direction) words.push(direction + (known(wave.speed) ? ` Its speed is ${show(wave.speed, 4)}${unitBehind('length/time')}, and ${show(100 * wave.coherence, 3)} % of it travels.` : '') +
     (known(gait.slip) ? ` A slip of ${show(gait.slip, 4)}: the body keeps ${show(100 * (1 - gait.slip), 3)} % of the speed of its wave.` : ''));
   const cost = gait.cost_of_transport ?? {};
@@ -125,7 +125,7 @@ function showRun(parent, run) {
     const period = at(summary, 'gait.period');
     clock = new Clock(fields.end, known(period) && period < fields.end ? period : fields.end);
     curves = showBody(parent, run, clock, fields).right;
-  } else parent.append(el('p', {class: 'soft small'}, 'There is no moving body here: ' + (summary?.status === 'stopped' ? 'the run was stopped, and kymograph.vts is written at its end; the same command with --resume goes on.' : 'kymograph.vts is missing (snapshots and Output/Kymograph = true make it).')));
+  } else parent.append(el('p', {class: 'soft small'}, 'There is no moving body here: ' + (summary?.status === 'stopped' ? 'the run was stopped, and kymograph.vts is written at its end; the same command with --resume continues it.' : 'kymograph.vts is missing (snapshots and Output/Kymograph = true make it).')));
   showCurves(curves, run, clock, fields);
   showSensitivities(parent, run);
 }

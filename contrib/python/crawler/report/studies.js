@@ -29,8 +29,8 @@ function notice(kind, title, reason, message, ofRows = false) {
 function notices() {
   const status = summary.status;
   if (!page.summary)
-    notice('unfinished', 'Unfinished.', null, page.kind === 'run' ? 'The run has left no summary.json: it was killed, or it still goes on. What follows is what it has written so far.'
-      : `The ${page.kind} has left no summary.json: it was killed, or it still goes on. The same command with --resume goes on with it.`);
+    notice('unfinished', 'Unfinished.', null, page.kind === 'run' ? 'The run has left no summary.json: it was killed, or is still running. What follows is what it has written so far.'
+      : `The ${page.kind} has left no summary.json: it was killed, or is still running. The same command with --resume continues it.`);
   else if (status && status !== 'finished')
     notice(status, `${status[0].toUpperCase()}${status.slice(1)}: ${(page.kind === 'optimisation' ? summary.optimize?.reason : summary.reason) ?? 'the reason is not known'}.`,
       page.kind === 'optimisation' ? summary.optimize?.reason : summary.reason, summary.message);
@@ -217,7 +217,7 @@ function showOptimum(box, one, folder, unit) {
   box.append(el('p', {}, wordsOfCase(one) ? `With ${wordsOfCase(one)} t` : 'T', `he best ${summary.optimize.objective} is `, el('b', {'data-key': 'optimum'}, exactly(one.objective)), ` ${unitText(unit)}`.trimEnd(),
     known(one.efficiency) ? `, ${show(100 * one.efficiency, 3)} % of what any gait with this work and these strains could` : '',
     summary.optimize.objective === 'periodic merit' && known(one.stride_efficiency) ? ` (the last stride ${show(100 * one.stride_efficiency, 3)} % with its dissipation)` : '', '. ',
-    one.is_admissible ? 'It keeps to all limits. ' : el('b', {}, `It exceeds a limit, by ${show(one.violation, 2)} of it. `), one.has_converged ? '' : el('b', {}, `The optimiser did not converge${one.message ? ': ' + one.message : ''}. `),
+    one.is_admissible ? 'It is within all limits. ' : el('b', {}, `It exceeds a limit, by ${show(one.violation, 2)} of it. `), one.has_converged ? '' : el('b', {}, `The optimiser did not converge${one.message ? ': ' + one.message : ''}. `),
     'Its files are in ', el('a', {href: `${folder}/`}, `${folder}/`), ', its parameter file is ', el('a', {href: folder.replace('best', 'optimum') + '.prm'}, folder.replace('best', 'optimum') + '.prm'), '.'));
   const table = (names, body) => el('div', {class: 'scroll'}, el('table', {}, el('thead', {}, el('tr', {}, ...names.map(name => el('th', {}, name)))), el('tbody', {}, ...body)));
   box.append(el('div', {class: 'two'}, el('div', {}, el('h3', {}, 'Limits'), Object.keys(one.limits ?? {}).length
@@ -231,7 +231,7 @@ function showOptimisation() {
   if (page.table) {
     explorer = new Explorer(box, page.table, {axes: [], status: 'problem', decorate: drawBest, frame: frameOfBest, fades: (row, own) => own.columns.get('violation')?.number(row) > admissible(), first: {x: ['evaluation'], y: ['objective'], colour: optima.length > 1 ? ['case'] : ['start', 'violation']},
       details: (panel, row, own) => panel.append(el('p', {}, own.columns.get('problem')?.value(row) ?? ''))});
-    box.append(el('p', {class: 'soft small'}, 'Dots: all gaits that were tried, grey if they exceed a limit. Lines: the best so far that keeps to the limits.'));
+    box.append(el('p', {class: 'soft small'}, 'Dots: all gaits that were tried, grey if they exceed a limit. Lines: the best so far within the limits.'));
   } else box.append(el('p', {}, 'There is no table of gaits: it is written when all starts have ended.'));
   if (!optima.length) return;
   const best = section('The best gait'), place = el('div');
