@@ -269,7 +269,7 @@ namespace
       bad_formula("FormulaUnknownVariable",
                   "A*s",
                   "B = 1",
-                  {"bad.prm, line 4", "position 1", "\"A\"", "\"Active stress/Expression/Constants\", as A=1"}),
+                  {"bad.prm, line 4", "position 1", "\"A\"", "\"Active stress/Expression/Constants\", like A=1"}),
       bad_formula("FormulaPowerOfPython", "1+s**2", "", {"bad.prm, line 4", "position 4", "\"^\" is expected"}),
       bad_formula(
         "FormulaArguments", "sin(s, t)", "", {"bad.prm, line 4", "position", "Too many parameters", "\"sin\""}),
@@ -662,7 +662,7 @@ namespace
       bad_formula("LargeNumberInAFormula", "1e400*sin(t)", "", {"; the largest number is 1.8e+308\n"}),
       bad_formula("GreekPi", "sin(2*\u03C0*t)", "", {"a Greek pi (U+03C0)", "but \"pi\" is expected"}),
       {"SmallNumberHasNoUnit", in_section("Body", "set Length = -1e-3"), {"but a positive number is expected\n"}},
-      bad_formula("KnownNames", "0.1*velocity", "A=1", {"known are s, t, pi, L, T, A, and functions"}),
+      bad_formula("KnownNames", "0.1*velocity", "A=1", {"it may use s, t, pi, L, T, A, and functions"}),
       set("QuotesOnCommandLine",
           {"--set", "\u201CBody/Length=2\u201D"},
           {"a typographic quote (U+201C) in \"\u201CBody/Length\"", "the straight quote"}),

@@ -296,7 +296,7 @@ TEST_F(Commands, CheckListsTheWavesAndWritesNothing)
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.err, "");
   for (const char *part :
-       {"Model nonlinear", "Mesh: ", "index", "speed", "displacement", "<- chosen", "nothing was written"})
+       {"Model nonlinear", "Mesh: ", "index", "speed", "displacement", "<- chosen", "no files were written"})
     EXPECT_TRUE(contains(result.out, part)) << part << "\nin: " << result.out;
   EXPECT_GE(std::count(result.out.begin(), result.out.end(), '\n'),
             10); // several waves spend this energy

@@ -65,7 +65,7 @@ REFUSED = [
     (["larva_raw.csv", "out.csv", "--gap", "0"], 2, "m is missing at s ="),
     (["larva_raw.csv", "out.csv", "--unit-of-t", "mm"], 2, 'the unit "ms"'),
     (["larva_raw.csv", "out.csv", "--period", "9999"], 2, "the samples last from"),
-    (["larva_raw.csv", "out.csv", "--period", "500"], 2, "no period"),
+    (["larva_raw.csv", "out.csv", "--period", "500"], 2, "not a period"),
     (["larva_raw.csv", "out.csv", "--period", "never"], 2, '"find", "whole"'),
     (["larva_raw.csv", "out.csv", "--cycles", "2"], 2, "--period"), (["larva_raw.csv", "out.csv", "--smooth-s", "-1"], 2, "-1"),
     (["larva_raw.csv", "out.csv", "--ends", "free"], 2, "hold"), (["larva_raw.csv", "out.csv", "--copies", "1"], 2, "--copies"),

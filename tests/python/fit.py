@@ -334,7 +334,7 @@ class Untold(unittest.TestCase):
         found = fit({**STRESS, WAVE + "Wave number": 1.3}, tracks(STRESS), P, K, standard_deviation=NOISE)
         self.assertIn("does not fit", found.notes[0])
         found = fit({**STRESS, WAVE + "Wave number": 1.3}, tracks(STRESS), P, K)
-        self.assertIn("alike", " ".join(found.notes))
+        self.assertIn("similar", " ".join(found.notes))
 
     def test_says_that_data_fit_too_well(self):
         found = fit(STRESS, tracks(STRESS), P, standard_deviation=10 * NOISE)

@@ -164,7 +164,7 @@ TEST(GeneralInput, IsCheckedInOneSentence)
   expect_message({{"Ground/Profile", "1, 1, 1, 1"}}, "Ground/Profile", "several, separated by a comma");
   expect_message({{"Body/Friction profile", "1, 2, 3"}}, "Body/Friction profile", "at least 4 are expected");
   expect_message({{"Body/Friction profile", "1, 2, 0, 1"}}, "Body/Friction profile", "number 3 of");
-  expect_message({{"Body/Friction profile", "1+g*s"}}, "Body/Friction profile", "\"Body/Constants\", as g=1");
+  expect_message({{"Body/Friction profile", "1+g*s"}}, "Body/Friction profile", "\"Body/Constants\", like g=1");
   expect_message({{"Body/Friction profile", "1+g*s"}, {"Body/Constants", "g"}}, "Body/Constants", "name=number");
   expect_message(
     {{"Ground/Friction law", "expression"}, {"Ground/Expression", "w-1"}}, "Ground/Expression", "positive");
