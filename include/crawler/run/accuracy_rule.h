@@ -43,8 +43,7 @@ namespace crawler::accuracy_rule
     inline constexpr double space_factor = 6.;
     /// Factor on the number of steps times the tolerance: a bound of the error of the displacement in time.
     inline constexpr double time_factor = 0.25;
-    /// Factors on the tolerance of that rule for radau 5 and 9 on uniform meshes in the position form, whose steps end
-    /// much more accurately than their tolerance says.
+    /// Factors on that tolerance for radau 5 and 9 on uniform meshes of the position form, whose steps end better.
     inline constexpr double radau_5_superconvergence = 50., radau_9_superconvergence = 2000.;
     /// Smallest tolerances relative to the motion; below the second, kinks in the friction of stiff bodies stop a run.
     inline constexpr double min_tolerance = 1e-15, min_tolerance_if_kinks = 1e-10;
@@ -178,8 +177,7 @@ namespace crawler::accuracy_rule
     inline constexpr double first_part = 0.32, last_part = 0.0025;
     /// Largest number of widths of an answer.
     inline constexpr unsigned int max_levels = 5;
-    /// Error bound of the answer: at most this multiple of the change by one width less, and of that since the answer
-    /// before.
+    /// Limits of the error bound, as multiples of the change by one width less, and of that since the answer before.
     inline constexpr double factor = 2., factor_of_change = 0.5;
     /// Accuracy of the runs, relative to the wanted one, and its limits.
     inline constexpr double part_of_runs = 0.1, min_accuracy = 1e-9, largest_accuracy = 1e-3;
