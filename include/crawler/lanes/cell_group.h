@@ -16,12 +16,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   template <>
   struct CellsOf<double>
   {
-    using type = Cells;
+    using Type = Cells;
   };
   template <>
   struct CellsOf<Complex<double>>
   {
-    using type = Complex<Cells>;
+    using Type = Complex<Cells>;
   };
 
   /// Some neighbouring cells of a mesh, one in each lane. Lanes beyond the last cell of the mesh repeat it, and nothing

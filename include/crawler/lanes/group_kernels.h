@@ -92,11 +92,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     /// Factors of the blocks @p A, and their Schur complements.
     template <typename Number>
     [[gnu::always_inline]] static inline void
-    condense(const CellGroup &group, typename CellsOf<Number>::type *A, Number *blocks, Number *schur)
+    condense(const CellGroup &group, typename CellsOf<Number>::Type *A, Number *blocks, Number *schur)
     {
-      typename CellsOf<Number>::type corners[4];
+      typename CellsOf<Number>::Type corners[4];
       condense_cell<q>(A, corners, [](const auto &) {}); // what is not finite is seen in the solution
-      auto *own = reinterpret_cast<typename CellsOf<Number>::type *>(blocks + group.first() * n * n);
+      auto *own = reinterpret_cast<typename CellsOf<Number>::Type *>(blocks + group.first() * n * n);
       for (int i = 0; i < n * n; ++i)
         own[i] = A[i];
       for (int i = 0; i < 4; ++i)
@@ -219,7 +219,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     [[gnu::flatten]] static void
     forward(const int n_cells, const Number *blocks, Number *x)
     {
-      using Group = typename CellsOf<Number>::type;
+      using Group = typename CellsOf<Number>::Type;
       for (int c = 0; c < n_cells; c += width)
       {
         const CellGroup group(c, n_cells);
@@ -239,7 +239,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     [[gnu::flatten]] static void
     backward(const int n_cells, const Number *blocks, Number *x)
     {
-      using Group = typename CellsOf<Number>::type;
+      using Group = typename CellsOf<Number>::Type;
       for (int c = 0; c < n_cells; c += width)
       {
         const CellGroup group(c, n_cells);
