@@ -81,7 +81,7 @@ namespace crawler
 
   private:
     template <typename Type>
-    static constexpr bool has_exchange = requires(Type value, Archive archive)
+    static constexpr bool has_exchange = requires(Type &value, Archive &archive)
     {
       value.exchange(archive);
     };
