@@ -215,16 +215,21 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       group.store(y[end], x, q, end);
     }
 
+    /// Calls @p use(group, blocks of the group) for each group of the cells.
+    template <typename Number, typename Use>
+    [[gnu::always_inline]] static inline void
+    for_blocks(const int n_cells, const Number *blocks, const Use &use)
+    {
+      for (int c = 0; c < n_cells; c += width)
+        use(CellGroup(c, n_cells), reinterpret_cast<const typename CellsOf<Number>::Type *>(blocks + c * n * n));
+    }
+
     template <typename Number>
     [[gnu::flatten]] static void
     forward(const int n_cells, const Number *blocks, Number *x)
     {
-      using Group = typename CellsOf<Number>::Type;
-      for (int c = 0; c < n_cells; c += width)
-      {
-        const CellGroup group(c, n_cells);
-        const Group *A = reinterpret_cast<const Group *>(blocks + c * n * n);
-        Group y[n];
+      for_blocks(n_cells, blocks, [x](const CellGroup &group, const auto *A) {
+        typename CellsOf<Number>::Type y[n];
         for (int i = 1; i < q; ++i)
           y[i] = group.load(x, q, i);
         solve_inner<q>(A, y);
@@ -232,24 +237,21 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           group.store(y[i], x, q, i);
         eliminate(group, A, q, y, x); // the left cell of a node comes first
         eliminate(group, A, 0, y, x);
-      }
+      });
     }
 
     template <typename Number>
     [[gnu::flatten]] static void
     backward(const int n_cells, const Number *blocks, Number *x)
     {
-      using Group = typename CellsOf<Number>::Type;
-      for (int c = 0; c < n_cells; c += width)
-      {
-        const CellGroup group(c, n_cells);
-        Group y[n];
+      for_blocks(n_cells, blocks, [x](const CellGroup &group, const auto *A) {
+        typename CellsOf<Number>::Type y[n];
         for (int i = 0; i < n; ++i)
           y[i] = group.load(x, q, i);
-        backward_cell<q>(reinterpret_cast<const Group *>(blocks + c * n * n), y);
+        backward_cell<q>(A, y);
         for (int i = 1; i < q; ++i)
           group.store(y[i], x, q, i);
-      }
+      });
     }
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

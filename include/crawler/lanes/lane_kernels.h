@@ -2,48 +2,12 @@
 #pragma once
 
 #include <crawler/equation/cell_laws.h>
-#include <crawler/lanes/lane_friction.h>
+#include <crawler/lanes/lane_mesh.h>
 #include <crawler/mesh/block_tridiagonal_loops.h>
 
 /// Loops over all cells, for a pack of bodies and one degree q (included by radau_lanes.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  template <typename Pack>
-  struct LaneMesh
-  {
-    int n_cells;
-    const double *sizes; ///< [n_cells]
-    ElementTables tables;
-    Pack k;
-    LaneFriction<Pack> friction;
-    const PointLaws<Pack> *laws = nullptr; ///< laws of general bodies for the present state, replacing k and friction
-  };
-
-  /// CellIntegrals of a pack of bodies.
-  template <typename Pack>
-  struct LaneIntegrals
-  {
-    Pack displacement{}, elastic_energy{}, stress_power{}, positive_power{}, absolute_power{}, dissipation{},
-      net_friction{}, abs_friction{}, velocity{};
-  };
-
-  /// Observation of a state: the extreme stretches, the numbers of their samples, and the integrals.
-  template <typename Pack>
-  struct LaneLook
-  {
-    Pack least = broadcast<Pack>(HUGE_VAL), most = broadcast<Pack>(-HUGE_VAL), min_at{}, max_at{};
-    LaneIntegrals<Pack> sums;
-    Pack end_stretch[2] = {}, end_rate[2] = {}; ///< stretch at both ends, and its rate
-  };
-
-  /// Derivatives of friction f and force N at all points of a state: by velocity, stretch, place and stretch rate.
-  /// Null: 0.
-  template <typename Pack>
-  struct LaneSlopes
-  {
-    Pack *f_v = nullptr, *f_w = nullptr, *N_w = nullptr, *f_u = nullptr, *N_rate = nullptr;
-  };
-
   template <typename Pack, int q>
   struct LaneKernels
   {
