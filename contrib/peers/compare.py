@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Measures crawler and short programs of our own with other tools on the same work, and prints the tables of doc/peers.md.
+"""Measures crawler and short programs of our own with other tools on the same work, and prints
+the table of doc/peers.md with the settings.
 
     contrib/peers/compare.py [build] [--only NAME ...] [--cases NAME ...]
 
