@@ -2,8 +2,8 @@
 //
 // Does an adaptive mesh of the position form pay? For each scene and each relative error of the displacement the
 // cheapest setting that reaches it, over numbers of cells (uniform) or mesh tolerances (adaptive) and time tolerances.
-// Prints a table in Markdown, which is the one of doc/numerics.md; nothing is required of it. Takes minutes, wants an
-// idle machine.
+// Prints a table in Markdown (doc/numerics.md, "Adaptive against uniform meshes"); nothing is required of it. Takes
+// minutes, wants an idle machine.
 //
 //     adaptive_table contrib/reference/extremes.json [part of a scene's name]
 #include "../support/run_text.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// What collapsing, stiff, inverting and soft bodies cost: the table of doc/numerics.md, "Stretch form". For each case
-// and Accuracy the CPU time of the whole answer with its bound, as a point of a sweep takes it (the faster of two), the
-// true error and the bound, both over Accuracy times the displacement. Prints Markdown; nothing is required of it.
+// Costs of collapsing, stiff, inverting and soft bodies (doc/numerics.md, "Which form"). For each case and Accuracy
+// the CPU time of the whole answer with its bound, as a point of a sweep takes it (the faster of two), the true error
+// and the bound, both over Accuracy times the displacement. Prints Markdown; nothing is required of it.
 //
 //     stretch_table [part of a case's name] [formulation, for all cases]
 //
