@@ -138,7 +138,7 @@ namespace crawler
       {
         Numerics &best = found_.choice.numerics;
         Runs on_mesh   = reference; // exact in time, as far as it matters
-        for (unsigned int n = accuracy_rule::choice::min_cells; n < best.n_cells; ++n)
+        for (unsigned int n = min_cells; n < best.n_cells; ++n)
         {
           Numerics fewer   = best;
           fewer.n_cells    = n;
@@ -178,6 +178,19 @@ namespace crawler
             looser = tried;
           }
         }
+        try_longer_first_step(on_mesh, min_cost);
+      }
+
+      void
+      try_longer_first_step(const Runs &reference, const double cost)
+      {
+        if (examples_.front().parameters->time.initial_step)
+          return;
+        Numerics other = found_.choice.numerics;
+        other.initial_step *= longer_first_step;
+        const Runs tried = run(other, found_.relative_tolerance);
+        if (tried.cost < cost && are_near(tried, reference))
+          found_.choice.numerics = other;
       }
 
       const std::span<const SceneToCompute> examples_;

@@ -115,6 +115,9 @@ namespace crawler::accuracy_rule
   // tests/verification/shared_numerics_test.cc.
   namespace shared
   {
+    /// Smallest number of cells, and factor on the first step, that are tried.
+    inline constexpr unsigned int min_cells   = 2;
+    inline constexpr double longer_first_step = 5.;
     /// Parts of the wanted error by which space and time may each change the displacement of an example, and by which
     /// the extrapolation of cycles may.
     inline constexpr double part = 0.12, part_of_cycles = 0.1;
@@ -151,8 +154,7 @@ namespace crawler::accuracy_rule
     inline constexpr double empty = 1e-9, tolerance_if_empty = 3e-7;
     inline constexpr unsigned int few_steps = 30;  ///< steps below which errors grow fast with the cells
     inline constexpr double min_part        = 0.5; ///< part of the wanted error that all runs have in common
-    /// Observed orders between which second order is accepted.
-    inline constexpr double min_order = 1.5, largest_order = 2.7;
+    inline constexpr double min_order = 1.5, largest_order = 2.7; ///< observed orders accepted as the second
     /// Factors by which a time tolerance, relative to the strain, may be too large or small before it is chosen anew.
     inline constexpr double too_large = 2., too_small = 0.05;
     /// Limits relative to the time of an inversion: error beyond which it may be none; change beyond which meshes are
@@ -229,10 +231,8 @@ namespace crawler::accuracy_rule
     /// Bound of the corrected displacement: this part of the sums of the sizes of all errors, plus the change of the
     /// last round.
     inline constexpr double part_of_sums = 0.4;
-    /// Stretch below which nothing is estimated.
-    inline constexpr double least_stretch = 0.1;
-    /// Limit on steps times cells of a run for the sweep, about a second.
-    inline constexpr double max_work = 5e4;
+    inline constexpr double least_stretch = 0.1; ///< stretch below which nothing is estimated
+    inline constexpr double max_work      = 5e4; ///< limit on steps times cells of a run for the sweep, about a second
   } // namespace sweep
 
   // Derivatives by entries (studies/core/sensitivities.cc). Measured by
