@@ -14,6 +14,7 @@
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/statistics_writer.h>
 #include <crawler/parameters/entry_lists.h>
+#include <crawler/run/result_json.h>
 #include <crawler/run/summary.h>
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/differentiated_numbers.h>
@@ -414,6 +415,7 @@ PYBIND11_MODULE(_core, module)
   module.def("sweep", sweep_source);
   module.def("command", command);
   module.def("entries", all_entries);
+  module.def("numbers", []() { return result_entries().dump(); });
   module.def("end", &Libraries::end);
   module.attr("n_points") = Kymograph::n_points;
   module.attr("versions") = versions();

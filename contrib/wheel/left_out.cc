@@ -30,6 +30,6 @@ namespace crawler
   GridTable
   read_hdf5_grid_table(const GridTableSource &source)
   {
-    source.refuse("\"{}\" is an HDF5 file, {}, and a CSV file is read here, too", source.file, CRAWLER_LEFT_OUT);
+    source.refuse("\"{}\" is read by HDF5, " CRAWLER_LEFT_OUT "; a CSV file is read here, too", source.file);
   }
 } // namespace crawler
