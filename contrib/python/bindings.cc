@@ -28,6 +28,7 @@
 #include <crawler/studies/sweep/sweep_rows.h>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>

@@ -10,7 +10,9 @@
 
 namespace crawler
 {
-  MpiSession::MpiSession(int &, char **&) {}
+  MpiSession::MpiSession(int &, char **&)
+  {
+  }
   MpiSession::~MpiSession() = default;
 
   std::map<std::string, std::string>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/csv_numbers.h>
 #include <crawler/base/files.h>
+#include <crawler/base/grid_table.h>
 #include <crawler/base/grid_table_hdf5.h>
 #include <crawler/base/told_apart.h>
 
