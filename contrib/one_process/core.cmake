@@ -2,8 +2,9 @@
 # The compiled core for one process, without deal.II, PETSc, MPI, HDF5 and muParser: what the live page (contrib/live) and
 # the wheel of the Python package (contrib/wheel) have in common.
 #
-#     one_process_core(TARGET INSTEAD)    sources, headers and definitions for a target that exists. INSTEAD ends the
-#                                         sentences of what is left out: "which this page does not have: ..."
+#     ONE_PROCESS_SOURCES
+#     one_process_setup(TARGET INSTEAD)   headers and definitions; INSTEAD ends the sentences of what is left out:
+#                                         "which this page does not have: ..."
 get_filename_component(CRAWLER ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
 set(ONE_PROCESS ${CMAKE_CURRENT_LIST_DIR})
 
@@ -11,11 +12,11 @@ set(ONE_PROCESS ${CMAKE_CURRENT_LIST_DIR})
 # libraries the program is made; of the others what a run needs.
 foreach(room accuracy adjoint equation formula lanes mesh reduced_models run scene scene/active_stress time)
   file(GLOB of_room CONFIGURE_DEPENDS ${CRAWLER}/source/${room}/*.cc)
-  list(APPEND one_process_sources ${of_room})
+  list(APPEND ONE_PROCESS_SOURCES ${of_room})
 endforeach()
 foreach(left_out formula/formula run/summary scene/active_stress/formula_input scene/active_stress/library lanes/lanes
         time/radau time/petsc_stepper)
-  list(REMOVE_ITEM one_process_sources ${CRAWLER}/source/${left_out}.cc)
+  list(REMOVE_ITEM ONE_PROCESS_SOURCES ${CRAWLER}/source/${left_out}.cc)
 endforeach()
 foreach(one base/archive base/clock base/communication base/csv_numbers base/cubic_spline base/files base/gauss_panels base/gauss_rule
         base/grid_interpolation base/nearest_name base/plain_numbers base/table
@@ -26,24 +27,20 @@ foreach(one base/archive base/clock base/communication base/csv_numbers base/cub
         studies/core/entry_notes studies/core/entry_rules studies/core/form studies/core/input studies/core/parameters
         studies/core/scene_numbers studies/core/sensitivity_entries
         studies/run/reduced_pictures studies/run/run_in_memory)
-  list(APPEND one_process_sources ${CRAWLER}/source/${one}.cc)
+  list(APPEND ONE_PROCESS_SOURCES ${CRAWLER}/source/${one}.cc)
 endforeach()
+list(APPEND ONE_PROCESS_SOURCES ${ONE_PROCESS}/left_out.cc)
 
-# Headers of Debian that need no library, and nothing else of /usr/include.
-function(one_process_headers folder)
-  file(MAKE_DIRECTORY ${folder})
+# Headers of Debian are those that need no library, and nothing else of /usr/include.
+function(one_process_setup TARGET INSTEAD)
+  set(headers ${CMAKE_CURRENT_BINARY_DIR}/include)
+  file(MAKE_DIRECTORY ${headers})
   foreach(library boost fmt nlohmann)
     if(NOT EXISTS /usr/include/${library})
       message(FATAL_ERROR "/usr/include/${library} is missing: contrib/setup.sh installs it.")
     endif()
-    file(CREATE_LINK /usr/include/${library} ${folder}/${library} SYMBOLIC)
+    file(CREATE_LINK /usr/include/${library} ${headers}/${library} SYMBOLIC)
   endforeach()
-endfunction()
-
-function(one_process_core TARGET INSTEAD)
-  set(headers ${CMAKE_CURRENT_BINARY_DIR}/include)
-  one_process_headers(${headers})
-  target_sources(${TARGET} PRIVATE ${one_process_sources} ${ONE_PROCESS}/left_out.cc)
   target_include_directories(${TARGET} PUBLIC ${CRAWLER}/include ${ONE_PROCESS})
   target_include_directories(${TARGET} SYSTEM PUBLIC ${headers})
   target_compile_definitions(${TARGET} PUBLIC FMT_HEADER_ONLY)
