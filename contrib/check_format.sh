@@ -3,4 +3,4 @@
 # Fails, naming the lines, if a C++ file is not formatted as .clang-format says (repair: contrib/indent.sh).
 set -euo pipefail
 cd "$(dirname "$0")/.."
-find source include tests contrib/live contrib/python -name '*.cc' -o -name '*.h' | sort | xargs clang-format --dry-run -Werror
+find source include tests contrib/live contrib/one_process contrib/python contrib/wheel -name '*.cc' -o -name '*.h' | sort | xargs clang-format --dry-run -Werror

@@ -25,7 +25,7 @@ if [ "${1:-}" = tests ] || [ "${1:-}" = verify ]; then
   is_installed python3-paraview || packages+=(python3-vtk9)
 fi
 [ "${1:-}" = verify ] &&
-  packages+=(emscripten iproute2 ffmpeg xvfb octave libsundials-dev libclang-rt-dev stress-ng dpkg-dev file)
+  packages+=(emscripten python3-venv iproute2 ffmpeg xvfb octave libsundials-dev libclang-rt-dev stress-ng dpkg-dev file)
 
 missing=()
 for package in "${packages[@]}"; do

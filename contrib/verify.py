@@ -112,6 +112,7 @@ CHECKS = (
     # What people see.
     Check("films", 4, "{root}/tests/long/paraview_films.py {crawler} pvbatch"),
     Check("live_page", 15, "{root}/tests/long/live_page.py {crawler} {build}/live"),
+    Check("wheel", 8, "{root}/tests/package/try_wheel.sh {build}"),
     Check("notebooks", 2, "{root}/tests/python/documents.py {build}/python all"),
     Check("octave", 0.5, "{root}/tests/long/octave_tutorial.py {crawler}"),
     # Other programs.

@@ -122,6 +122,12 @@ namespace std
       return std::count_if(
         std::begin(range), std::end(range), [&](const auto &x) { return std::invoke(projection, x) == value; });
     }
+    template <typename Range, typename Value>
+    auto
+    upper_bound(Range &&range, const Value &value)
+    {
+      return std::upper_bound(std::begin(range), std::end(range), value);
+    }
     template <typename Range>
     void
     reverse(Range &&range)

@@ -2,6 +2,8 @@
 // The module crawler._core: texts of parameter files go in, texts (JSON) and arrays come out; crawler/__init__.py makes
 // of them what users see. One computation at a time, without Python's lock, which is taken now and then to look for
 // signals.
+#include "command.h"
+
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
@@ -12,24 +14,21 @@
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/statistics_writer.h>
 #include <crawler/parameters/entry_lists.h>
+#include <crawler/run/result_json.h>
 #include <crawler/run/summary.h>
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/differentiated_numbers.h>
 #include <crawler/studies/core/entry_rules.h>
 #include <crawler/studies/core/sensitivities.h>
 #include <crawler/studies/core/variables.h>
-#include <crawler/studies/optimize/optimize.h>
-#include <crawler/studies/optimize/optimize_cases.h>
-#include <crawler/studies/run/run.h>
 #include <crawler/studies/run/run_in_memory.h>
 #include <crawler/studies/run/sensitivity_files.h>
 #include <crawler/studies/sweep/point_table.h>
-#include <crawler/studies/sweep/sweep.h>
 #include <crawler/studies/sweep/sweep_blocks.h>
 #include <crawler/studies/sweep/sweep_rows.h>
 
 #include <fmt/format.h>
-#include <petscsys.h>
+#include <nlohmann/json.hpp>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -347,28 +346,21 @@ namespace crawler
       return {table, notes};
     }
 
-    /// `crawler run`, sweep or optimize with its files; the exit code, and notes.
+    /// A command with its files; the exit code, and notes.
     std::pair<int, std::vector<std::string>>
-    run_command(
+    command(
       const std::string &name, const Source &source, const std::string &output, const bool overwrite, const bool quiet)
     {
       return without_lock([&](const std::function<bool()> &) {
         Libraries::start();
         CommandOptions options;
-        options.file             = source.text ? "-" : source.name;
-        options.overrides        = source.overrides;
-        options.output           = output;
-        options.overwrite        = overwrite;
-        options.quiet            = quiet;
-        options.command_line     = "python";
-        const ParameterFile file = source.file();
-        const auto notes         = name == "run"     ? read_input(file).notes
-                                   : name == "sweep" ? SweepPoints(MPI_COMM_SELF, file).notes()
-                                                     : OptimizeCases(MPI_COMM_SELF, file).notes(file);
-        const ExitCode code      = name == "sweep"      ? sweep_input(MPI_COMM_SELF, options, file)
-                                   : name == "optimize" ? optimize_input(MPI_COMM_SELF, options, file)
-                                                        : run_input(MPI_COMM_SELF, options, file);
-        return std::pair(static_cast<int>(code), notes);
+        options.file         = source.text ? "-" : source.name;
+        options.overrides    = source.overrides;
+        options.output       = output;
+        options.overwrite    = overwrite;
+        options.quiet        = quiet;
+        options.command_line = "python";
+        return run_command(name, options, source.file());
       });
     }
 
@@ -422,8 +414,9 @@ PYBIND11_MODULE(_core, module)
   module.def("variables_of_fit", variables_of_fit);
   module.def("batch", run_batch_of);
   module.def("sweep", sweep_source);
-  module.def("command", run_command);
+  module.def("command", command);
   module.def("entries", all_entries);
+  module.def("numbers", []() { return result_entries().dump(); });
   module.def("end", &Libraries::end);
   module.attr("n_points") = Kymograph::n_points;
   module.attr("versions") = versions();

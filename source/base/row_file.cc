@@ -5,6 +5,7 @@
 #include <crawler/base/hdf5_trial.h>
 #include <crawler/base/hdf5_writing.h>
 #include <crawler/base/row_file.h>
+#include <crawler/base/short_text.h>
 #include <crawler/base/stop_place.h>
 
 #include <boost/crc.hpp>
@@ -168,25 +169,6 @@ namespace crawler
       boost::crc_32_type crc_;
     };
   } // namespace
-
-  std::size_t
-  whole_characters(const std::string &text, const std::size_t width)
-  {
-    std::size_t size = std::min(text.size(), width);
-    if (size < text.size())
-      while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xc0) == 0x80)
-        --size;
-    return size;
-  }
-
-  std::string
-  shortened(const std::string &text, const std::size_t width)
-  {
-    if (text.size() <= width)
-      return text;
-    const std::string dots = "...";
-    return text.substr(0, whole_characters(text, width - dots.size())) + dots;
-  }
 
   void
   RowFile::create(const std::filesystem::path &path,

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/petsc_object.h>
 #include <crawler/base/versions.h>
 #include <crawler/run/gait_efficiency.h>
 #include <crawler/run/result_json.h>
 #include <crawler/run/result_table.h>
 #include <crawler/run/summary.h>
+#include <crawler/time/petsc_stepper.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

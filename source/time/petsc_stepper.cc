@@ -675,4 +675,13 @@ namespace crawler
     const ReadAccess access(implementation_->interpolated.get());
     std::copy(access.span.begin(), access.span.end(), y.begin());
   }
+
+  std::string
+  integrator_of_petsc(const std::string &otherwise)
+  {
+    char type[64]   = "";
+    PetscBool found = PETSC_FALSE;
+    petsc(PetscOptionsGetString(nullptr, nullptr, "-ts_type", type, sizeof(type), &found));
+    return found ? type : otherwise;
+  }
 } // namespace crawler

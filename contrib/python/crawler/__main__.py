@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Commands of crawler that are written in Python. The program, whose path is CRAWLER_PROGRAM, calls them.
+"""Commands of crawler that are written in Python. The program, whose path is CRAWLER_PROGRAM, calls them; without it:
 
-    python3 contrib/python/crawler table IN.csv OUT.csv [options]
+    python3 -m crawler table IN.csv OUT.csv [options]
 """
 import importlib
 import pathlib
@@ -23,7 +23,10 @@ def place_of_package():
 
 if __name__ == "__main__":
     sys.path.insert(0, str(HERE))
-    from needs import need
+    from needs import InputError, complain, need
+    if sys.argv[1:2] == [] or sys.argv[1] not in COMMANDS:
+        complain(f"one of the commands {', '.join(COMMANDS)} is expected; others need the full program (doc/install.md)")
+        sys.exit(InputError.code)
     module, needed = COMMANDS[sys.argv[1]]
     need(*needed)
     sys.path[0] = str(place_of_package() if sys.argv[1] == "fit" else HERE.parent)

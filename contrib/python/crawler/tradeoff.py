@@ -14,7 +14,7 @@ import pathlib
 import sys
 
 from . import to_prm
-from .needs import InputError, write_whole
+from .needs import InputError, Parser, write_whole
 
 EXPONENTS = range(2, 15)  # exponents of the errors 1e-2, 1e-3, ... with recommendations
 OF_A_SETTING = ("model", "formulation", "mesh", "engine", "integrator", "degree", "cells", "mesh tolerance")  # and the tolerance
@@ -169,4 +169,6 @@ def complete(folder):
 
 def main():
     """Completes a folder at the end of crawler tradeoff."""
-    complete(pathlib.Path(sys.argv[2]))
+    parser = Parser(prog="crawler tradeoff", description=complete.__doc__)
+    parser.add_argument("folder", metavar="DIR", help="Output folder of crawler tradeoff")
+    complete(pathlib.Path(parser.parse_args(sys.argv[2:]).folder))

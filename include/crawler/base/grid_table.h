@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/grid_samples.h>
+
 #include <string>
 #include <vector>
 
 namespace crawler
 {
-  /// Samples of a function at all points of a grid over s and t.
-  struct GridTable
-  {
-    std::vector<double> s, t;   ///< increasing
-    std::vector<double> values; ///< [t][s]
-  };
-
   /**
    * Reads the samples of the function @p name ("m") from a file of one of two kinds, distinguished by its first bytes:
    *  - CSV: the header s,t,NAME and one row per sample of a full grid, in any order. A byte order mark, carriage

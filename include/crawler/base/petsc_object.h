@@ -22,16 +22,6 @@ namespace crawler
     throw PetscFailure(code, text != nullptr ? text : "without a message", code == PETSC_ERR_MEM);
   }
 
-  /// The integrator that the option -ts_type behind "--" names, else @p otherwise.
-  inline std::string
-  integrator_of_petsc(const std::string &otherwise)
-  {
-    char type[64]   = "";
-    PetscBool found = PETSC_FALSE;
-    petsc(PetscOptionsGetString(nullptr, nullptr, "-ts_type", type, sizeof(type), &found));
-    return found ? type : otherwise;
-  }
-
   /// Keeps the messages of PETSc's errors instead of printing them with their stack, during its lifetime.
   class PetscErrorWords
   {

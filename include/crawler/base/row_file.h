@@ -3,9 +3,9 @@
 
 #include <crawler/base/table.h>
 
-#include <hdf5.h>
 #include <mpi.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -18,14 +18,6 @@
 
 namespace crawler
 {
-  /// Largest number of bytes of a UTF-8 @p text, at most @p width, that are whole characters.
-  std::size_t
-  whole_characters(const std::string &text, std::size_t width);
-
-  /// The text, cut and ended with dots if it is longer than @p width.
-  std::string
-  shortened(const std::string &text, std::size_t width);
-
   /**
    * A table in an HDF5 file into which all ranks write rows as they come (parallel HDF5). Its layout is fixed at
    * creation: a group with a dataset for each column, contiguous and allocated. Later only numbers are written, no
@@ -127,7 +119,7 @@ namespace crawler
 
     explicit RowReader(std::filesystem::path path);
     void
-    open(hid_t access, const std::string &group);
+    open(std::int64_t access, const std::string &group);
 
     const std::filesystem::path path_;
     std::unique_ptr<Handles> handles_;

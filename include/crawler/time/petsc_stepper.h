@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace crawler
@@ -46,4 +47,8 @@ namespace crawler
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
   };
+
+  /// The integrator that the option -ts_type behind "--" names, else @p otherwise.
+  std::string
+  integrator_of_petsc(const std::string &otherwise);
 } // namespace crawler

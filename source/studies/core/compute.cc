@@ -7,7 +7,6 @@
 #include <crawler/run/reduced_model.h>
 #include <crawler/run/self_check.h>
 #include <crawler/studies/core/compute.h>
-#include <crawler/studies/core/study.h>
 #include <crawler/time/failure.h>
 
 #include <algorithm>

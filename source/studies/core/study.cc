@@ -13,21 +13,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 #include <sstream>
 
 namespace crawler
 {
-  unsigned long
-  golden_stride(const unsigned long n)
-  {
-    auto stride = static_cast<unsigned long>(std::ceil(0.618034 * n));
-    while (std::gcd(stride, n) != 1)
-      ++stride;
-    return stride;
-  }
-
   std::string
   without_comments(const std::string &parameters)
   {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/answer.h>
+#include <crawler/base/short_text.h>
 #include <crawler/studies/sweep/checked_runs.h>
 #include <crawler/studies/sweep/cross_check.h>
 #include <crawler/studies/sweep/run_values.h>

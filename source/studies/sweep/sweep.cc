@@ -7,6 +7,7 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/crash_file.h>
+#include <crawler/studies/core/golden_stride.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/petsc_options.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/clock.h>
 #include <crawler/parameters/declarations.h>
+#include <crawler/studies/core/golden_stride.h>
 #include <crawler/studies/core/sensitivities.h>
-#include <crawler/studies/core/study.h>
 #include <crawler/studies/sweep/checked_runs.h>
 #include <crawler/studies/sweep/sweep_blocks.h>
 #include <crawler/studies/sweep/sweep_rows.h>

@@ -4,8 +4,10 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/base/plain_numbers.h>
+#include <crawler/base/short_text.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/crash_file.h>
+#include <crawler/studies/core/golden_stride.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/python.h>

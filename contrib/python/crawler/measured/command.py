@@ -88,6 +88,8 @@ def write_table(path, s, t, values, names):
 def displacements(scene, overrides, entry, tables):
     """Rows of a sweep of the scene over tables, read one after the other, a dict of texts for each; and the table that
     the scene itself names. Raises InputError and FileError with the message of the program."""
+    if "CRAWLER_PROGRAM" not in os.environ:
+        raise InputError('"--scene" needs the program (doc/install.md): crawler table IN OUT --scene FILE is expected')
     with tempfile.TemporaryDirectory(prefix="crawler-table-") as folder:
         names = [os.path.join(folder, f"{k}.csv") for k in range(len(tables))]
         for name, table in zip(names, tables):

@@ -6,6 +6,7 @@ import pathlib
 import subprocess
 import sys
 
+from .. import _compiled
 from ..needs import InputError, Parser, write_whole
 from ..results import entries_of
 from ..tradeoff import evaluate, read_rows
@@ -37,8 +38,11 @@ def kind_of(folder):
 
 
 def program():
-    """Description of the program by itself: its versions, and key, unit and meaning of each number of a run."""
-    name = os.environ.get("CRAWLER_PROGRAM", "crawler")
+    """Description of the program by itself, or of the compiled part of this package: its versions, and key, unit and
+    meaning of each number of a run."""
+    name = os.environ.get("CRAWLER_PROGRAM")
+    if name is None:
+        return {"versions": _compiled().versions, "numbers": json.loads(_compiled().numbers())}
     try:
         return json.loads(subprocess.check_output([name, "parameters", "--format", "results"]))
     except (OSError, ValueError, subprocess.SubprocessError):

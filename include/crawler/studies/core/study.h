@@ -17,12 +17,6 @@ namespace crawler
 {
   /// Common parts of the commands that compute many runs.
 
-  /// Returns a number coprime to @p n near its golden section: its multiples modulo n visit all of n parts, spread out
-  /// from the beginning. So the time left is known early, and a study that is stopped is a coarse picture of
-  /// everything.
-  unsigned long
-  golden_stride(unsigned long n);
-
   /// Lines of a parameter file that set something.
   std::string
   without_comments(const std::string &parameters);

@@ -41,7 +41,7 @@ namespace crawler
 
   /**
    * Order in which the blocks are computed: longest first, as far as that is known, by the duration and the number of
-   * digits wanted. Otherwise spread over the whole sweep from the beginning (golden_stride() in study.h), so the time
+   * digits wanted. Otherwise spread over the whole sweep from the beginning (golden_stride.h), so the time
    * left is known early.
    */
   class SweepOrder

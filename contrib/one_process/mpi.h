@@ -6,6 +6,7 @@
  * (PETSc's mpiuni is the same for its own calls.)
  */
 #include <cstddef>
+#include <cstdlib>
 #include <cstring>
 
 using MPI_Comm     = int;
@@ -13,13 +14,14 @@ using MPI_Datatype = std::size_t; ///< its bytes
 using MPI_Op       = int;
 struct MPI_Status
 {
+  int MPI_SOURCE;
 };
 
 constexpr MPI_Comm MPI_COMM_WORLD = 0, MPI_COMM_SELF = 1;
-constexpr MPI_Datatype MPI_CHAR = 1, MPI_INT = sizeof(int), MPI_UNSIGNED_LONG = sizeof(unsigned long),
+constexpr MPI_Datatype MPI_CHAR = 1, MPI_BYTE = 1, MPI_INT = sizeof(int), MPI_UNSIGNED_LONG = sizeof(unsigned long),
                        MPI_DOUBLE = sizeof(double);
 constexpr MPI_Op MPI_SUM = 0, MPI_MAX = 1, MPI_MIN = 2;
-constexpr int MPI_PROC_NULL                = -1;
+constexpr int MPI_PROC_NULL = -1, MPI_ANY_SOURCE = -2;
 inline void *const MPI_IN_PLACE            = nullptr;
 inline MPI_Status *const MPI_STATUS_IGNORE = nullptr;
 
@@ -87,4 +89,25 @@ inline int
 MPI_Sendrecv(const void *, int, MPI_Datatype, int, int, void *, int, MPI_Datatype, int, int, MPI_Comm, MPI_Status *)
 {
   return 0;
+}
+/// Letters of other ranks: there are none, so nothing is sent or taken.
+inline int
+MPI_Iprobe(int, int, MPI_Comm, int *is_there, MPI_Status *)
+{
+  return *is_there = 0;
+}
+inline int
+MPI_Ssend(const void *, int, MPI_Datatype, int, int, MPI_Comm)
+{
+  std::abort();
+}
+inline int
+MPI_Get_count(const MPI_Status *, MPI_Datatype, int *)
+{
+  std::abort();
+}
+inline int
+MPI_Recv(void *, int, MPI_Datatype, int, int, MPI_Comm, MPI_Status *)
+{
+  std::abort();
 }

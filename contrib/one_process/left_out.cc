@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// What needs libraries that the page does not have: PETSc (adaptive meshes, BDF, couplings of distant cells), deal.II's
-// triangulation, muParser's formulas, HDF5's tables, shared objects. Each is refused in a sentence when a scene asks
-// for it; all else is the program's own code.
+// Parts that need libraries which the core for one process does not have: PETSc (adaptive meshes, BDF, couplings of
+// distant cells), deal.II's triangulation, muParser's formulas, HDF5's files, shared objects. Each is refused in a
+// sentence when a scene asks for it; all else is the program's own code. CRAWLER_LEFT_OUT ends the sentences.
 #include <crawler/base/deal_ii_library.h>
 #include <crawler/base/exceptions.h>
-#include <crawler/base/grid_table.h>
 #include <crawler/formula/formula.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/formula_input.h>
@@ -19,12 +18,9 @@ namespace crawler
     [[noreturn]] void
     refuse(const std::string &what, const std::string &entry = "")
     {
-      throw InputError(what + ", which this page does not have; crawler run computes it", entry);
+      throw InputError(what + ", " CRAWLER_LEFT_OUT, entry);
     }
-  } // namespace
 
-  namespace
-  {
     constexpr const char *petsc =
       "this run needs PETSc's time integration (a step that the fused engine does not take, as "
       "before an inversion, an adaptive mesh or a coupling of distant places)";
@@ -69,6 +65,12 @@ namespace crawler
     refuse(petsc);
   }
 
+  std::string
+  integrator_of_petsc(const std::string &otherwise)
+  {
+    return otherwise;
+  }
+
   void *
   deal_ii_symbol(const char *)
   {
@@ -99,38 +101,5 @@ namespace crawler
   Library::report(std::ostream &) const
   {
     refuse("\"Active stress/Library\" is a shared object");
-  }
-
-  GridTable
-  read_grid_table(const std::string &, const std::string &, const std::string &entry)
-  {
-    refuse("\"" + entry + "\" names a file", entry);
-  }
-
-  void
-  reach_ends(std::vector<double> &,
-             double,
-             const std::string &,
-             const std::string &,
-             const std::string &,
-             const std::string &entry)
-  {
-    refuse("\"" + entry + "\" is a table in a file", entry);
-  }
-  void
-  require_number_of_values(
-    const std::vector<double> &, std::size_t, const std::string &, const std::string &, const std::string &entry)
-  {
-    refuse("\"" + entry + "\" names a file", entry);
-  }
-  void
-  require_reach(const std::vector<double> &,
-                double,
-                const std::string &,
-                const std::string &,
-                const std::string &,
-                const std::string &entry)
-  {
-    refuse("\"" + entry + "\" names a file", entry);
   }
 } // namespace crawler

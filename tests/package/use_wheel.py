@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Uses the wheel of the Python package: its answers are those of the program, and what it does not have it refuses in
+one sentence. tests/package/try_wheel.sh calls this with the Python that has the wheel.
+
+    python use_wheel.py SCENE.prm FOLDER    the folder of `crawler run` with this scene
+"""
+import pathlib
+import subprocess
+import sys
+import tempfile
+import warnings
+
+import crawler
+
+SCENE, FOLDER = sys.argv[1:]
+NEAR = 1e-9
+INSTEAD = "which the wheel does not have: the full program computes it, see doc/install.md"
+failures = []
+
+
+def check(condition, what):
+    """Prints what was checked and keeps failures."""
+    print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
+    if not condition:
+        failures.append(what)
+
+
+def is_near(one, other, scale=0.):
+    return abs(one - other) <= NEAR * max(abs(other), scale)
+
+
+def test_answers():
+    """Single runs, batches, sweeps, derivatives, entries."""
+    theirs, ours = crawler.read(FOLDER), crawler.run(SCENE)
+    for key in ("displacement", "displacement_error.total", "stress_power", "gait.speed", "max_stretch.value"):
+        check(is_near(ours[key], theirs[key], 1. if "error" in key else 0.), f"{key} is {ours[key]!r}, that of the program {theirs[key]!r}")
+    check(abs(ours.fields.stretch - theirs.fields.stretch).max() <= NEAR, f"the stretch at {ours.fields.stretch.size} points")
+    bound = ours.displacement_error.total
+    one, other = crawler.batch([SCENE, SCENE], elastic_modulus=1)
+    check(one.displacement == other.displacement and abs(one.displacement - ours.displacement) <= 2 * bound, "a batch")
+    table = crawler.sweep(SCENE, {"Body/Elastic modulus": [1, 2]})
+    check(list(table["status"]) == ["finished"] * 2 and abs(table["displacement"][0] - ours.displacement) <= 2 * table["displacement_error.total"][0], "a sweep")
+    step = 1e-3
+    slope = (crawler.run(SCENE, elastic_modulus=1 + step).displacement - crawler.run(SCENE, elastic_modulus=1 - step).displacement) / (2 * step)
+    gradient = crawler.gradient(SCENE, "Body/Elastic modulus")
+    check(abs(gradient.derivatives[0] - slope) <= gradient.errors[0] + bound / step, "a derivative")
+    check(crawler.check(SCENE) == ours.parameters and len(crawler.entries()) > 100, "check and entries")
+
+
+def test_refusals(folder):
+    """Scenes and calls that need a library which is left out."""
+    table = folder / "table.h5"
+    table.write_bytes(b"\x89HDF\r\n\x1a\n")
+    calls = {
+        "PETSc": lambda: crawler.run(SCENE, set={"Discretization/Mesh": "adaptive"}),
+        "PETSc's time": lambda: crawler.batch([SCENE], set={"Discretization/Mesh": "adaptive"}),
+        "muParser": lambda: crawler.run(SCENE, set={"Ground/Profile": "1 + 0.5*sin(6*s)"}),
+        "shared object": lambda: crawler.run({"Active stress": {"Generator": "library", "Library": {"File": table}}}),
+        "HDF5": lambda: crawler.run({"Active stress": {"Generator": "table", "Table": {"File": table}}}),
+        "crawler.run": lambda: crawler.run(SCENE, output=folder / "run"),
+        "crawler.sweep": lambda: crawler.sweep(SCENE, {"Body/Elastic modulus": [1, 2]}, output=folder / "sweep"),
+        "crawler.optimize": lambda: crawler.optimize(SCENE, {"Body/Elastic modulus": (1, 2)})}
+    for word, call in calls.items():
+        try:
+            problem = f"it is computed: {call()}"
+        except crawler.InputError as error:
+            problem = str(error)
+        check(word in problem and INSTEAD in problem and "\n" not in problem, f"refused: {problem}")
+    row = crawler.sweep(SCENE, {"Body/Elastic modulus": [1]}, set={"Discretization/Mesh": "adaptive"})
+    check(row["status"][0] == "failed" and row["reason"][0] == "refused" and "PETSc" in row["message"][0], f"a row of a sweep: {row['message'][0]}")
+    check(not (folder / "run").exists() and not (folder / "sweep").exists(), "no folder is left behind")
+
+
+def test_commands():
+    """Commands in Python."""
+    def call(*words):
+        end = subprocess.run([sys.executable, "-m", "crawler", *words], capture_output=True, text=True, check=False)
+        return end.returncode, end.stderr.strip()
+    code, problem = call("run", SCENE)
+    check(code == 2 and "full program" in problem and "\n" not in problem, f"refused: {problem}")
+    try:
+        import h5py  # noqa: F401
+        code, problem = call("report", FOLDER, "--quiet")
+        check(code == 0 and (pathlib.Path(FOLDER) / "report.html").stat().st_size > 10000, f"a report {problem}")
+    except ImportError:
+        code, problem = call("report", FOLDER)
+        check(code != 0 and "has no h5py" in problem, f"without h5py: {problem}")
+
+
+def main():
+    """All tests."""
+    warnings.simplefilter("error")
+    check("site-packages" in crawler.__file__ and set(crawler.run(SCENE).versions) == {"crawler", "revision"}, f"the wheel is used: {crawler.__file__}")
+    test_answers()
+    with tempfile.TemporaryDirectory() as folder:
+        test_refusals(pathlib.Path(folder))
+    test_commands()
+    return "\n".join(failures) or 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
