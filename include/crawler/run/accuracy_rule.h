@@ -229,10 +229,8 @@ namespace crawler::accuracy_rule
     /// Quadrature points of a cell beyond its degree + 1; number of improvements of the functions of higher degree.
     inline constexpr unsigned int more_points = 2, rounds = 2;
     /// Bound of the corrected displacement: this part of the sums of the sizes of all errors, plus the change of the
-    /// last round.
-    inline constexpr double part_of_sums = 0.4;
-    inline constexpr double least_stretch = 0.1; ///< stretch below which nothing is estimated
-    inline constexpr double max_work      = 5e4; ///< limit on steps times cells of a run for the sweep, about a second
+    /// last round. Nothing is estimated below least_stretch, nor of runs of more steps times cells, about a second.
+    inline constexpr double part_of_sums = 0.4, least_stretch = 0.1, max_work = 5e4;
   } // namespace sweep
 
   // Derivatives by entries (studies/core/sensitivities.cc). Measured by
