@@ -363,6 +363,12 @@ namespace crawler::test
   {
     for (const double accuracy : {1e-4, 1e-6, 1e-9})
       add_fig_s1(accuracy);
+    for (int i = 1; i <= 10; ++i) // contrib/peers/trade.py
+    {
+      const double accuracy = std::pow(10., -i);
+      add(fmt::format("front/engine/1e-{}", i), run_one, fig_s1(), "fused", accuracy);
+      add(fmt::format("front/answer/1e-{}", i), run_answer, fig_s1(), accuracy);
+    }
     for (const Case &body : {fig_2(), stiff()})
     {
       const std::string name = "case/" + body.name + "/1e-6";
