@@ -16,7 +16,9 @@ sys.path.insert(0, sys.argv.pop(1))
 import numpy as np  # noqa: E402
 
 import crawler  # noqa: E402
-from crawler.fitting.uncertainty import curvature_bias  # noqa: E402
+from crawler.fitting import prepared  # noqa: E402
+from crawler.fitting.fit import Problem, _looked_at  # noqa: E402
+from crawler.fitting.uncertainty import covariance, curvature_bias  # noqa: E402
 from crawler.measured import Samples, Settings, prepare, read_samples  # noqa: E402
 
 BODY, WAVE = "Body/", "Active stress/Travelling wave/"
@@ -124,8 +126,27 @@ class Values(unittest.TestCase):
     def test_bias_of_an_inverse(self):
         """With n data y = c/k and noise sigma, the mean of the values of k is sigma^2 k^3/(n c^2) too large, to second order."""
         n, c, k, sigma = 50, 3.0, 0.4, 0.2
-        bias = curvature_bias(lambda x: np.full(n, c / x[0] - c / k) / sigma, np.full((n, 1), -c / k ** 2 / sigma), 1, np.array([k]))
+        bias = curvature_bias(lambda x: np.full(n, c / x[0] - c / k) / sigma, np.full((n, 1), -c / k ** 2 / sigma), np.array([k]))
         self.assertAlmostEqual(bias[0] / (sigma ** 2 * k ** 3 / (n * c ** 2)), 1, delta=1e-4)
+
+    def test_numerical_error_has_the_last_step(self):
+        """Beside the best value the last step is the largest part of it."""
+        model, _ = prepared({**STRAIN, "Fit/Variables": f"{P} : 0.2 to 6", "Fit/Markers at": ", ".join(map(repr, S.tolist()))}, [], tracks(STRAIN))
+        problem, model.accuracy = Problem(model, model.data), 1e-6
+        _, z, _ = problem.search(np.array([0.3]))
+        best = _looked_at(problem, z + 0.01)
+        self.assertAlmostEqual(best.z[0], z[0], delta=1e-3)
+        self.assertGreater(best.numerical[0], 0.009)
+
+    def test_deviation_beside_an_undetermined_direction(self):
+        """The direction is one of round-off: the deviation of a variable that is not in it is that of the variable alone."""
+        random = np.random.default_rng(1).standard_normal((2, 50))
+        regular = 300 * random[0] / np.linalg.norm(random[0])
+        matrix = covariance(np.stack([regular, 1e-8 * regular + 1e-8 * random[1]], axis=1))
+        self.assertAlmostEqual(300 * np.sqrt(matrix[0, 0]), 1, delta=1e-3)
+        data = tracks(STRESS)
+        alone, beside = (fit(STRESS, data, *names, standard_deviation=NOISE) for names in ((P, K, AMPLITUDE), (P, GAMMA, K, AMPLITUDE)))
+        self.assertAlmostEqual(beside.variables[P]["deviation"] / alone.variables[P]["deviation"], 1, delta=1e-3)
 
     def test_noise_is_found(self):
         found = fit(STRESS, tracks(STRESS), P, K, AMPLITUDE)

@@ -8,7 +8,7 @@ from scipy.optimize import least_squares
 from ..needs import Failed, InputError
 from .result import MOST_STEPS, NEAR, SHARE, Best, described, unfinished
 from .starts import best_of_starts, table_of_starts
-from .uncertainty import undetermined_directions
+from .uncertainty import covariance, undetermined_directions
 
 LARGEST_ACCURACY, LEAST_ACCURACY = 1e-4, 3e-11  # accuracies of runs whose differences are derivatives
 MOST_REFINEMENTS = 4
@@ -101,12 +101,14 @@ class Problem:
         return 2 * found.cost, z, found.status > 0
 
     def improved(self, z, jacobian):
-        """Improves z by one more step, with central differences where no limit is in the way."""
-        step = np.linalg.lstsq(jacobian, self.residuals(z), rcond=1e-6)[0]
-        if np.any(z < NEAR) or np.any(z > 1 - NEAR) or np.any(z - step < 0) or np.any(z - step > 1):
-            return z
-        before, after = (np.sum(self.residuals(at) ** 2) for at in (z, z - step))
-        return z - step if after <= before else z
+        """Improves z by one more step, with central differences, of the variables that are not at a limit; returns the
+        step, too."""
+        free = (z > NEAR) & (z < 1 - NEAR)
+        step = np.zeros(len(z))
+        step[free] = np.linalg.lstsq(jacobian[:, free], self.residuals(z), rcond=1e-6)[0]
+        after = np.clip(z - step, 0, 1)
+        is_better = np.sum(self.residuals(after) ** 2) <= np.sum(self.residuals(z) ** 2)
+        return after if is_better else z, after - z
 
     def move_places(self, z):
         """Moves places that are free, or held within their deviation, to their best fit, about which they are linear;
@@ -165,17 +167,19 @@ def find(model, progress=lambda text: None, kept=None, workers=1):
 def _looked_at(problem, z):
     """Best of a search from its end, with one more step."""
     data, jacobian = problem.data, problem.jacobian(z, both_sides=True)
-    z = problem.improved(z, jacobian)
+    z, step = problem.improved(z, jacobian)
     residual = problem.residuals(z)
     freedom = data.n - len(z) - data.n_constants
     deviation = 1.0 if data.is_weighed else max(math.sqrt(float(residual @ residual) / freedom), LEAST_NOISE)
-    loose, members = undetermined_directions(jacobian / deviation)
-    return Best(z, jacobian, deviation, _numerical_error(problem, z, jacobian), loose, members)
+    jacobian = jacobian / deviation
+    loose, members = undetermined_directions(jacobian)
+    return Best(z, jacobian, deviation, np.abs(step) + _error_of_runs(problem, z, jacobian, deviation), loose, members)
 
 
-def _numerical_error(problem, z, jacobian):
+def _error_of_runs(problem, z, jacobian, deviation):
     """Change of the variables by the numerical error of the runs: from a run with a thirtieth of the error, and from a
-    displacement that is wrong by its bound at the end, and before in proportion to time."""
+    displacement that is wrong by its bound at the end, and before in proportion to time. jacobian: of residuals in
+    deviations."""
     model, data = problem.model, problem.data
     problem.last = None  # the bound is then that of this run
     values, basis = problem.run(z)
@@ -184,5 +188,5 @@ def _numerical_error(problem, z, jacobian):
     finer, _ = model(problem.real(z), model.accuracy / 30)
     if not np.all(np.isfinite(finer)):
         return np.full(len(z), math.nan)
-    changes = np.stack([problem.scaled(values - finer, basis), problem.scaled(drift, basis)], axis=1)
-    return np.abs(np.linalg.lstsq(jacobian, changes, rcond=1e-9)[0]).sum(axis=1)
+    changes = np.stack([problem.scaled(values - finer, basis), problem.scaled(drift, basis)], axis=1) / deviation
+    return np.abs(covariance(jacobian) @ (jacobian.T @ changes)).sum(axis=1)

@@ -50,7 +50,7 @@ def value_in_words(one):
 class Best:
     """End of a search, in scaled variables (0 to 1 over the ranges)."""
     z: np.ndarray           # [variable]
-    jacobian: np.ndarray    # [residual, variable]
+    jacobian: np.ndarray    # [residual, variable], of residuals in deviations
     deviation: float        # standard deviation of a residual
     numerical: np.ndarray   # [variable], errors; NaN where unknown
     loose: np.ndarray       # [direction, variable], undetermined directions
@@ -64,7 +64,7 @@ class Best:
     @property
     def spread(self):
         """Deviations [variable]."""
-        return np.sqrt(np.diag(covariance(self.jacobian))) * self.deviation
+        return np.sqrt(np.diag(covariance(self.jacobian)))
 
     @property
     def worst(self):
@@ -110,7 +110,7 @@ def described(problem, best, starts):
              "information": {"aic": likelihood + 2 * k, "bic": likelihood + k * math.log(n)},
              "accuracy": model.accuracy, "n_runs": model.n_runs, "starts": starts}
     return Fit(found, data, -residual[:data.n] * problem.scales, dict(one.split("=", 1) for one in model.overrides(values)),
-               matrix * best.deviation ** 2 * np.outer(problem.width, problem.width))
+               matrix * np.outer(problem.width, problem.width))
 
 
 def _untold(problem, best, variables, values):
@@ -126,9 +126,9 @@ def _variables(problem, best, values):
     """Entries of each variable."""
     model, spread, width, variables = problem.model, best.spread, problem.width, {}
     profile = Profile(lambda z: problem.residuals(z) / best.deviation, lambda z: problem.jacobian(z) / best.deviation, best.z,
-                      best.jacobian / best.deviation)
+                      best.jacobian)
     at_best, basis = problem.run(best.z)
-    bias = curvature_bias(lambda z: problem.scaled(model(problem.real(z))[0] - at_best, basis), best.jacobian, best.deviation, best.z)
+    bias = curvature_bias(lambda z: problem.scaled(model(problem.real(z))[0] - at_best, basis) / best.deviation, best.jacobian, best.z)
     for j, name in enumerate(model.names):
         at, is_told = best.z[j], not best.involved[j]
         one = {"value": float(values[j]) if is_told else None, "used": float(values[j]), "deviation": None, "numerical_error": None, "bias": None,

@@ -33,21 +33,24 @@ def undetermined_directions(jacobian):
 
 
 def covariance(jacobian):
-    """Covariance of the variables, by Gauss and Newton; undetermined directions are wide, but finite."""
+    """Covariance of the variables, by Gauss and Newton. Along an undetermined direction it is that of a range, so that
+    the round-off of the direction is none of the deviation of a variable that does not belong to it."""
     _, sizes, directions = np.linalg.svd(jacobian, full_matrices=False)
-    return (directions.T / np.maximum(sizes, 1e-9 * sizes.max(initial=1.0)) ** 2) @ directions
+    return (directions.T / np.maximum(sizes, 1.0) ** 2) @ directions
 
 
-def curvature_bias(change, jacobian, deviation, z):
+def curvature_bias(change, jacobian, z):
     """Bias of the best values in the mean, to second order [variable] (Box, J. R. Stat. Soc. B 33, 171, 1971):
     -(J'J)^-1 J'c/2, where c has the second differences of the model along the axes of the covariance. NaN if there is
     no run, a value is at its limit, or some direction is undetermined.
 
-    change(x): change of the model from z to x, as scaled residuals; jacobian: at z; deviation: of a residual.
+    change(x): change of the model from z to x, as scaled residuals; jacobian: at z.
     """
     inverse, curvature = covariance(jacobian), np.zeros(len(jacobian))
     sizes, axes = np.linalg.eigh(inverse)
-    for step in (axes * np.sqrt(np.maximum(sizes, 0)) * deviation).T:
+    if sizes[-1] > WIDE ** 2:
+        return np.full(len(z), math.nan)
+    for step in (axes * np.sqrt(np.maximum(sizes, 0))).T:
         part = min(STEP, *(0.9 * np.minimum(z, 1 - z) / np.maximum(np.abs(step), 1e-300)))  # within the ranges
         if part < 0.1 * STEP:
             return np.full(len(z), math.nan)
