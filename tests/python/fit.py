@@ -379,7 +379,7 @@ class Untold(unittest.TestCase):
 
     def test_names_the_largest_residual(self):
         """A wrong number makes a scene fail; of it and its place speaks the first sentence, and none of what the data tell."""
-        for size, name, words in ((300, GAMMA, ("does not fit", "marker 4, t = 1 of the run")), (10, P, ("is it an outlier", "marker 4, t = 1 of the run"))):
+        for size, name, words in ((300, GAMMA, ("does not fit", "marker 4, t = 1 of the run")), (10, P, ("perhaps an outlier", "marker 4, t = 1 of the run"))):
             data = tracks(STRAIN)
             data.values[20, 4] += size * NOISE
             found = fit(STRAIN, data, name, standard_deviation=NOISE)

@@ -176,7 +176,7 @@ def _does_not_fit(goodness):
         yield (f"the scene does not fit the data: chi-square is {chi_square:.4g} with {freedom} degrees of freedom (probability {p_value:.1g}), so "
                f"the deviations are too small; {_largest_in_words(goodness)}; another scene, or another standard deviation, is expected{units}")
     elif goodness["n_data"] * probability(goodness["largest_residual"]["deviations"] ** 2, 1) < OUTLYING:
-        yield f"{_largest_in_words(goodness)}: more than noise gives; is it an outlier?"
+        yield f"{_largest_in_words(goodness)}: more than noise gives, perhaps an outlier"
 
 
 def _largest_in_words(goodness):
