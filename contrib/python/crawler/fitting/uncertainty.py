@@ -4,11 +4,14 @@
 Seber and Wild, Nonlinear Regression (1989), chapters 3 and 5. Variables are scaled to their ranges here, [0, 1] each, and
 residuals by the standard deviation of the data.
 """
+import contextlib
 import math
 
 import numpy as np
 from scipy import stats
 from scipy.optimize import least_squares
+
+from ..needs import Failed
 
 WIDE = 0.5          # standard deviation in ranges beyond which a value is undetermined
 PART = 0.01         # part of a direction beyond which a variable may belong to it
@@ -154,10 +157,10 @@ class Profile:
                 full[others] = y
                 return full
             if others.any():
-                found = least_squares(lambda y: self.residuals(whole(y)), np.clip(x[others], 1e-9, 1 - 1e-9),
-                                      lambda y: self.jacobian(whole(y))[:, others], bounds=(0, 1), x_scale="jac",
-                                      ftol=1e-3 / len(self.slopes), xtol=1e-6, max_nfev=20)
-                x = whole(found.x)
+                with contextlib.suppress(Failed):  # no runs beside it
+                    x = whole(least_squares(lambda y: self.residuals(whole(y)), np.clip(x[others], 1e-9, 1 - 1e-9),
+                                            lambda y: self.jacobian(whole(y))[:, others], bounds=(0, 1), x_scale="jac",
+                                            ftol=1e-3 / len(self.slopes), xtol=1e-6, max_nfev=20).x)
             root = math.sqrt(max(float(np.sum(self.residuals(x) ** 2)) - self.least, 0.0))
         points.append((z, root, x))
         points.sort(key=lambda point: point[0])
