@@ -316,6 +316,11 @@ class Valley(unittest.TestCase):
 class NoRun(unittest.TestCase):
     """Values at which there is no run, or one that would not end."""
 
+    def test_inversion_at_once(self):
+        """The active stress is beyond the modulus at t = 0: there is no step, and nothing between steps to show."""
+        modes = {"Active stress/Generator": "modes", "Active stress/Modes/Coefficients": 2}
+        self.assertEqual(crawler.run(modes, fields=[0, 1], places=[0.5]).reason, "inverted_at_end")
+
     def test_derivatives_beside_the_last_run(self):
         class Square(Model):
             def __init__(self):
