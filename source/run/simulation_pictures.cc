@@ -18,7 +18,8 @@ namespace crawler
       ending = Ending::lost;
     if (ending == Ending::none)
       show_step(step, y);
-    else if (!run_->observers.empty() && run_->diagnosis && run_->diagnosis->status == Status::inverted)
+    else if (step.size > 0. && !run_->observers.empty() && run_->diagnosis &&
+             run_->diagnosis->status == Status::inverted)
       show_pictures_before_inversion(step);
     result().output_seconds += now() - before;
     return ending;

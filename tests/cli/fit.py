@@ -27,7 +27,9 @@ REFUSED = [
     ([], 2, "FILE"), (["nowhere.prm"], 6, "nowhere.prm"), (["fit_worm.prm"], 2, "--overwrite"), (["fit_worm.prm", "--data", "no.csv"], 2, "no.csv"),
     (["fit_worm.prm", "--outptu", "x"], 2, "--output"), (["fit_worm.prm", "--set", "Body/Length"], 2, "Section/Entry=value"),
     (["fit_worm.prm", "--set", "Body/Lenght=3"], 2, "Length"), (["fit_worm.prm", "--set", "Fit/Data="], 2, "Fit/Data is empty"),
-    (["fit_worm.prm", "--set", "Fit/Variables="], 2, 'Variables" is empty'), (["fit_worm.prm", "--unit-of-t", "1000"], 2, "Time/End time"),
+    (["fit_worm.prm", "--set", "Fit/Variables="], 2, 'Variables" is empty'), (["fit_worm.prm", "--unit-of-s", "1000"], 2, '"--unit-of-s"'),
+    (["fit_worm.prm", "--columns", "x=x1"], 2, '"--columns" has "x=x1"'), (["fit_worm.prm", "--set", "Fit/Variables=Ground/Backward ratio : 0.5 to 2"], 2, "a velocity is expected"),
+    (["fit_worm.prm", "--unit-of-t", "1000"], 2, "Time/End time"),
     (["fit_worm.prm", "--output", "fit_worm.prm"], 2, "is a file"), (["fit_worm.prm", "--output", "other", "--overwrite"], 2, "not the folder of a fit"),
     (["fit_worm.prm", "--set", "Fit/Variables=Active stress/Travelling wave/Amplitude : 5 to 6", "--set",
       "Active stress/Travelling wave/Amplitude=5.5"], 2, "cannot be run"),
@@ -161,7 +163,7 @@ def resumes():
 def resumes_a_comparison():
     """One that is stopped in the second scene says which is finished; nothing foreign is written over."""
     words = ("fit", "three.prm", "fit_worm.prm", "--set", "Fit/Starts=1", "--output", "stopped")
-    ended = crawler(*words, stop_at="step:3000:TERM")
+    ended = crawler(*words, stop_at="step:4500:TERM")
     check(ended.returncode == 5 and "fit_worm.prm:" in ended.stdout, f"stopped in the second: {ended.stdout}{ended.stderr}")
     for command in ("report", "plot"):
         ended = crawler(command, "stopped")

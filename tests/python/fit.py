@@ -16,7 +16,10 @@ sys.path.insert(0, sys.argv.pop(1))
 import numpy as np  # noqa: E402
 
 import crawler  # noqa: E402
-from crawler.fitting.uncertainty import curvature_bias  # noqa: E402
+from crawler.fitting import prepared  # noqa: E402
+from crawler.fitting.fit import Problem, _looked_at  # noqa: E402
+from crawler.fitting.model import Model  # noqa: E402
+from crawler.fitting.uncertainty import covariance, curvature_bias  # noqa: E402
 from crawler.measured import Samples, Settings, prepare, read_samples  # noqa: E402
 
 BODY, WAVE = "Body/", "Active stress/Travelling wave/"
@@ -124,8 +127,27 @@ class Values(unittest.TestCase):
     def test_bias_of_an_inverse(self):
         """With n data y = c/k and noise sigma, the mean of the values of k is sigma^2 k^3/(n c^2) too large, to second order."""
         n, c, k, sigma = 50, 3.0, 0.4, 0.2
-        bias = curvature_bias(lambda x: np.full(n, c / x[0] - c / k) / sigma, np.full((n, 1), -c / k ** 2 / sigma), 1, np.array([k]))
+        bias = curvature_bias(lambda x: np.full(n, c / x[0] - c / k) / sigma, np.full((n, 1), -c / k ** 2 / sigma), np.array([k]))
         self.assertAlmostEqual(bias[0] / (sigma ** 2 * k ** 3 / (n * c ** 2)), 1, delta=1e-4)
+
+    def test_numerical_error_has_the_last_step(self):
+        """Beside the best value the last step is the largest part of it."""
+        model, _ = prepared({**STRAIN, "Fit/Variables": f"{P} : 0.2 to 6", "Fit/Markers at": ", ".join(map(repr, S.tolist()))}, [], tracks(STRAIN))
+        problem, model.accuracy = Problem(model, model.data), 1e-6
+        _, z, _ = problem.search(np.array([0.3]))
+        best = _looked_at(problem, z + 0.01)
+        self.assertAlmostEqual(best.z[0], z[0], delta=1e-3)
+        self.assertGreater(best.numerical[0], 0.009)
+
+    def test_deviation_beside_an_undetermined_direction(self):
+        """The direction is one of round-off: the deviation of a variable that is not in it is that of the variable alone."""
+        random = np.random.default_rng(1).standard_normal((2, 50))
+        regular = 300 * random[0] / np.linalg.norm(random[0])
+        matrix = covariance(np.stack([regular, 1e-8 * regular + 1e-8 * random[1]], axis=1))
+        self.assertAlmostEqual(300 * np.sqrt(matrix[0, 0]), 1, delta=1e-3)
+        data = tracks(STRESS)
+        alone, beside = (fit(STRESS, data, *names, standard_deviation=NOISE) for names in ((P, K, AMPLITUDE), (P, GAMMA, K, AMPLITUDE)))
+        self.assertAlmostEqual(beside.variables[P]["deviation"] / alone.variables[P]["deviation"], 1, delta=1e-3)
 
     def test_noise_is_found(self):
         found = fit(STRESS, tracks(STRESS), P, K, AMPLITUDE)
@@ -291,6 +313,41 @@ class Valley(unittest.TestCase):
         self.assertNotIn("information", found)
 
 
+class NoRun(unittest.TestCase):
+    """Values at which there is no run, or one that would not end."""
+
+    def test_inversion_at_once(self):
+        """The active stress is beyond the modulus at t = 0: there is no step, and nothing between steps to show."""
+        modes = {"Active stress/Generator": "modes", "Active stress/Modes/Coefficients": 2}
+        self.assertEqual(crawler.run(modes, fields=[0, 1], places=[0.5]).reason, "inverted_at_end")
+
+    def test_derivatives_beside_the_last_run(self):
+        class Square(Model):
+            def __init__(self):
+                self.low, self.high, self.names, self.problem, self.is_refused = np.zeros(1), np.full(1, 2.0), ["x"], "inversion", False
+
+            def __call__(self, x):
+                return np.full(3, x[0] ** 2 if x[0] <= self.end else np.nan), None
+        model = Square()
+        model.end = 1
+        for value in (None, np.ones(3)):
+            np.testing.assert_allclose(model.jacobian([1.0], value), 2, rtol=1e-3)
+        model.end = 0.9
+        with self.assertRaisesRegex(crawler.fitting.model.Failed, "beside x = 1 there is no run: inversion"):
+            model.jacobian([1.0], np.ones(3))
+
+    def test_search_without_derivatives_keeps_what_was_found(self):
+        with unittest.mock.patch.object(Model, "jacobian", side_effect=crawler.fitting.model.Failed("beside x = 1 there is no run: inversion")):
+            found = fit(STRAIN, tracks(STRAIN), P, standard_deviation=NOISE, starts=2)
+        self.assertEqual((found.status, len(found.starts), found.variables[P]["deviation"]), ("failed", 2, None))
+        self.assertIn("there is no run: inversion; the values are those so far, and not the best ones, so there are no deviations", found.notes[-1])
+
+    def test_absurd_values_are_given_up(self):
+        found = crawler.fit(STRESS, tracks(STRESS), {P: (-90, 90)}, standard_deviation=NOISE, markers_at=S, starts=3)
+        self.assertRegex(" ".join(found.notes), "runs needed more than 500 steps and count as failed")
+        self.assertLess(abs(found.variables[P]["value"] - 2), 4 * found.variables[P]["deviation"])
+
+
 class Untold(unittest.TestCase):
     """What the data do not tell is said, and not returned as a number."""
 
@@ -351,20 +408,34 @@ class Untold(unittest.TestCase):
         found = crawler.fit({**STRAIN, P: 1.8}, path(STRAIN), {P: RANGES[P]}, standard_deviation=NOISE, set={"Fit/Place deviation": "0.1"})
         self.assertIn('"Fit/Place deviation" has no effect', " ".join(found.notes))
 
+    def test_entries_that_a_variable_gives_an_effect(self):
+        scene, ratio = {**STRESS, "Fit/Variables": "Ground/Backward ratio : 0.5 to 2"}, "Ground/Switching velocity=0.1"
+        self.assertEqual(prepared(scene, [ratio], path(STRESS))[1], [])
+        self.assertIn("no effect", prepared({**scene, "Fit/Variables": f"{P} : 1 to 3"}, [ratio], path(STRESS))[1][0])
+
+    def test_data_that_are_short_beside_the_run(self):
+        data = path(STRESS)
+        data.t = data.t / 1000
+        self.assertIn('last 0.002, 1/1000 of the run (Time/End time is 2): see "--unit-of-t"', fit(STRESS, data, P).notes[0])
+
     def test_says_that_a_value_is_at_its_limit(self):
         found = crawler.fit({**STRAIN, P: 1.5}, tracks(STRAIN), {P: (0.5, 1.8)}, standard_deviation=NOISE)
-        self.assertEqual(found.variables[P]["at_limit"], "to")
-        self.assertIn("at the limit of its range, 1.8:", " ".join(found.notes))
+        self.assertEqual((found.variables[P]["at_limit"], found.variables[P]["interval_95"][1]), ("to", None))
+        self.assertRegex(" ".join(found.notes), "at the limit of its range, 1.8:.*one-sided")
+        near = crawler.fit(STRAIN, tracks(STRAIN), {P: (1.92, 100)}, standard_deviation=NOISE, markers_at=S)  # in a wide range
+        self.assertTrue(all(near.variables[P]["interval_95"]))
+        self.assertEqual((near.variables[P]["at_limit"], near.notes), ("", []))
 
     def test_names_the_largest_residual(self):
         """A wrong number makes a scene fail; of it and its place speaks the first sentence, and none of what the data tell."""
-        for size, name, words in ((300, GAMMA, ("does not fit", "marker 4, t = 1 of the run")), (10, P, ("is it an outlier", "marker 4, t = 1 of the run"))):
+        for size, name, words in ((300, GAMMA, ("does not fit", "marker 4, t = 1 of the run")), (10, P, ("perhaps an outlier", "marker 4, t = 1 of the run"))):
             data = tracks(STRAIN)
             data.values[20, 4] += size * NOISE
             found = fit(STRAIN, data, name, standard_deviation=NOISE)
             for word in words:
                 self.assertIn(word, found.notes[0])
             self.assertEqual(found.undetermined, [])
+            self.assertEqual(f"there is no deviation of {GAMMA}" in " ".join(found.notes), name == GAMMA)
             self.assertAlmostEqual(abs(found.goodness.largest_residual.deviations) / size, 1, delta=0.5)
 
 
@@ -422,7 +493,8 @@ class Refusals(unittest.TestCase):
         few = Samples("centre", np.zeros(1), T[:2], np.zeros((2, 1)))
         late = Samples("centre", np.zeros(1), T + 1, np.zeros((41, 1)))
         wide = Samples("strain", 2 * S, T, np.zeros((41, 7)))
-        inverted = {**STRESS, AMPLITUDE: 5}
+        inverted, micrometres = {**STRESS, AMPLITUDE: 5}, tracks(STRAIN)
+        micrometres.values *= 1000
         for sentence, more in (
                 ("more data or fewer variables", {"data": few}), ("Time/End time", {"data": late}), ("Body/Length", {"data": wide}),
                 ("samples of m", {"data": Samples("m", S, T, np.zeros((41, 7)))}), ("Fit/Data is empty", {"data": ""}),
@@ -448,6 +520,8 @@ class Refusals(unittest.TestCase):
                 ("numbers at equally spaced places", {"variables": {BODY + "Friction profile[1]": (0.1, 2)}}),
                 ('"rate" is expected', {"scene": {**STRAIN, BODY + "Friction profile": "1+rate*s", BODY + "Constants": "rate=1"}, "variables": {BODY + "Constants[rat]": (0.1, 2)}}),
                 ("is 0 at s = 1", {"scene": {**STRAIN, BODY + "Friction profile": "2+rate*s", BODY + "Constants": "rate=1"}, "variables": {BODY + "Constants[rate]": (-2, 2)}}),
+                ("times their distance on the body", {"data": micrometres, "markers_at": S}),
+                ("Switching velocity is automatic, but a velocity", {"scene": STRESS, "variables": {"Ground/Backward ratio": (0.5, 2)}, "markers_at": S}),
                 ("cannot be run", {"scene": inverted, "variables": {AMPLITUDE: (4, 6)}})):
             with self.subTest(sentence=sentence):
                 self.refused(sentence, **more)

@@ -4,6 +4,7 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/entry_notes.h>
 #include <crawler/studies/core/input.h>
+#include <crawler/studies/core/variables.h>
 
 #include <fmt/format.h>
 
@@ -47,7 +48,7 @@ namespace crawler
   Input
   read_input(ParameterFile file, const std::string &command)
   {
-    const Form form(file);
+    Form form(file);
     const Parameters &parameters = form.parameters;
     std::ostringstream effective;
     form.declarations.print_prm(effective);
@@ -55,7 +56,11 @@ namespace crawler
     {
       parameters.units.require_plain();
       Scene scene = parameters.create_scene();
-      auto notes  = notes_on_entries(file, form.declarations, command);
+      VariedEntries varied;
+      if ((command == "fit" || command == "check") && !trimmed(parameters.fit.variables).empty())
+        for (const Variable &one : read_variables(form, "Fit/Variables"))
+          varied.paths.push_back(one.path);
+      auto notes = notes_on_entries(file, form.declarations, command, varied);
       add_notes_on_scene(file, parameters, scene, notes);
       std::ranges::copy(profiles_beyond_the_body(scene), std::back_inserter(notes));
       auto sensitivities = sensitivity_entries(form);

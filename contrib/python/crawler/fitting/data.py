@@ -9,6 +9,8 @@ import numpy as np
 from ..measured.samples import Samples, read_samples
 from ..needs import FileError, InputError
 
+SHRUNK, STRETCHED = 0.2, 3.0  # mean stretches between the outermost markers that no body has
+SHORT = 0.02  # duration of the data, relative to the run, that may be one in other units
 CLOSE = 0.02  # distance of the outermost markers from the ends of the body that counts as none, relative to its length
 KINDS = {"x": "markers", "strain": "strain", "centre": "centre", "speed": "speed"}  # kinds by the quantity of Samples
 COUNTED = ("markers", "centre")  # kinds that are measured from an origin
@@ -137,7 +139,7 @@ def read_data(data, parameters, **reading):
             raise InputError('"Fit/Place deviation" is set, but not "Fit/Standard deviation", without which the two cannot be weighed; it is expected')
         series.append(Series(kind, _times_of_run(samples.t + shift, parameters["Time/End time"], name), places, samples.values, deviation,
                              list(samples.names), list(samples.notes), relative))
-    series[0].notes.extend(_idle_entries(series, parameters))
+    series[0].notes.extend([*_idle_entries(series, parameters), *_short_data(series, parameters["Time/End time"])])
     return Data(series, not any(one.kind in COUNTED for one in series) or parameters["Fit/Origin"] != "unknown", free)
 
 
@@ -180,6 +182,7 @@ def _places_of(samples, kind, parameters, name):
     length = parameters["Body/Length"]
     if kind == "markers":
         places, free = _places_of_markers(samples, parameters, length, name)
+        _require_unit_of_markers(samples, places, name)
         return np.clip(places, 0, length), free
     if kind != "strain":
         return np.empty(0), 0.0
@@ -188,6 +191,25 @@ def _places_of(samples, kind, parameters, name):
         raise InputError(f"{name} has strain from s = {places[0]:g} to {places[-1]:g}, but places from 0 to Body/Length = {length:g} are "
                          "expected; see \"--unit-of-s\" and \"--shift-s\"")
     return np.clip(places, 0, length), 0.0
+
+
+def _require_unit_of_markers(samples, places, name):
+    """Raises InputError if the outermost markers are in most frames so far apart, or so near, that no body can be."""
+    ends = samples.values[:, -1] - samples.values[:, 0]
+    if len(places) < 2 or np.all(np.isnan(ends)):
+        return
+    span, on_body = np.nanmedian(ends), places[-1] - places[0]
+    if not SHRUNK < span / on_body < STRETCHED:
+        times = f"{span / on_body:.4g} times" if span / on_body > 1 else f"1/{on_body / span:.4g} of" if span > 0 else "not in the order of"
+        raise InputError(f'the outermost markers of {name} are {span:g} apart, {times} their distance on the body, {on_body:g}; the same unit of length is '
+                         'expected in data and scene, see "--unit-of-s" (and "--unit-of-t")')
+
+
+def _short_data(series, end):
+    """Sentence on data that last only a small part of the run, as times in other units do."""
+    lasts = max(one.t[-1] for one in series) - min(one.t[0] for one in series)
+    if lasts < SHORT * end and max(len(one.t) for one in series) > 1:
+        yield f'the data last {lasts:g}, 1/{end / lasts:.4g} of the run (Time/End time is {end:g}): see "--unit-of-t" if that is not meant'
 
 
 def _deviations_of(read, text):

@@ -6,12 +6,13 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ..needs import Failed, InputError
-from .result import MOST_STEPS, NEAR, SHARE, Best, described, unfinished
+from .result import NEAR, SHARE, Best, described, unfinished
 from .starts import best_of_starts, table_of_starts
-from .uncertainty import undetermined_directions
+from .uncertainty import covariance, undetermined_directions
 
 LARGEST_ACCURACY, LEAST_ACCURACY = 1e-4, 3e-11  # accuracies of runs whose differences are derivatives
 MOST_REFINEMENTS = 4
+MOST_STEPS = 1000     # most steps of a search, which takes some hundred along a curved valley
 CHANGE = 1e-3         # change of chi-square, with data of known deviation, that ends a search
 MOST_MOVES, FAR_PLACE = 6, 1e-3  # for unknown places of markers; the latter in lengths of the body
 LEAST_NOISE = 1e-10   # relative to the variation of the data; for data without noise
@@ -83,30 +84,31 @@ class Problem:
         """Jacobian [residual, variable], with origin and places fixed (Kaufman, BIT 15, 49, 1975)."""
         values, basis = self.run(z)
         columns = self.model.jacobian(self.real(z), None if both_sides else values) * self.width
-        if not np.all(np.isfinite(columns)):
-            values = ", ".join(f"{name} = {value:.6g}" for name, value in zip(self.model.names, self.real(z)))
-            raise Failed(f"near {values} there is no run: {self.model.problem}; narrower ranges are expected")
         return np.stack([self.scaled(one, basis) for one in np.moveaxis(columns, -1, 0)], axis=-1)
 
     def search(self, z):
-        """Least sum of squares from here: (sum, scaled variables, True if the search ended in order)."""
+        """Least sum of squares from here: (sum, scaled variables, "" or why the search did not end in order)."""
         for _ in range(MOST_MOVES):
-            if not np.all(np.isfinite(self.residuals(z))):
-                return math.inf, z, False
-            found = least_squares(self.residuals, np.clip(z, 1e-9, 1 - 1e-9), self.jacobian, bounds=(0, 1), x_scale="jac",
-                                  ftol=CHANGE / self.data.n, xtol=1e-8, gtol=1e-12, max_nfev=MOST_STEPS)
+            try:
+                if not np.all(np.isfinite(self.residuals(z))):
+                    raise Failed(self.model.problem)
+                found = least_squares(self.residuals, np.clip(z, 1e-9, 1 - 1e-9), self.jacobian, bounds=(0, 1), x_scale="jac",
+                                      ftol=CHANGE / self.data.n, xtol=1e-8, gtol=1e-12, max_nfev=MOST_STEPS)
+            except Failed as error:
+                squares, least, self.data.places = self.least
+                return squares, z if least is None else least, str(error)
             z = found.x
             if self.data.place_deviation == 0 or not self.move_places(z):
                 break
-        return 2 * found.cost, z, found.status > 0
+        return 2 * found.cost, z, "" if found.status > 0 else f"the search did not end within {MOST_STEPS} steps"
 
     def improved(self, z, jacobian):
-        """Improves z by one more step, with central differences where no limit is in the way."""
-        step = np.linalg.lstsq(jacobian, self.residuals(z), rcond=1e-6)[0]
-        if np.any(z < NEAR) or np.any(z > 1 - NEAR) or np.any(z - step < 0) or np.any(z - step > 1):
-            return z
-        before, after = (np.sum(self.residuals(at) ** 2) for at in (z, z - step))
-        return z - step if after <= before else z
+        """Improves z by one more step, with central differences, of the variables that are not at a limit; returns the
+        step, too."""
+        free, step, residuals = (z > NEAR) & (z < 1 - NEAR), np.zeros(len(z)), self.residuals(z)
+        step[free] = np.linalg.lstsq(jacobian[:, free], residuals, rcond=1e-6)[0]
+        after = np.clip(z - step, 0, 1)
+        return after if np.sum(self.residuals(after) ** 2) <= np.sum(residuals ** 2) else z, after - z
 
     def move_places(self, z):
         """Moves places that are free, or held within their deviation, to their best fit, about which they are linear;
@@ -136,46 +138,52 @@ def find(model, progress=lambda text: None, kept=None, workers=1):
     """Finds the Fit of a Model to its data.
 
     progress: called with messages; kept: a dict of finished starts, which are not searched again, and to which others
-    are added; workers: number of processes that share the starts. Raises InputError if no start can be run, Failed
-    where there are no derivatives, Interrupted, and Stopped if one of several processes is killed.
+    are added; workers: number of processes that share the starts. Raises InputError if no start can be run,
+    Interrupted, and Stopped if one of several processes is killed.
     """
     if workers < 1:
         raise InputError(f'"workers" is {workers}, but a number of processes from 1 is expected')
     problem, kept = Problem(model, model.data), {} if kept is None else kept
     model.accuracy = min(max(float(model.parameters["Accuracy"]), LEAST_ACCURACY), LARGEST_ACCURACY)
     try:
-        z, ended = best_of_starts(problem, kept, workers, progress)
+        model.limit_steps()
+        z, why = best_of_starts(problem, kept, workers, progress)
         for refinement in range(MOST_REFINEMENTS + 1):
-            if not ended:
+            try:
+                best = _looked_at(problem, z) if not why else None
+            except Failed as error:
+                why = str(error)
+            if why:
                 problem.go_to_least()
-                return unfinished(problem, table_of_starts(problem, kept), is_stopped=False)
-            best = _looked_at(problem, z)
+                return unfinished(problem, table_of_starts(problem, kept), why)
             if best.worst <= SHARE or refinement == MOST_REFINEMENTS or model.accuracy <= LEAST_ACCURACY:
                 break
             model.accuracy = max(model.accuracy * min(0.3, 0.3 * SHARE / best.worst), LEAST_ACCURACY)
             progress(f"accuracy {model.accuracy:.1g}, so that the numerical error is small compared with the statistical one")
             problem.last = None
-            _, z, ended = problem.search(z)
+            _, z, why = problem.search(z)
         return described(problem, best, table_of_starts(problem, kept))
     except KeyboardInterrupt:
         starts = table_of_starts(problem, kept)
-        raise Interrupted(unfinished(problem, starts, is_stopped=True) if problem.go_to_least() else None) from None
+        raise Interrupted(unfinished(problem, starts) if problem.go_to_least() else None) from None
 
 
 def _looked_at(problem, z):
     """Best of a search from its end, with one more step."""
     data, jacobian = problem.data, problem.jacobian(z, both_sides=True)
-    z = problem.improved(z, jacobian)
+    z, step = problem.improved(z, jacobian)
     residual = problem.residuals(z)
     freedom = data.n - len(z) - data.n_constants
     deviation = 1.0 if data.is_weighed else max(math.sqrt(float(residual @ residual) / freedom), LEAST_NOISE)
-    loose, members = undetermined_directions(jacobian / deviation)
-    return Best(z, jacobian, deviation, _numerical_error(problem, z, jacobian), loose, members)
+    jacobian = jacobian / deviation
+    loose, members = undetermined_directions(jacobian)
+    return Best(z, jacobian, deviation, np.abs(step) + _error_of_runs(problem, z, jacobian, deviation), loose, members)
 
 
-def _numerical_error(problem, z, jacobian):
+def _error_of_runs(problem, z, jacobian, deviation):
     """Change of the variables by the numerical error of the runs: from a run with a thirtieth of the error, and from a
-    displacement that is wrong by its bound at the end, and before in proportion to time."""
+    displacement that is wrong by its bound at the end, and before in proportion to time. jacobian: of residuals in
+    deviations."""
     model, data = problem.model, problem.data
     problem.last = None  # the bound is then that of this run
     values, basis = problem.run(z)
@@ -184,5 +192,5 @@ def _numerical_error(problem, z, jacobian):
     finer, _ = model(problem.real(z), model.accuracy / 30)
     if not np.all(np.isfinite(finer)):
         return np.full(len(z), math.nan)
-    changes = np.stack([problem.scaled(values - finer, basis), problem.scaled(drift, basis)], axis=1)
-    return np.abs(np.linalg.lstsq(jacobian, changes, rcond=1e-9)[0]).sum(axis=1)
+    changes = np.stack([problem.scaled(values - finer, basis), problem.scaled(drift, basis)], axis=1) / deviation
+    return np.abs(covariance(jacobian) @ (jacobian.T @ changes)).sum(axis=1)

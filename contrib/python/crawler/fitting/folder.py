@@ -165,7 +165,7 @@ class Starts(dict):
                 one = json.loads(file.read_text(encoding="utf-8"))
                 one["squares"] = math.inf if one["squares"] is None else float(one["squares"])
                 is_whole = (f'{one["start"]}.json' == file.name and len(one["z"]) == n_variables and len(one["places"]) == n_places
-                            and {"ended", "reason", "n_runs"} <= one.keys() and np.all(np.isfinite([*one["z"], *one["places"]])))
+                            and {"reason", "n_runs", "n_cut"} <= one.keys() and np.all(np.isfinite([*one["z"], *one["places"]])))
             except (OSError, LookupError, TypeError, ValueError):
                 continue
             if is_whole:

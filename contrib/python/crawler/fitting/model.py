@@ -5,13 +5,15 @@ import json
 
 import numpy as np
 
-from .. import _compiled, _source
-from ..needs import InputError
+from .. import _compiled, _source, entries
+from ..needs import Failed, InputError
 from ..results import parameters_of
 
 STEP = 1e-4  # step of differences, relative to a value
 LENGTH = "Body/Length"
 POINTS = 201  # points on the body for means over it
+LEAST_LIMIT, TIMES = 500, 10  # limit of the steps of a run, and in those of the run at the start or in times of the data
+STEP_LIMIT = "Time/Maximum number of steps"
 FIELDS = {"markers": ("displacement", "stretch"), "strain": ("stretch",), "centre": ("displacement",), "speed": ("velocity",)}
 
 
@@ -36,7 +38,9 @@ class Model:
         require_enough(data, self.names)
         self.low, self.high, self.start = np.array([one[1:] for one in variables]).T
         self._require_seen()
-        self.accuracy, self.n_runs, self.problem, self.bound = None, 0, "", 0.0
+        self.accuracy, self.n_runs, self.n_cut, self.problem, self.bound = None, 0, 0, "", 0.0
+        self.is_refused = False  # the problem is that of a wrong input
+        self.n_steps, self.most_steps = 0, self.parameters[STEP_LIMIT]
 
     def _require_seen(self):
         """Raises InputError for variables that do not affect the data, or with which a body ends before its data do."""
@@ -59,11 +63,12 @@ class Model:
     def _answer(self, x, accuracy, times, places):
         self.n_runs += 1
         settings = [*self.overrides(x), "Output/Number of snapshots=0", "Output/Statistics=false", "Output/Sensitivities=",
-                    f"Accuracy={accuracy!r}"]
+                    f"Accuracy={accuracy!r}", f"{STEP_LIMIT}={self.most_steps}"]
+        self.is_refused = False
         try:
             return _compiled().run(self.scene(settings), times.tolist(), places.tolist())
         except InputError as error:  # e.g. a formula that is no friction with these constants
-            self.problem = str(error)
+            self.problem, self.is_refused = str(error), True
             return None
 
     def __call__(self, x, accuracy=None):
@@ -78,8 +83,11 @@ class Model:
             return np.full(self.data.n, np.nan), None
         summary = json.loads(answer["summary"])
         if summary["status"] != "finished" or "fields" not in answer:
-            self.problem = f"{summary['reason']}: {summary['message']}"
+            is_cut = summary["reason"] == "step_limit"
+            self.n_cut += is_cut
+            self.problem = f"{summary['reason']}: " + (f"it needs more than {self.most_steps} steps" if is_cut else summary["message"])
             return np.full(self.data.n, np.nan), None
+        self.n_steps = summary["steps"]
         self.bound = (summary.get("displacement_error") or {}).get("total") or 0.0
         values, stretch = [], None
         for one in series:
@@ -94,22 +102,31 @@ class Model:
                 values.append(_mean(field["velocity"]) if one.kind == "speed" else _mean(field["displacement"]) + length / 2)
         return self.data.flat(values), stretch
 
+    def limit_steps(self):
+        """Limits the steps of all runs by those of the run at the start, unless the scene limits them: at absurd values
+        runs would not end."""
+        if self.most_steps == int(entries()[STEP_LIMIT]["default"]) and np.all(np.isfinite(self(self.start)[0])):
+            self.most_steps = max(LEAST_LIMIT, TIMES * self.n_steps, TIMES * max(len(one.t) for one in self.data.series))
+
     def jacobian(self, x, value=None):
-        """Derivatives [datum, variable]: central differences, or, if value is the model at x, one-sided ones."""
+        """Derivatives [datum, variable]: central differences, or, if value is the model at x, one-sided ones. Raises
+        Failed where a variable has no run on either side, InputError if both are refused."""
         columns = []
         for j, at in enumerate(x):
             step = min(STEP * max(abs(at), 1e-2 * (self.high[j] - self.low[j])), 0.25 * (self.high[j] - self.low[j]))
-            up, down = np.array(x, dtype=float), np.array(x, dtype=float)
-            up[j], down[j] = at + step, at - step
-            if up[j] > self.high[j]:
-                up[j] = at
-            elif down[j] < self.low[j] or value is not None:
-                down[j] = at
-            sides = [(side[j], self(side)[0]) for side in (up, down) if side[j] != at]
-            sides = [side for side in sides if np.all(np.isfinite(side[1]))]
-            if len(sides) < 2:  # at a limit, or inversion of the body on the other side
-                sides.append((at, value if value is not None else self(x)[0]))
-            columns.append((sides[0][1] - sides[1][1]) / (sides[0][0] - sides[1][0]) if len(sides) == 2 else np.full(self.data.n, np.nan))
+            sides = [] if value is None else [(at, value)]
+            for end in (at + step, at - step):
+                if len(sides) < 2 and self.low[j] <= end <= self.high[j]:
+                    side = np.array(x, dtype=float)
+                    side[j] = end
+                    sides.append((end, self(side)[0]))
+                    if not np.all(np.isfinite(sides[-1][1])):
+                        sides.pop()
+            if value is None and len(sides) == 1:  # at a limit, or inversion of the body on the other side
+                sides.append((at, self(x)[0]))
+            if len(sides) < 2:
+                raise (InputError if self.is_refused else Failed)(f"beside {self.names[j]} = {at:.6g} there is no run: {self.problem}")
+            columns.append((sides[0][1] - sides[1][1]) / (sides[0][0] - sides[1][0]))
         return np.stack(columns, axis=-1)
 
 

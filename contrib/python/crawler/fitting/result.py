@@ -10,12 +10,12 @@ from .uncertainty import LEVELS, Profile, correlation_in_time, covariance, curva
 
 BIASED = 0.2          # least bias that is reported, relative to the deviation
 SHARE = 0.1           # largest numerical error, relative to the statistical one
-MOST_STEPS = 1000     # most steps of a search, which takes some hundred along a curved valley
 NEAR = 1e-3           # distance to a limit that is near, in ranges
 UNLIKELY = 1e-3       # probability of chi-square below which the scene does not fit
 HOPELESS = 1e-6       # probability below which undetermined combinations are not reported either
 OUTLYING = 1e-4       # probability of a residual as large as the largest
 MUCH = 100            # chi-square per degree of freedom beyond any noise
+UNITS = 'units? see "--unit-of-s" and "--unit-of-t"'
 ALIKE = 5             # correlation of residuals in time, in its own deviations, that is not accidental
 
 
@@ -50,7 +50,7 @@ def value_in_words(one):
 class Best:
     """End of a search, in scaled variables (0 to 1 over the ranges)."""
     z: np.ndarray           # [variable]
-    jacobian: np.ndarray    # [residual, variable]
+    jacobian: np.ndarray    # [residual, variable], of residuals in deviations
     deviation: float        # standard deviation of a residual
     numerical: np.ndarray   # [variable], errors; NaN where unknown
     loose: np.ndarray       # [direction, variable], undetermined directions
@@ -64,7 +64,7 @@ class Best:
     @property
     def spread(self):
         """Deviations [variable]."""
-        return np.sqrt(np.diag(covariance(self.jacobian))) * self.deviation
+        return np.sqrt(np.diag(covariance(self.jacobian)))
 
     @property
     def worst(self):
@@ -73,9 +73,9 @@ class Best:
         return float(np.max(self.numerical[told] / np.maximum(self.spread[told], 1e-300), initial=0))
 
 
-def unfinished(problem, starts, is_stopped):
-    """Fit of a search that was interrupted (is_stopped) or did not end: the least sum of squares found, with values and
-    without deviations, since derivatives say nothing of a minimum that was not reached."""
+def unfinished(problem, starts, why=""):
+    """Fit of a search that was interrupted or, for a reason (why), did not end: the least sum of squares found, with
+    values and without deviations, since derivatives say nothing of a minimum that was not reached."""
     model, data = problem.model, problem.data
     squares, z, _ = problem.least
     values, residual = problem.real(z), problem.residuals(z)[:data.n]
@@ -85,11 +85,12 @@ def unfinished(problem, starts, is_stopped):
                  for name, value, low, high in zip(model.names, values, model.low, model.high)}
     goodness = {"n_data": data.n, "n_variables": len(z), "n_constants": data.n_constants,
                 "series": [{"kind": one.kind, "n_data": int(one.is_there.sum())} for one in data.series]}
-    message = (f"stopped by a signal after {len(starts)} of {int(model.parameters['Fit/Starts'])} starts; --resume continues" if is_stopped else
-               f"the search did not end within {MOST_STEPS} steps: the values are those so far, and not the best ones; a nearer start, "
-               "narrower ranges or fewer variables are expected")
-    found = {"status": "stopped" if is_stopped else "failed", "reason": "signal" if is_stopped else "no_convergence", "message": message,
-             "variables": variables, "undetermined": [], "notes": [*data.notes, *([] if is_stopped else [message])],
+    units = f"; {UNITS}" if data.is_weighed and squares > MUCH * data.n else ""
+    message = (f"{why}; the values are those so far, and not the best ones, so there are no deviations; a nearer start, narrower ranges or "
+               f"fewer variables are expected{units}" if why else
+               f"stopped by a signal after {len(starts)} of {int(model.parameters['Fit/Starts'])} starts; --resume continues")
+    found = {"status": "failed" if why else "stopped", "reason": "no_convergence" if why else "signal", "message": message,
+             "variables": variables, "undetermined": [], "notes": [*data.notes, *_of_cut_runs(model), *([message] if why else [])],
              "goodness": goodness, "residuals": math.sqrt(squares / goodness["n_data"]) * problem.scale, "accuracy": model.accuracy,
              "n_runs": model.n_runs, "starts": starts}
     return Fit(found, data, -residual * problem.scales, dict(one.split("=", 1) for one in model.overrides(values)), None)
@@ -104,13 +105,13 @@ def described(problem, best, starts):
     likelihood = goodness["chi_square"] if data.is_weighed else n * math.log(max(float(residual @ residual), 1e-300) * problem.scale ** 2 / n)
     matrix = covariance(best.jacobian)
     found = {"status": "finished", "reason": "converged", "message": "", "variables": variables,
-             "undetermined": list(_untold(problem, best, variables, values)) if goodness["probability"] is None or goodness["probability"] >= HOPELESS else [],
-             "notes": list(_notes(best, variables, goodness, data, model.parameters)),
+             "undetermined": [] if _is_hopeless(goodness) else list(_untold(problem, best, variables, values)),
+             "notes": list(_notes(best, variables, goodness, data, model)),
              "correlation": (matrix / np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))).tolist(), "goodness": goodness,
              "information": {"aic": likelihood + 2 * k, "bic": likelihood + k * math.log(n)},
              "accuracy": model.accuracy, "n_runs": model.n_runs, "starts": starts}
     return Fit(found, data, -residual[:data.n] * problem.scales, dict(one.split("=", 1) for one in model.overrides(values)),
-               matrix * best.deviation ** 2 * np.outer(problem.width, problem.width))
+               matrix * np.outer(problem.width, problem.width))
 
 
 def _untold(problem, best, variables, values):
@@ -126,16 +127,19 @@ def _variables(problem, best, values):
     """Entries of each variable."""
     model, spread, width, variables = problem.model, best.spread, problem.width, {}
     profile = Profile(lambda z: problem.residuals(z) / best.deviation, lambda z: problem.jacobian(z) / best.deviation, best.z,
-                      best.jacobian / best.deviation)
+                      best.jacobian)
     at_best, basis = problem.run(best.z)
-    bias = curvature_bias(lambda z: problem.scaled(model(problem.real(z))[0] - at_best, basis), best.jacobian, best.deviation, best.z)
+    bias = curvature_bias(lambda z: problem.scaled(model(problem.real(z))[0] - at_best, basis) / best.deviation, best.jacobian, best.z)
     for j, name in enumerate(model.names):
         at, is_told = best.z[j], not best.involved[j]
         one = {"value": float(values[j]) if is_told else None, "used": float(values[j]), "deviation": None, "numerical_error": None, "bias": None,
                **{level: None for level in LEVELS}, "profile": [], "from": float(model.low[j]), "to": float(model.high[j]), "determined": is_told,
-               "at_limit": "from" if at < NEAR else "to" if at > 1 - NEAR else ""}
+               "at_limit": ""}
         variables[name] = one
-        ends, curve = profile.interval(j, spread[j]) if is_told else (None, None)
+        ends, curve = profile.interval(j, spread[j]) if is_told else ({"interval_95": [None, None]}, None)
+        for side, key, gap in zip(ends["interval_95"], ("from", "to"), (at, 1 - at)):
+            if side is None and gap < NEAR:
+                one["at_limit"] = key
         if is_told and ends["interval_95"] == [None, None]:  # chi-square rises slower than its curvature
             one.update(value=None, determined=False)
         elif is_told:
@@ -168,15 +172,19 @@ def _largest(series, grid):
     return {"deviations": float(grid[j, i]), "t": float(series.t[j]), "place": place, "kind": series.kind}
 
 
+def _is_hopeless(goodness):
+    return goodness["probability"] is not None and goodness["probability"] < HOPELESS
+
+
 def _does_not_fit(goodness):
     """Sentence about a scene that does not fit the data at all, with the worst residual; None if it may fit."""
     chi_square, freedom, p_value = (goodness[key] for key in ("chi_square", "degrees_of_freedom", "probability"))
     if p_value is not None and p_value < UNLIKELY:
-        units = ' (units? see "--unit-of-s" and "--unit-of-t")' if chi_square > MUCH * freedom else ""
+        units = f" ({UNITS})" if chi_square > MUCH * freedom else ""
         yield (f"the scene does not fit the data: chi-square is {chi_square:.4g} with {freedom} degrees of freedom (probability {p_value:.1g}), so "
                f"the deviations are too small; {_largest_in_words(goodness)}; another scene, or another standard deviation, is expected{units}")
     elif goodness["n_data"] * probability(goodness["largest_residual"]["deviations"] ** 2, 1) < OUTLYING:
-        yield f"{_largest_in_words(goodness)}: more than noise gives; is it an outlier?"
+        yield f"{_largest_in_words(goodness)}: more than noise gives, perhaps an outlier"
 
 
 def _largest_in_words(goodness):
@@ -186,9 +194,21 @@ def _largest_in_words(goodness):
     return f"the largest residual is {abs(one['deviations']):.3g} deviations, at {place}t = {one['t']:.6g} of the run"
 
 
-def _notes(best, variables, goodness, data, parameters):
+def _of_cut_runs(model):
+    """Sentence on runs that were given up."""
+    if model.n_cut:
+        yield (f"{model.n_cut} of {model.n_runs} runs needed more than {model.most_steps} steps and count as failed: narrower ranges, or another "
+               '"Time/Maximum number of steps", may be better')
+
+
+def _notes(best, variables, goodness, data, model):
     """Sentences on possible mistakes."""
+    parameters = model.parameters
     yield from _does_not_fit(goodness)
+    missing = [name for name, one in variables.items() if one["deviation"] is None]
+    if missing and _is_hopeless(goodness):
+        yield (f"there is no deviation of {', '.join(missing)}: derivatives of a scene that does not fit cannot tell whether the data determine "
+               f"{'it' if len(missing) == 1 else 'them'}")
     if (goodness["probability"] or 0) > 1 - UNLIKELY:
         yield (f"the data are nearer to the scene than their standard deviations allow: chi-square is {goodness['chi_square']:.4g} with "
                f"{goodness['degrees_of_freedom']} degrees of freedom; the deviations are too large, or the scene has the noise of the data")
@@ -196,9 +216,11 @@ def _notes(best, variables, goodness, data, parameters):
         yield ("the strain of the table is taken as exact: if it was made of these tracks its noise counts as motion, and the deviations of the "
                "variables are too small by a factor of two or more")
     yield from data.notes
+    yield from _of_cut_runs(model)
     for name, one in variables.items():
         if one["at_limit"] and one["determined"]:
-            yield f"{name} is at the limit of its range, {one[one['at_limit']]:g}: the best value may lie beyond it"
+            yield (f"{name} is at the limit of its range, {one[one['at_limit']]:g}: the best value may lie beyond it, and its interval is one-sided, as "
+                   "it ends there")
         if abs(one["bias"] or 0) > BIASED * (one["deviation"] or math.inf):
             yield (f"over many such data sets the mean of {name} would be about {abs(one['bias']):.2g} too {'large' if one['bias'] > 0 else 'small'}, as the run "
                    "is not linear in it; the interval allows for that")

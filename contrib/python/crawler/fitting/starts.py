@@ -16,8 +16,8 @@ from ..needs import InputError, Stopped
 
 
 def best_of_starts(problem, kept, workers, progress):
-    """Best of all starts: (scaled variables, True if it ended in order); places of the data are those of this start
-    then.
+    """Best of all starts: (scaled variables, "" or why it did not end in order); places of the data are those of this
+    start then.
 
     kept: {number: result of search_from()} of starts that are finished; the others are added to it.
     """
@@ -27,20 +27,20 @@ def best_of_starts(problem, kept, workers, progress):
     for one in wanted_of(problem, kept):
         _see(problem, one)
     if len(missing) < len(points):
-        progress(f"{len(points) - len(missing)} of {len(points)} starts are already done")
+        progress(f"{len(points) - len(missing)} of {len(points)} starts already done")
     searched = _searched_by_others if min(workers, len(missing)) > 1 else _searched_here
     for found in searched(problem, missing, min(workers, len(missing))):
         kept[found["start"]] = found
         _see(problem, found)
         least = _root_mean_square(problem, min(one["squares"] for one in wanted_of(problem, kept)))
         progress(f"start {found['start'] + 1} of {len(points)}: " + (
-            found["reason"] or f"residuals {_root_mean_square(problem, found['squares']):.6g} (root mean square{' in deviations' if len(problem.data.series) > 1 else ''}), least so far {least:.6g}"))
+            found["reason"] if found["squares"] == math.inf else f"residuals {_root_mean_square(problem, found['squares']):.6g} (root mean square{' in deviations' if len(problem.data.series) > 1 else ''}), least so far {least:.6g}"))
     best = min(wanted_of(problem, kept), key=lambda one: one["squares"])
-    model.n_runs = sum(one["n_runs"] for one in wanted_of(problem, kept))
+    model.n_runs, model.n_cut = (sum(one[key] for one in wanted_of(problem, kept)) for key in ("n_runs", "n_cut"))
     if best["squares"] == math.inf:
         raise InputError(f"the scene cannot be run at {'the start' if len(points) == 1 else f'any of {len(points)} starts'}: {kept[0]['reason']}")
     problem.data.places, problem.last = np.array(best["places"]) if len(places) else places, None
-    return np.array(best["z"]), best["ended"]
+    return np.array(best["z"]), best["reason"]
 
 
 def first_points(model, n, seed):
@@ -57,17 +57,20 @@ def wanted_of(problem, kept):
 
 def search_from(problem, number, z, places):
     """Searches from one start; returns numbers, texts and lists that a JSON file keeps exactly."""
-    model = problem.model
-    problem.data.places, problem.last, before = places, None, model.n_runs
-    squares, z, ended = problem.search(z)
-    return {"start": number, "squares": squares, "z": z.tolist(), "places": problem.data.places.tolist(), "ended": ended,
-            "reason": "" if squares < math.inf else model.problem, "n_runs": model.n_runs - before}
+    model, others = problem.model, problem.least
+    problem.data.places, problem.last, problem.least, n_runs, n_cut = places, None, (math.inf, None, places), model.n_runs, model.n_cut
+    try:
+        squares, z, why = problem.search(z)
+    finally:
+        problem.least = min(problem.least, others, key=lambda one: one[0])
+    return {"start": number, "squares": squares, "z": z.tolist(), "places": problem.data.places.tolist(), "reason": why,
+            "n_runs": model.n_runs - n_runs, "n_cut": model.n_cut - n_cut}
 
 
 def table_of_starts(problem, kept):
     """Table [{start, residuals, reason, values}] of finished starts: residuals is their root mean square, None if there
     is no run."""
-    return [{"start": one["start"], "residuals": None if one["reason"] else _root_mean_square(problem, one["squares"]), "reason": one["reason"],
+    return [{"start": one["start"], "residuals": None if one["squares"] == math.inf else _root_mean_square(problem, one["squares"]), "reason": one["reason"],
              "values": dict(zip(problem.model.names, problem.real(one["z"]).tolist()))} for one in wanted_of(problem, kept)]
 
 

@@ -4,11 +4,14 @@
 Seber and Wild, Nonlinear Regression (1989), chapters 3 and 5. Variables are scaled to their ranges here, [0, 1] each, and
 residuals by the standard deviation of the data.
 """
+import contextlib
 import math
 
 import numpy as np
 from scipy import stats
 from scipy.optimize import least_squares
+
+from ..needs import Failed
 
 WIDE = 0.5          # standard deviation in ranges beyond which a value is undetermined
 PART = 0.01         # part of a direction beyond which a variable may belong to it
@@ -33,21 +36,24 @@ def undetermined_directions(jacobian):
 
 
 def covariance(jacobian):
-    """Covariance of the variables, by Gauss and Newton; undetermined directions are wide, but finite."""
+    """Covariance of the variables, by Gauss and Newton. Along an undetermined direction it is that of a range, so that
+    the round-off of the direction is none of the deviation of a variable that does not belong to it."""
     _, sizes, directions = np.linalg.svd(jacobian, full_matrices=False)
-    return (directions.T / np.maximum(sizes, 1e-9 * sizes.max(initial=1.0)) ** 2) @ directions
+    return (directions.T / np.maximum(sizes, 1.0) ** 2) @ directions
 
 
-def curvature_bias(change, jacobian, deviation, z):
+def curvature_bias(change, jacobian, z):
     """Bias of the best values in the mean, to second order [variable] (Box, J. R. Stat. Soc. B 33, 171, 1971):
     -(J'J)^-1 J'c/2, where c has the second differences of the model along the axes of the covariance. NaN if there is
     no run, a value is at its limit, or some direction is undetermined.
 
-    change(x): change of the model from z to x, as scaled residuals; jacobian: at z; deviation: of a residual.
+    change(x): change of the model from z to x, as scaled residuals; jacobian: at z.
     """
     inverse, curvature = covariance(jacobian), np.zeros(len(jacobian))
     sizes, axes = np.linalg.eigh(inverse)
-    for step in (axes * np.sqrt(np.maximum(sizes, 0)) * deviation).T:
+    if sizes[-1] > WIDE ** 2:
+        return np.full(len(z), math.nan)
+    for step in (axes * np.sqrt(np.maximum(sizes, 0))).T:
         part = min(STEP, *(0.9 * np.minimum(z, 1 - z) / np.maximum(np.abs(step), 1e-300)))  # within the ranges
         if part < 0.1 * STEP:
             return np.full(len(z), math.nan)
@@ -151,10 +157,10 @@ class Profile:
                 full[others] = y
                 return full
             if others.any():
-                found = least_squares(lambda y: self.residuals(whole(y)), np.clip(x[others], 1e-9, 1 - 1e-9),
-                                      lambda y: self.jacobian(whole(y))[:, others], bounds=(0, 1), x_scale="jac",
-                                      ftol=1e-3 / len(self.slopes), xtol=1e-6, max_nfev=20)
-                x = whole(found.x)
+                with contextlib.suppress(Failed):  # no runs beside it
+                    x = whole(least_squares(lambda y: self.residuals(whole(y)), np.clip(x[others], 1e-9, 1 - 1e-9),
+                                            lambda y: self.jacobian(whole(y))[:, others], bounds=(0, 1), x_scale="jac",
+                                            ftol=1e-3 / len(self.slopes), xtol=1e-6, max_nfev=20).x)
             root = math.sqrt(max(float(np.sum(self.residuals(x) ** 2)) - self.least, 0.0))
         points.append((z, root, x))
         points.sort(key=lambda point: point[0])

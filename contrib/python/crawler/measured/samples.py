@@ -73,6 +73,8 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
         found, units = (found, _units_of(sheet, found)) if found else _generic(sheet, quantity, columns)
         words += sheet.words
         notes += sheet.notes
+        if columns and isinstance(found, Tracks) and found.format not in ("wide", "long"):
+            raise InputError(f'"--columns" is "{columns}", but "{path}" has {found.format}, whose columns are known')
     if animal and not (isinstance(found, Tracks) and found.format in WITH_ANIMALS):
         raise InputError(f'"--animal" is "{animal}", but "{path}" does not tell animals apart')
     factor_s, factor_t = (unit_factor(unit, wanted, option) if wanted else 1.0 for unit, wanted, option in
@@ -202,7 +204,11 @@ def _generic(sheet, quantity, renamed):
     if {"t", "marker", "x"} <= set(roles):
         return _long_tracks(sheet, roles), (units[roles["x"]], units[roles["t"]], "")
     if roles.get("t") == 0 or roles.get("s") == 0:
-        return _wide(sheet, quantity, "s" if roles.get("t") != 0 else "t")
+        first = "s" if roles.get("t") != 0 else "t"
+        if idle := [part.strip() for part in renamed.split(",") if part.strip() and part.partition("=")[0].strip() != first]:
+            raise InputError(f'"--columns" has "{idle[0]}", but "{sheet.name}" has a column for each {"time" if first == "s" else "place or marker"} beside '
+                             f'{sheet.names[0]}, of which all are read; only {first} is expected there')
+        return _wide(sheet, quantity, first)
     raise InputError(f'"{sheet.name}" has the columns {", ".join(sheet.names)}, but s, t and m (or strain, stretch) are expected; '
                      'or t, marker and x; or t and a column for each s or marker ("--columns" gives them other names)')
 
@@ -304,8 +310,9 @@ def _on_grid(sheet, s, t, values, lines, kind, names=None):
         before = lines[np.flatnonzero(point == point[second])[0]]
         name = names[i[second]] if names else f"{s[i[second]]:g}"
         more = len(set(lines[again])) - 1
+        rows = "row does" if more == 1 else "rows do"
         raise InputError(f'row {lines[second]} of "{sheet.name}" gives {kind} = {name}, t = {t[j[second]]:g} a second time, after row '
-                         f'{before}{f", as {more} more rows do" if more else ""}')
+                         f'{before}{f", as {more} more {rows}" if more else ""}')
     by_place = np.argsort(i, kind="stable")  # the times of each place as the file has them
     falls = (np.diff(j[by_place]) < 0) & (np.diff(i[by_place]) == 0)
     note_fallen_times(in_file[by_place], falls, sheet.notes, lines[by_place])
@@ -375,7 +382,7 @@ def _along_body(tracks, head, confidence, name, words, notes):
         if (chain := _shorter_chain(x, y)) is not None:
             x, y, names = x[:, chain], y[:, chain], [names[i] for i in chain]
             notes.append(f"the markers put in order along the body: {', '.join(names)}")
-        x = _arc_lengths(t, x, y, words)
+        x = _arc_lengths(t, x, y, words, notes)
     x, names = _from_tail_to_head(x, names, head, words, notes)
     return Samples("x", np.arange(1.0, len(names) + 1), t, x, names)
 
@@ -414,7 +421,7 @@ def _between_markers(x):
     return x
 
 
-def _arc_lengths(t, x, y, words):
+def _arc_lengths(t, x, y, words, notes):
     """Places along a body that may bend: distances between neighbours, beside the mean place along the mean axis."""
     gaps = np.isnan(x)
     x, y = (_between_markers(_between_times(t, one)) for one in (x, y))
@@ -430,7 +437,7 @@ def _arc_lengths(t, x, y, words):
         return np.where(gaps, np.nan, along if axis[0] >= 0 else -along)
     filled = np.where(np.isnan(steps), np.nanmean(steps, axis=0), steps)
     arc = np.concatenate([np.zeros((len(x), 1)), np.cumsum(filled, axis=1)], axis=1)
-    words.append(f"the body bends, by {bend:.0f} degrees from the axis; places are distances along it")
+    notes.append(f"the body bends, by {bend:.0f} degrees from the axis: positions are distances along it, of x and y")
     rest = along - arc
     if np.any(whole := ~np.any(np.isnan(rest), axis=1)):  # the mean over some markers is then that over all
         rest = rest - np.mean(rest[whole] - rest[whole].mean(axis=1, keepdims=True), axis=0)

@@ -110,7 +110,7 @@ class Sheet:
 
     def wrong_cell(self, line, cell, i, n_more=1):
         """Error message about a cell that is no number."""
-        more = f" (and {n_more - 1} more rows have no number there)" if n_more > 1 else ""
+        more = f" (and {n_more - 1} more {'row has' if n_more == 2 else 'rows have'} no number there)" if n_more > 1 else ""
         return (f'row {line} of "{self.name}" has "{cell}" under {self.label(i)}, but a number'
                 f'{" with a decimal comma" if self.comma == "decimal" else ""} (or nothing or NaN for a gap) is expected{more}')
 
