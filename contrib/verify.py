@@ -117,6 +117,7 @@ CHECKS = (
     Check("octave", 0.5, "{root}/tests/long/octave_tutorial.py {crawler}"),
     # Other programs.
     Check("peers", 10, "{root}/contrib/peers/compare.py {build}"),
+    Check("trade", 4, "{root}/contrib/peers/trade.py {build} --picture {build}/trade.png"),
 )
 
 

@@ -7,7 +7,7 @@
 Left: one body, Fig. S1; of the peers (compare.py) and of crawler's engine the cheapest setting that a search finds for
 each error, and what `Accuracy` delivers, with the bound of its error. Right: a point of `crawler sweep` on the 1000
 points of SWEEP, with all files, less the start of the program; its error is the largest of all points. Times are of the
-processor. Prints the numbers of crawler as a table.
+processor. Prints the numbers of crawler as a table. Takes 4 minutes.
 """
 import argparse
 import math
@@ -74,21 +74,23 @@ def draw(peers, rows, picture):
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6), sharey=True, layout="constrained")
+    figure, (left, right, words) = plt.subplots(1, 3, figsize=(10, 3.6), sharex=True, sharey=True, layout="constrained",
+                                                width_ratios=(4, 4, 1.7))
     for name, points in peers.items():
         left.loglog(*zip(*points), marker=".", lw=1, label=name)
     left.loglog([r["engine_error"] for r in rows], [r["engine"] for r in rows], "k.--", lw=1, label="crawler, engine alone")
     for axes, seconds, error in ((left, "delivered", "error"), (right, "point", "point_error")):
         axes.loglog([r[error] for r in rows], [r[seconds] for r in rows], "ko-", lw=2, ms=4,
-                    label="crawler, delivered with bounds" if axes is left else "crawler sweep, delivered with bounds")
-        for row in rows:
+                    label="crawler, delivered with\nbounds for this Accuracy" if axes is left else None)
+        for row in rows[1::2]:
             if not math.isnan(row[seconds]):
                 axes.annotate(f"{row['accuracy']:.0e}".replace("e-0", "e-"), (row[error], row[seconds]), xytext=(3, 5),
                               textcoords="offset points", fontsize=7)
         axes.set(xlabel="true relative error")
-        axes.invert_xaxis()
         axes.grid(which="major", alpha=0.3)
-        axes.legend(fontsize=7, loc="upper left")
+    left.invert_xaxis()
+    words.axis("off")
+    words.legend(*left.get_legend_handles_labels(), loc="center", fontsize=8, frameon=False)
     left.set(title="one body, Fig. S1", ylabel="processor time [s]")
     right.set(title="a point of a sweep (1000 points)")
     figure.savefig(picture, dpi=130)
