@@ -16,11 +16,11 @@ cp build/package/*.deb "$release"
 cp "$(contrib/wheel/build.sh)" "$release"
 version=$(cat build/wheel/version.txt)
 code=0
-page=$(contrib/live/build.sh | tail -1) || code=$?
+page=$(contrib/live/build.sh) || code=$?
 case $code in
   0) cp "$page" "$release" ;;
   77) echo "release.sh: without the live page" >&2 ;;
-  *) exit 3 ;;
+  *) echo "release.sh: the live page cannot be built, see above" >&2; exit 3 ;;
 esac
 git archive --prefix="crawler-$version/" --output="$release/crawler-$version.tar.gz" HEAD
 (cd "$release" && sha256sum -- * >SHA256SUMS && cat SHA256SUMS)

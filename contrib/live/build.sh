@@ -14,6 +14,6 @@ if ! command -v em++ > /dev/null || [ ! -e "$toolchain" ]; then
 fi
 export NODE_PATH="${NODE_PATH:+$NODE_PATH:}/usr/share/nodejs" # emscripten's scripts, with a node of another origin
 cmake -S "$here" -B "$build" -G Ninja -DCMAKE_TOOLCHAIN_FILE="$toolchain" > /dev/null
-cmake --build "$build"
-python3 "$here/page.py" "$build/crawler_live.js" "$build/crawler_live.html"
+cmake --build "$build" >&2
+python3 "$here/page.py" "$build/crawler_live.js" "$build/crawler_live.html" >&2
 echo "$build/crawler_live.html"
