@@ -263,7 +263,7 @@ def table(results, names):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", nargs="?", type=pathlib.Path, default=SOURCE / "build")
-    parser.add_argument("--only", nargs="+", help="names of programs")
+    parser.add_argument("--only", nargs="+", choices=[*(peer.name for peer in peers()), "crawler"], help="names of programs")
     parser.add_argument("--cases", nargs="+", choices=[*CASES, "sweep"])
     o = parser.parse_args()
     os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")

@@ -18,7 +18,6 @@ import tempfile
 
 import compare
 
-sys.path.append(str(compare.SOURCE / "contrib"))
 ACCURACIES = [f"1e-{i}" for i in range(1, 11)]
 MAX_SWEEP = 6  # exponent of the smallest Accuracy of the sweep: its true displacements are known to some 1e-7
 PEER_ERRORS = [f"1e-{i}" for i in range(2, 10)]
@@ -100,10 +99,16 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", nargs="?", type=pathlib.Path, default=compare.SOURCE / "build")
     parser.add_argument("--picture", type=pathlib.Path, default=compare.SOURCE / "doc/images/trade.png")
-    parser.add_argument("--only", nargs="+", help="names of peers")
+    parser.add_argument("--only", nargs="+", choices=[peer.name for peer in compare.peers()], help="names of peers")
     o = parser.parse_args()
+    program = o.build / "tests/benchmark/crawler_benchmark"
+    if not program.exists():
+        sys.exit(f"{program} does not exist: cmake --build {o.build} --target studies makes it")
     os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    exact, certainty = compare.references(["s1", "sweep"])
+    try:
+        exact, certainty = compare.references(["s1", "sweep"])
+    except ImportError as missing:
+        sys.exit(f"the true displacements need NumPy and SciPy (Debian: python3-scipy): {missing}")
     print(f"displacements of the sweep are known to {certainty:.0e}", flush=True)
     if not certainty < 10.0 ** -(MAX_SWEEP + 0.5):
         sys.exit(f"that is not enough for Accuracy 1e-{MAX_SWEEP}")
