@@ -166,13 +166,6 @@ namespace crawler
           numerics().tolerance = std::min(right, numerics().tolerance * 100.);
           latest_              = run(numerics());
         }
-        // Cells that become empty refill according to the little that is left in them.
-        if (!parameters_.time.tolerance && latest_.min_stretch.value < empty &&
-            numerics().tolerance > tolerance_if_empty)
-        {
-          numerics().tolerance = tolerance_if_empty;
-          latest_              = run(numerics());
-        }
         measure_size();
         for (unsigned int i = 0; i < max_tolerances && value(latest_); ++i)
         {
@@ -206,21 +199,31 @@ namespace crawler
       {
         if (parameters_.time.tolerance || levels_.size() < 2)
           return true;
-        const bool is_on_last = latest_.time.steps <= few_steps;
-        Numerics half         = numerics();
+        const bool is_on_last       = latest_.time.steps <= few_steps;
+        SimulationResult &before    = levels_[levels_.size() - 2].result;
+        const SimulationResult &own = is_on_last ? latest_ : before;
+        Numerics half               = numerics();
         half.parts /= 2;
-        half.tolerance *= finer_tolerance;
-        Numerics other                = half;
-        other.parts                   = is_on_last ? numerics().parts : half.parts;
-        const SimulationResult result = run(other);
-        SimulationResult &before      = levels_[levels_.size() - 2].result;
-        const SimulationResult &own   = is_on_last ? latest_ : before;
+        Numerics other = is_on_last ? numerics() : half;
+        // Change from looser steps, which cost less, bounds the error amply.
+        if (time_error_ / finer_tolerance <= 2. * time_part * wanted())
+        {
+          other.tolerance               = numerics().tolerance / finer_tolerance;
+          const SimulationResult looser = run(other);
+          const double error            = are_alike(looser, own) ? std::abs(*value(looser) - *value(own)) : HUGE_VAL;
+          if (error <= time_part * wanted())
+          {
+            time_error_ = std::max(error, time_error_); // either may be small by chance
+            return true;
+          }
+        }
+        other.tolerance = half.tolerance = numerics().tolerance * finer_tolerance;
+        const SimulationResult result    = run(other);
         if (!are_alike(result, own))
           return true;
         const double error = 2. * std::abs(*value(result) - *value(own));
         if (error <= time_part * wanted() || ++n_corrections_ > max_tolerances)
         {
-          // Differences may be small by chance.
           time_error_ = std::max(error, std::min(time_error_, time_part * wanted()));
           return true;
         }
@@ -272,6 +275,7 @@ namespace crawler
         double work    = 0.; ///< extrapolated work of the active stress; 0 if it was not computed
         double change  = 0.,
                settled = HUGE_VAL; ///< changes of the value itself and of the extrapolated one since the last level
+        double order   = 0.;       ///< observed order of the value; 0 if there is none
       };
 
       /// Error by thin features: diffusion smooths the stretch over `length` in a stride, and the displacements of
@@ -297,31 +301,31 @@ namespace crawler
 
       /// Error of the extrapolated value, from the last two changes.
       double
-      error_of(const Level &before, const Level &now)
+      error_of(const Level &before, Level &now)
       {
         // Changes of alternating sign have no order.
         const double change = std::abs(now.change), last = std::abs(before.change);
         const double order  = now.change * before.change < 0. ? 0. : std::log2(last / change);
         const bool is_clean = std::abs(order - 2.) < clean;
         has_order_          = order > min_order;
+        now.order           = order;
         if (inverts_slowly())
-          return sticking_factor * std::max(change, last / credited);
+          return sticking_factor * std::max(change, last / sticking_rate);
         if (!(order > 0.2))
           return 5. * change;
         if (order < min_order)
           return std::max(std::abs(now.settled), change / (std::exp2(order) - 1.));
         if (order > largest_order)
           return std::max(std::abs(now.settled), change / 3.);
-        // Displacements may agree by chance; their works rarely do at the same time.
-        const double settled = std::max(std::abs(now.settled), unsettled_work(before, now) * change);
+        // Displacements may agree by chance; their works rarely do at the same time, nor do three changes in a row.
+        const bool is_regular = std::abs(order - 2.) < regular && std::abs(before.order - 2.) < regular;
+        const double settled  = std::max(std::abs(now.settled), is_regular ? 0. : unsettled_work(before, now) * change);
         if (levels_.size() == 2) // one change of the extrapolated value alone
           return is_clean ? settled : unclean_factor * settled;
         const double settled_before = std::abs(before.settled);
         if (now.settled * before.settled < 0.) // the small change is at a turning point
           return std::max(settled, settled_before / turned);
-        if (settled_before > fastest * settled)
-          return settled_before / fastest;
-        return settled_before > fast * settled && is_clean ? settled / credited : settled;
+        return std::max(settled, settled_before / fastest);
       }
 
       static double

@@ -150,10 +150,8 @@ namespace crawler::accuracy_rule
     inline constexpr double time_part            = 0.3;
     inline constexpr unsigned int max_tolerances = 5;
     inline constexpr double finer_tolerance      = 0.1;
-    /// Stretch below which cells are empty; largest time tolerance then.
-    inline constexpr double empty = 1e-9, tolerance_if_empty = 3e-7;
-    inline constexpr unsigned int few_steps = 30;  ///< steps below which errors grow fast with the cells
-    inline constexpr double min_part        = 0.5; ///< part of the wanted error that all runs have in common
+    inline constexpr unsigned int few_steps      = 30;  ///< steps below which errors grow fast with the cells
+    inline constexpr double min_part             = 0.5; ///< part of the wanted error that all runs have in common
     inline constexpr double min_order = 1.5, largest_order = 2.7; ///< observed orders accepted as the second
     /// Factors by which a time tolerance, relative to the strain, may be too large or small before it is chosen anew.
     inline constexpr double too_large = 2., too_small = 0.05;
@@ -162,13 +160,16 @@ namespace crawler::accuracy_rule
     inline constexpr double believed = 0.3, largest_change_of_inversion = 0.2;
     /// Round-off of the displacement, in lengths of the body.
     inline constexpr double round_off = 4e-15;
-    /// Rates at which extrapolations settle: beyond fast a further factor credited counts; beyond fastest, the fourth
-    /// order, it is chance, as is a turning point. Regions thinner than cells count unseen_part of their length.
-    inline constexpr double fast = 5., credited = 3., fastest = 16., turned = 8., unseen_part = 0.15;
-    /// Factor on the last change of the time of an inversion for its error, for a between min_slow_exponent and 0.
-    inline constexpr double min_slow_exponent = -0.5, sticking_factor = 3.;
+    /// Rates at which extrapolations settle: the fastest that is believed, and at a turning point. Regions thinner than
+    /// cells count unseen_part of their length.
+    inline constexpr double fastest = 8., turned = 4., unseen_part = 0.15;
+    /// Factor on the last change of the time of an inversion for its error, for a between min_slow_exponent and 0, and
+    /// the rate at which such changes are believed to fall.
+    inline constexpr double min_slow_exponent = -0.5, sticking_factor = 3., sticking_rate = 3.;
     /// Deviation of the order from 2 up to which that is accepted; else a first change counts unclean_factor times.
     inline constexpr double clean = 0.25, unclean_factor = 2.;
+    /// Deviation from 2 up to which two orders in a row are no chance.
+    inline constexpr double regular = 0.1;
   } // namespace family
 
   // Moving jumps as the limit of fronts (moving_fronts.cc; doc/numerics.md, "Jumps that move"). Measured by
