@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Parts that need libraries which the core for one process does not have: PETSc (adaptive meshes, BDF, couplings of
-// distant cells), deal.II's triangulation, HDF5's files, shared objects. Each is refused in a sentence when a scene asks
-// for it; all else is the program's own code. CRAWLER_LEFT_OUT ends the sentences.
+// distant cells), deal.II's triangulation, HDF5's files, shared objects. Each is refused in a sentence when a scene
+// asks for it; all else is the program's own code. CRAWLER_LEFT_OUT ends the sentences.
 #include <crawler/base/deal_ii_library.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/parameters/declarations.h>
