@@ -122,6 +122,9 @@ def test_commands():
         import h5py  # noqa: F401
         code, problem = call("report", FOLDER, "--quiet")
         check(code == 0 and (pathlib.Path(FOLDER) / "report.html").stat().st_size > 10000, f"a report {problem}")
+        import matplotlib  # noqa: F401
+        code, problem = call("paper", FOLDER, "--output", pathlib.Path(FOLDER).parent / "paper")
+        check(code == 0 and "displacement,length" in (pathlib.Path(FOLDER).parent / "paper/numbers.csv").read_text(encoding="utf-8"), f"a figure {problem}")
     except ImportError:
         code, problem = call("report", FOLDER)
         check(code != 0 and "has no h5py" in problem, f"without h5py: {problem}")
