@@ -39,17 +39,38 @@ const SCENES = {
     text: v => stress('prescribed strain', section('Prescribed strain', {'Given by': 'travelling wave'}), travelling(v, v.strain))},
 };
 
+for (const scene of Object.values(SCENES)) scene.sliders = SLIDERS;
+
+/** A template of crawler init: each of its numbers has a slider from half to twice the value, p the usual one. */
+function templateScene(name, text) {
+  const sections = [], sliders = {}, lines = [];
+  for (const line of text.split('\n')) {
+    const [, before, entry, number, after] = /^(\s*set (.*?)\s*= )(-?[\d.]+)(\s*(?:#.*)?)$/.exec(line) ?? [];
+    if (/^set Accuracy/.test(line)) continue;
+    if (/^\s*subsection /.test(line)) sections.push(line.trim().slice(11));
+    if (/^\s*end\b/.test(line)) sections.pop();
+    const key = [...sections, entry].join('/'), start = Number(number);
+    const step = /^Number of/.test(entry) ? Math.round : x => Number(x.toPrecision(3));
+    if (entry === 'Anchoring exponent') sliders[key] = {...SLIDERS.p, value: start};
+    else if (start) sliders[key] = {name: entry, low: -1, high: 1, step: 0.02, value: 0, of: x => x ? step(start * 2 ** x) : start};
+    if (sliders[key]) sliders[key].note = after.replace(/^\s*#\s*/, '');
+    lines.push(sliders[key] ? v => `${before}${v[key] ?? number}${after}` : () => line);
+  }
+  return {name, sliders, uses: [], file: v => lines.map(line => line(v)).join('\n')};
+}
+for (const [name, text] of Object.entries(page.templates)) SCENES[name] = templateScene(name, text);
+
 /** The parameter file of a scene with these values. */
 function parameterFile(scene, v, accuracy) {
   return `set Accuracy = ${accuracy}
-subsection Body
+${SCENES[scene].file?.(v) ?? `subsection Body
   set Elastic modulus    = ${v.stiffness}
   set Anchoring exponent = ${v.p}
 end
 ${SCENES[scene].text(v)}subsection Time
   set End time = ${exact(v.strides / (v.speed * v.waves))}
 end
-subsection Output
+`}subsection Output
   set Number of snapshots = 1
   set Statistics          = false
 end
@@ -90,37 +111,63 @@ class LiveFields extends Fields {
   }
 }
 
+const ACCURACIES = ['1e-2', '1e-3', '1e-4', '1e-6'];
+
 /** The page itself. */
 class LivePage {
   constructor(core, parent) {
-    Object.assign(this, {core, parent, scene: 'optimal', accuracy: '1e-3', inputs: {}});
+    Object.assign(this, {core, parent});
     parent.append(el('header', {}, el('div', {class: 'kind'}, 'live'), el('h1', {}, 'A crawler that answers at once'),
       el('p', {class: 'soft'}, 'Move a slider: the program itself, compiled for the browser, chooses mesh and steps for the accuracy you ask for, computes the run, and bounds its error.')));
     const choices = el('div', {class: 'controls'},
-      chooser('Driven by', Object.entries(SCENES).map(([key, {name}]) => [key, name]), this.scene, scene => { this.scene = scene; this.ask(); }),
-      chooser('Accuracy', ['1e-2', '1e-3', '1e-4', '1e-6'].map(x => [x, x]), this.accuracy, accuracy => { this.accuracy = accuracy; this.ask(); }),
+      chooser('Driven by', [], '', scene => { this.choose(scene); this.ask(); }),
+      chooser('Accuracy', ACCURACIES.map(x => [x, x]), '', accuracy => { this.accuracy = accuracy; this.ask(); }),
+      this.link = el('a', {title: 'The address of this page with all its sliders: to keep or to pass on'}, 'Link to this'),
+      this.download = el('a', {class: 'button', download: 'crawler.prm'}, 'Download .prm'),
       this.cost = el('span', {class: 'soft cost', role: 'status'}));
-    const sliders = el('div', {class: 'sliders'}, ...Object.entries(SLIDERS).map(([key, slider]) => this.slider(key, slider)));
+    [this.scenes, this.accuracies] = choices.querySelectorAll('select');
+    const options = own => Object.entries(SCENES).filter(([, {file}]) => !file === own).map(([key, {name}]) => el('option', {value: key}, name));
+    this.scenes.append(...options(true), el('optgroup', {label: 'Templates of crawler init'}, ...options(false)));
+    this.sliders = el('div', {class: 'sliders'});
     this.problem = el('div', {class: 'problem'});
     this.body = el('div');
     this.numbers = el('div');
     this.text = el('pre');
-    parent.append(choices, sliders, this.problem, this.body,
+    parent.append(choices, this.sliders, this.problem, this.body,
       el('details', {class: 'details'}, el('summary', {}, 'All numbers, with the bounds of their errors'), this.table = el('div')),
       el('details', {class: 'details'}, el('summary', {}, 'The parameter file'), el('p', {class: 'soft small'}, 'crawler run computes the same with it, and writes files.'), this.text),
       el('footer', {}, 'Computed on this device; nothing is sent anywhere. Formulas, tables, adaptive meshes and plug-ins need the program.'));
     this.table.parentElement.addEventListener('toggle', () => this.showTable());
+    window.addEventListener('hashchange', () => { if (location.hash !== this.link.getAttribute('href')) { this.follow(); this.ask(); } });
+    this.follow();
     this.compute();
   }
-  slider(key, {name, low, high, step, value}) {
+  /** Takes the state from the address; what it does not say, or says wrongly, is as at the start. */
+  follow() {
+    const state = new URLSearchParams(location.hash.slice(1)), scene = state.get('scene'), accuracy = state.get('accuracy');
+    this.accuracy = this.accuracies.value = ACCURACIES.includes(accuracy) ? accuracy : '1e-3';
+    this.inputs = null;
+    this.choose(Object.hasOwn(SCENES, scene) ? scene : 'optimal');
+    for (const [key, {input}] of Object.entries(this.inputs))
+      if (state.get(key) && isFinite(state.get(key))) input.value = state.get(key);
+  }
+  /** Shows a scene; its own sliders, if it has others than the one before. */
+  choose(scene) {
+    const before = this.inputs && SCENES[this.scene].sliders, {sliders} = SCENES[scene];
+    this.scene = this.scenes.value = scene;
+    if (sliders === before) return;
+    this.inputs = {};
+    this.sliders.replaceChildren(...Object.entries(sliders).map(([key, slider]) => this.slider(key, slider)));
+  }
+  slider(key, {name, low, high, step, value, note}) {
     const input = el('input', {type: 'range', min: low, max: high, step, value, id: key, oninput: () => this.ask()}), output = el('output');
-    const label = el('label', {}, name, input, output);
+    const label = el('label', {title: note}, name, input, output);
     this.inputs[key] = {input, output, label};
     return label;
   }
   values() {
     const scene = SCENES[this.scene];
-    return Object.fromEntries(Object.entries(SLIDERS).map(([key, {of}]) => {
+    return Object.fromEntries(Object.entries(scene.sliders).map(([key, {of}]) => {
       let value = Number(this.inputs[key].input.value);
       if (of) value = of(value);
       if (key === 'waves' && scene.wholeWaves) value = Math.max(1, Math.round(value));
@@ -139,6 +186,9 @@ class LivePage {
     }
     const text = parameterFile(this.scene, values, this.accuracy), run = this.core.run(text);
     this.text.textContent = text;
+    this.link.href = '#' + new URLSearchParams({scene: this.scene, accuracy: this.accuracy,
+      ...Object.fromEntries(Object.entries(this.inputs).map(([key, {input}]) => [key, input.value]))});
+    this.download.href = 'data:text/plain;charset=utf-8,' + encodeURIComponent(text);
     this.run = run;
     this.problem.replaceChildren();
     const {summary} = run;

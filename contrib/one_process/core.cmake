@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# The compiled core for one process, without deal.II, PETSc, MPI, HDF5 and muParser: what the live page (contrib/live) and
+# The compiled core for one process, without deal.II, PETSc, MPI and HDF5: what the live page (contrib/live) and
 # the wheel of the Python package (contrib/wheel) have in common.
 #
 #     ONE_PROCESS_SOURCES
@@ -8,8 +8,8 @@
 get_filename_component(CRAWLER ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
 set(ONE_PROCESS ${CMAKE_CURRENT_LIST_DIR})
 
-# All of these rooms but for what left_out.cc stands for, what is compiled several times, and what says of which
-# libraries the program is made; of the others what a run needs.
+# All of these rooms but for what left_out.cc stands for, the readers of formulas, what is compiled several times, and
+# what says of which libraries the program is made; of the others what a run needs.
 foreach(room accuracy adjoint equation formula lanes mesh reduced_models run scene scene/active_stress time)
   file(GLOB of_room CONFIGURE_DEPENDS ${CRAWLER}/source/${room}/*.cc)
   list(APPEND ONE_PROCESS_SOURCES ${of_room})

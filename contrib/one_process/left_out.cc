@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Parts that need libraries which the core for one process does not have: PETSc (adaptive meshes, BDF, couplings of
-// distant cells), deal.II's triangulation, muParser's formulas, HDF5's files, shared objects. Each is refused in a
-// sentence when a scene asks for it; all else is the program's own code. CRAWLER_LEFT_OUT ends the sentences.
+// distant cells), deal.II's triangulation, HDF5's files, shared objects. Each is refused in a sentence when a scene
+// asks for it; all else is the program's own code. CRAWLER_LEFT_OUT ends the sentences.
 #include <crawler/base/deal_ii_library.h>
 #include <crawler/base/exceptions.h>
-#include <crawler/formula/formula.h>
 #include <crawler/parameters/declarations.h>
-#include <crawler/scene/active_stress/formula_input.h>
 #include <crawler/scene/active_stress/library.h>
 #include <crawler/time/petsc_stepper.h>
 
@@ -75,17 +73,6 @@ namespace crawler
   deal_ii_symbol(const char *)
   {
     refuse("this needs deal.II, as adaptive meshes do");
-  }
-
-  std::shared_ptr<const Formula>
-  read_formula(const FormulaInput &input, double, double)
-  {
-    refuse("\"" + input.formula_entry + "\" is a formula, read by muParser", input.formula_entry);
-  }
-  void
-  require_finite_values(const ActiveStress &, const FormulaInput &input, const std::string &, double, double)
-  {
-    refuse("\"" + input.formula_entry + "\" is a formula, read by muParser", input.formula_entry);
   }
 
   Library::Library(const LibraryParameters &, const Body &, double)

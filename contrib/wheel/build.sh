@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: LGPL-2.1-or-later
 #
-# Builds the wheel of the Python package (doc/install.md): its compiled part needs no library but those of C.
+# Builds the wheel of the Python package (doc/install.md): its compiled part needs no library but those of C and C++, and
+# muParser, which the wheel brings.
 #
 #     contrib/wheel/build.sh [BUILD_FOLDER]     default: build/wheel; prints the name of the wheel, which is there
 #

@@ -32,6 +32,7 @@ namespace crawler
     /// Commands of contrib/python/crawler/__main__.py.
     constexpr std::pair<const char *, const char *> commands_in_python[] = {
       {"fit", "Finds numbers of a parameter file, with their uncertainty, from measured data"},
+      {"paper", "Makes a figure and a table for a journal of the output folder of a run or sweep"},
       {"report", "Makes a page for browsers, report.html, of the output folder of any other command"},
       {"table", "Turns measured samples or tracks of markers into a table that a scene can read"}};
 
@@ -150,6 +151,19 @@ namespace crawler
         command->add_option("DIR", options_.file, "Output folder of a run, sweep, tradeoff, optimisation or fit")
           ->required();
         command->add_flag("--quiet", options_.quiet, "Prints only errors");
+      }
+      else if (command->get_name() == "paper")
+      {
+        const auto in_python = [](const std::string &) {};
+        command->set_help_flag();
+        command->add_option("DIR", options_.file, "Output folder of a run or sweep");
+        command->add_option_function<std::string>("--columns", in_python, "Width of the figure: 1 or 2 columns")
+          ->option_text("N");
+        command->add_option_function<std::string>("--height", in_python, "Height of the figure in mm")
+          ->option_text("MM");
+        command->add_option("--output", options_.output, "Folder of the files (default: DIR/paper)")
+          ->option_text("FOLDER");
+        command->allow_extras();
       }
       else
         command->prefix_command()->set_help_flag();

@@ -31,6 +31,7 @@ namespace crawler
       {"crawler plot output-worm", "a picture in the folder"},
       {"crawler plot output-worm --last-stride", "the last stride only (or --from TIME --to TIME)"},
       {"crawler plot output-worm --help", "all options of this picture"},
+      {"crawler paper output-worm --columns 2", "a figure and a table for a journal"},
       {"crawler report output-worm", "a page for browsers in the folder"},
       {"crawler parameters Body", "one section of the parameter file, every entry explained"},
       {"crawler parameters --format schema", "types, ranges and defaults for other programs"},

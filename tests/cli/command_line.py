@@ -207,7 +207,7 @@ def completion(folder):
     check({"run", "plot", "init", "--version"} <= set(bash(folder, "")), "bash lists commands")
     check(set(bash(folder, "sweep", "--s")) == {"--set", "--strict"}, "bash completes the options of a command")
     check(bash(folder, "run", "") == ["inner", "scene.prm"], "bash completes parameter files and folders")
-    check(bash(folder, "report", "") == ["inner"], "bash completes folders")
+    check(bash(folder, "report", "") == bash(folder, "paper", "") == ["inner"], "bash completes folders")
     check(bash(folder, "run", "scene.prm", "--set", "Body/Le") == ["Body/Length="], "bash completes entries")
     check(bash(folder, "run", "--set", '"Active stress/Pulse/Wid') == ["Active stress/Pulse/Width="],
           "bash completes entries in quotes")

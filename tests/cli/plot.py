@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""crawler plot: picks the script that fits a folder, passes options on, finds a Python that can draw, and says what is
+"""crawler plot and paper: pick the script that fits a folder, pass options on, find a Python that can draw, and say what is
 missing. Each picture must have names, symbols and units on its axes, and a part of the time must be that part.
 
     python3 plot.py PATH_TO_CRAWLER
@@ -8,6 +8,8 @@ missing. Each picture must have names, symbols and units on its axes, and a part
 Each script is called by the program once; in most checks of pictures it runs in a fork of this process, which has loaded
 matplotlib already.
 """
+import csv
+import json
 import os
 import pathlib
 import re
@@ -256,6 +258,54 @@ def test_bad_input():
     check(code == 0 and "--last-stride" in printed, f"help of a run: {printed}")
 
 
+def test_paper():
+    """crawler paper: size and fonts of the figure, numbers with their bounds."""
+    summary = json.loads(pathlib.Path("run/summary.json").read_text(encoding="utf-8"))
+    for words, width, height in ((["run"], 86, 80), (["run", "--columns", "2", "--last-stride", "--stress", "--height", "90"], 178, 90),
+                                 (["sweep", "--lines", "--value", "stress_power"], 86, 80), (["checked", "--columns", "2"], 178, 70)):
+        shutil.rmtree("printed", ignore_errors=True)
+        end = crawler("paper", *words, "--output", "printed")
+        check(end.returncode == 0 and end.stdout.splitlines() == [f"wrote printed/{name}" for name in ("figure.pdf", "numbers.csv", "numbers.tex")],
+              f"paper {' '.join(words)}: {end.returncode} {end.stdout} {end.stderr}")
+        figure = pathlib.Path("printed/figure.pdf").read_bytes()
+        box = [float(number) * 25.4 / 72 for number in re.search(rb"/MediaBox \[ 0 0 (\S+) (\S+) \]", figure).groups()]
+        check(max(abs(box[0] - width), abs(box[1] - height)) < 0.1, f"the figure has {box} mm, expected {width} x {height}")
+        check(b"/FontFile2" in figure and b"/Type3" not in figure, "fonts are embedded, as outlines")
+        with open("printed/numbers.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        table = pathlib.Path("printed/numbers.tex").read_text(encoding="utf-8")
+        cells = [line.removesuffix(r" \\").split(" & ") for line in table.splitlines() if line.endswith(r" \\")]
+        check(len(cells) == len(rows) + 1 and len({len(line) for line in cells}) == 1, f"rows of the table: {len(cells)}, of the CSV file {len(rows)}")
+        if words[0] == "run":
+            known = {row["number"]: (float(row["value"]), float(row["bound"])) for row in rows}
+            check(known["displacement"] == (summary["displacement"], summary["displacement_error"]["total"]) and
+                  known["gait.speed"] == (summary["gait"]["speed"], summary["errors"]["gait"]["speed"]), f"numbers of summary.json: {known}")
+            check(all(round_trip(line[1], *known[row["number"]]) for line, row in zip(cells[1:], rows)), f"numbers for LaTeX: {cells}")
+            check(cells[1][0] == "displacement $D$ [length]", f"names and units: {cells[1][0]}")
+        elif words[0] == "sweep":
+            with open("sweep/results.csv", newline="", encoding="utf-8") as file:
+                points = [(float(row["stress_power"]), float(row["errors.stress_power"])) for row in csv.DictReader(file)]
+            found = [(float(row["stress_power"]), float(row["bound"])) for row in rows]
+            check(len(found) == 6 and all(abs(one / other - 1) < 1e-6 for mine, theirs in zip(found, points) for one, other in zip(mine, theirs)), f"values of the sweep: {found}")
+            check(all(round_trip(line[-1], *one) for line, one in zip(cells[1:], found)), f"points for LaTeX: {cells}")
+        else:
+            check([line[-1] for line in cells] == ["outcome", *["finished"] * 6], f"outcomes: {cells}")
+    for arguments, code, word in (([], 2, "DIR missing"), (["nowhere"], 2, '"nowhere" is not a folder'), (["empty"], 6, "summary.json"),
+                                  (["optimum"], 2, "an optimisation, but that of a run or sweep"), (["run", "--columns", "3"], 2, "one of 1, 2"),
+                                  (["run", "--height", "5"], 2, "from 20 to 250"), (["run", "--lastt-stride"], 2, '"--last-stride"'),
+                                  (["sweep", "--value", "nothing"], 2, "nearest"), (["run", "--output", "no/where"], 6, "no/where")):
+        end = crawler("paper", *arguments)
+        check(end.returncode == code and end.stderr.count("\n") == 1 and end.stderr.startswith("crawler: ") and word in end.stderr and "wrote" not in end.stdout,
+              f"paper {' '.join(arguments)}: {end.returncode} {end.stderr}")
+
+
+def round_trip(text, value, bound):
+    """Whether a number for LaTeX is this value, and its bound this one, to the digits that the bound leaves."""
+    match = re.fullmatch(r"\$\(?(-?[\d.]+) \\pm ([\d.]+)\)?(?: \\times 10\^{(-?\d+)})?\$", text)
+    scale = 10.0 ** int(match[3] or 0) if match else 1
+    return bool(match) and abs(float(match[1]) * scale - value) <= 0.06 * bound and abs(float(match[2]) * scale / bound - 1) <= 0.06
+
+
 def test_python(folder):
     """A Python without modules hands over to Debian's; if that lacks one too, both are named."""
     check(call([sys.executable, "-m", "venv", "--without-pip", "bare"]).returncode == 0, "a Python without modules is made")
@@ -289,6 +339,7 @@ def main():
         test_copied_program()
         test_screen()
         test_bad_input()
+        test_paper()
         test_python(folder)
         os.chdir("/")
     checks.end()

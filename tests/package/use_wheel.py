@@ -2,8 +2,10 @@
 """Uses the wheel of the Python package: its answers are those of the program, and what it does not have it refuses in
 one sentence. tests/package/try_wheel.sh calls this with the Python that has the wheel.
 
-    python use_wheel.py SCENE.prm FOLDER    the folder of `crawler run` with this scene
+    python use_wheel.py SCENE.prm FOLDER PRM    the folder of `crawler run` with this scene; folder of many scenes
+    python use_wheel.py PRM                     with the program's package: keeps the answers to PRM in PRM/answers.json
 """
+import json
 import pathlib
 import subprocess
 import sys
@@ -12,8 +14,8 @@ import warnings
 
 import crawler
 
-SCENE, FOLDER = sys.argv[1:]
 NEAR = 1e-9
+NEED_PETSC = {"examples/feedback.prm", "examples/feedback_clock.prm"}  # cells that depend on distant ones
 INSTEAD = "which the wheel does not have: the full program computes it, see doc/install.md"
 failures = []
 
@@ -27,6 +29,45 @@ def check(condition, what):
 
 def is_near(one, other, scale=0.):
     return abs(one - other) <= NEAR * max(abs(other), scale)
+
+
+def answers(prm):
+    """Status and displacement of each scene of a folder; of those that are refused the sentence."""
+    found = {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # notes of studies, whose single run this is
+        for path in sorted(prm.rglob("*.prm")):
+            try:
+                result = crawler.run(path, fields=False)
+                found[str(path.relative_to(prm))] = [result.status, result.displacement]
+            except crawler.InputError as error:
+                found[str(path.relative_to(prm))] = [str(error), None]
+    return found
+
+
+def test_scenes(prm):
+    """All scenes of the repository, formulas among them."""
+    theirs, ours = json.loads((prm / "answers.json").read_text(encoding="utf-8")), answers(prm)
+    wrong = {name: (ours.get(name), answer) for name, answer in theirs.items() if name not in NEED_PETSC and
+             not (ours[name][0] == answer[0] == "finished" and is_near(ours[name][1], answer[1]))}
+    check(len(theirs) > 40 and not wrong, f"{len(theirs) - len(NEED_PETSC)} scenes of prm have the answers of the program {wrong}")
+    for name in sorted(NEED_PETSC):
+        check("PETSc" in ours[name][0] and INSTEAD in ours[name][0], f"{name} is refused: {ours[name][0]}")
+
+
+def test_formulas():
+    """Formulas by the muParser of the wheel, whose exceptions become sentences."""
+    run = crawler.run(SCENE, set={"Ground/Profile": "1 + 0.5*sin(6*x)"}, fields=False)
+    check(run.status == "finished" and run.displacement != crawler.read(FOLDER).displacement, f"a formula: {run.displacement!r}")
+    for formula, words in {"1 + foo*x": "foo", "sin(x": "Missing", "1/(x - x)": "inf at x"}.items():
+        try:
+            problem = f"it is computed: {crawler.run(SCENE, set={'Ground/Profile': formula})}"
+        except crawler.InputError as error:
+            problem = str(error)
+        check(words.lower() in problem.lower() and "\n" not in problem, f"refused: {problem}")
+    maps = pathlib.Path("/proc/self/maps").read_text(encoding="utf-8")
+    loaded = {line.split()[-1] for line in maps.splitlines() if "libmuparser" in line or "libgomp" in line}
+    check(len(loaded) == 2 and all("/crawler.libs/" in name for name in loaded), f"libraries of the wheel are used: {sorted(loaded)}")
 
 
 def test_answers():
@@ -54,7 +95,6 @@ def test_refusals(folder):
     calls = {
         "PETSc": lambda: crawler.run(SCENE, set={"Discretization/Mesh": "adaptive"}),
         "PETSc's time": lambda: crawler.batch([SCENE], set={"Discretization/Mesh": "adaptive"}),
-        "muParser": lambda: crawler.run(SCENE, set={"Ground/Profile": "1 + 0.5*sin(6*s)"}),
         "shared object": lambda: crawler.run({"Active stress": {"Generator": "library", "Library": {"File": table}}}),
         "HDF5": lambda: crawler.run({"Active stress": {"Generator": "table", "Table": {"File": table}}}),
         "crawler.run": lambda: crawler.run(SCENE, output=folder / "run"),
@@ -82,6 +122,9 @@ def test_commands():
         import h5py  # noqa: F401
         code, problem = call("report", FOLDER, "--quiet")
         check(code == 0 and (pathlib.Path(FOLDER) / "report.html").stat().st_size > 10000, f"a report {problem}")
+        import matplotlib  # noqa: F401
+        code, problem = call("paper", FOLDER, "--output", pathlib.Path(FOLDER).parent / "paper")
+        check(code == 0 and "displacement,length" in (pathlib.Path(FOLDER).parent / "paper/numbers.csv").read_text(encoding="utf-8"), f"a figure {problem}")
     except ImportError:
         code, problem = call("report", FOLDER)
         check(code != 0 and "has no h5py" in problem, f"without h5py: {problem}")
@@ -92,6 +135,8 @@ def main():
     warnings.simplefilter("error")
     check("site-packages" in crawler.__file__ and set(crawler.run(SCENE).versions) == {"crawler", "revision"}, f"the wheel is used: {crawler.__file__}")
     test_answers()
+    test_formulas()
+    test_scenes(PRM)
     with tempfile.TemporaryDirectory() as folder:
         test_refusals(pathlib.Path(folder))
     test_commands()
@@ -99,4 +144,9 @@ def main():
 
 
 if __name__ == "__main__":
+    PRM = pathlib.Path(sys.argv[-1])
+    if len(sys.argv) == 2:
+        (PRM / "answers.json").write_text(json.dumps(answers(PRM)), encoding="utf-8")
+        sys.exit()
+    SCENE, FOLDER = sys.argv[1:3]
     sys.exit(main())

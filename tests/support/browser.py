@@ -91,14 +91,16 @@ class Browser:
                     raise RuntimeError(f"{method}: {message['error']['message']}")
                 return message["result"]
 
-    def open(self, path, width=1200, height=900, dark=False):
-        """Loads a file with the given size and colour scheme."""
+    def open(self, path, width=1200, height=900, dark=False, fragment=""):
+        """Loads a file, at a part of it, with the given size and colour scheme."""
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
         self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
-        self.loaded = False
-        self.call("Page.navigate", url=path.resolve().as_uri())
-        while not self.loaded:
-            self.message()
+        # Another part of the page that is open would not load it anew.
+        for url in ("about:blank", f"{path.resolve().as_uri()}#{fragment}") if fragment else (path.resolve().as_uri(),):
+            self.loaded = False
+            self.call("Page.navigate", url=url)
+            while not self.loaded:
+                self.message()
         self.settle()
 
     def settle(self):

@@ -99,7 +99,7 @@ def write_whole(path, content):
 # Mistakes on a command line, in the words of argparse and in those of the program.
 SLIPS = ((r"^argument (\S+): invalid float value: '(.*)'$", r'"\1" is "\2", but a number is expected'),
          (r"^argument (\S+): invalid int value: '(.*)'$", r'"\1" is "\2", but a whole number is expected'),
-         (r"^argument (\S+): invalid choice: '(.*)' \(choose from (.*)\)$", r'"\1" is "\2", but one of \3 is expected'),
+         (r"^argument (\S+): invalid choice: '?(.*?)'? \(choose from (.*)\)$", r'"\1" is "\2", but one of \3 is expected'),
          (r"^argument (\S+): expected one argument$", r'a value is expected after "\1"'),
          (r"^the following arguments are required: (.*)$", r"\1 missing"),
          (r"^unrecognized arguments: (.*)$", r'found "\1", but nothing more is expected'))

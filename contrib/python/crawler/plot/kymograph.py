@@ -27,8 +27,8 @@ def read_statistics(folder):
         raise InputError(f"{path} has no column {error}") from None
 
 
-def draw(options):
-    """Reads the files and makes the figure."""
+def draw(options, size=None):
+    """Reads the files and makes the figure. @p size: width and height [inch] in a journal."""
     run = Kymograph(options.folder, "stretch", "displacement", "active_stress")
     times, travelled = read_statistics(options.folder)
     if run.t[0] > 0:
@@ -36,7 +36,7 @@ def draw(options):
     begin, end = run.keep(options.begin, options.end, options.last_stride)
 
     stress = options.stress
-    figure = plt.figure(figsize=(10.5 if stress else 7.8, 5.8), layout="constrained")
+    figure = plt.figure(figsize=size or (10.5 if stress else 7.8, 5.8), layout="constrained")
     panels = figure.subplot_mosaic("amb;ddd" if stress else "bm;dd", height_ratios=(3, 1.15))
     bar = {"location": "bottom", "aspect": 30} if stress else {}
     if stress:
@@ -52,15 +52,24 @@ def draw(options):
     panels["d"].set(xlabel=NAMES["t"], ylabel="displacement\n$D$ [length]", xlim=(begin, end))
     for axes in panels.values():
         axes.locator_params(steps=(1, 2, 5, 10))
+    if size:
+        for letter, axes in zip("abcd", panels.values()):
+            axes.set_title("")
+            axes.set_title(f"({letter})", loc="left")
     panels["d"].grid(color="0.85", linewidth=0.6)
     return figure
 
 
-def main():
-    """Command line."""
+def arguments():
+    """Parser of the command line."""
     own = parser(__doc__, "kymograph.png", time=True)
     own.add_argument("--stress", action="store_true", help="draws the active stress as well")
-    options = own.parse_args()
+    return own
+
+
+def main():
+    """Command line."""
+    options = arguments().parse_args()
     save(draw(options), picture_of(options, "kymograph.png"), study=options.folder, dpi=120, few_colours=True)
 
 

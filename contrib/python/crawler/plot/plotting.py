@@ -245,7 +245,7 @@ def save(figure, *pictures, study=None, dpi=160, few_colours=False):
             raise InputError(f'found the picture "{picture}", but a name that ends in .png, .svg or .pdf is expected')
         memory = io.BytesIO()
         figure.savefig(memory, format=picture.suffix[1:].lower(), dpi=dpi,
-                       metadata={"Date": None} if picture.suffix == ".svg" else None)
+                       metadata={".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(picture.suffix))
         if few_colours and picture.suffix == ".png":
             from PIL import Image  # comes with matplotlib
             coloured, memory = memory, io.BytesIO()

@@ -454,8 +454,8 @@ def title_of(sweep, options, x, y, marks):
     return "; ".join(words)
 
 
-def draw(sweep, options):
-    """Draws the whole picture."""
+def draw(sweep, options, size=None):
+    """Draws the whole picture. @p size: width and height [inch], if they are given."""
     if not options.value:
         is_map = "verdict" in sweep.data and len(sweep.varying()) > 1 and not (options.lines or options.fit)
         options.value = "outcome" if is_map else "displacement"
@@ -488,7 +488,7 @@ def draw(sweep, options):
     wide = spread(rest[0], MOST_PANELS, "a picture each") if rest else [None]
     high = spread(rest[1], MOST_PANELS, "a row of pictures each") if len(rest) > 1 else [None]
     small = len(wide) * len(high) > 1
-    size = (2.4 + 2.3 * len(wide), 1.2 + 2.2 * len(high)) if small else (6.4, 4.8)
+    size = size or ((2.4 + 2.3 * len(wide), 1.2 + 2.2 * len(high)) if small else (6.4, 4.8))
     figure, panels = plt.subplots(len(high), len(wide), figsize=size, sharex=True, sharey=True, squeeze=False,
                                   layout="constrained")
     drawn = values[marks.drawn]
@@ -574,8 +574,8 @@ def draw(sweep, options):
     return figure
 
 
-def main():
-    """Reads the arguments, draws and writes."""
+def arguments():
+    """Parser of the command line."""
     own = parser(__doc__, "results.png, results.svg")
     own.add_argument("--x", metavar="AXIS")
     own.add_argument("--y", metavar="AXIS")
@@ -584,11 +584,21 @@ def main():
     own.add_argument("--where", metavar="AXIS=VALUE", action="append", default=[])
     own.add_argument("--scale", choices=("auto", "linear", "log"), default="auto")
     own.add_argument("--fit", action="store_true")
-    options = own.parse_args()
+    return own
+
+
+def chosen_points(options):
+    """Table of the folder, with the points that --where keeps."""
     sweep = Sweep(options.folder)
     for condition in options.where:
         sweep.where(condition)
-    figure = draw(sweep, options)
+    return sweep
+
+
+def main():
+    """Reads the arguments, draws and writes."""
+    options = arguments().parse_args()
+    figure = draw(chosen_points(options), options)
     pictures = [options.output] if options.output else [options.folder / name for name in ("results.png", "results.svg")]
     save(figure, *pictures, study=options.folder)
 
