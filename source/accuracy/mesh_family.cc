@@ -88,9 +88,7 @@ namespace crawler
       {
         if (latest_.inversion && space_error_ <= believed * latest_.inversion->t)
           return max_cells_if_inverted;
-        if (levels_.size() == 2) // a third mesh that agrees with these tells their error
-          return max_cells_if_accurate;
-        return accuracy_ < accurate ? max_cells_if_accurate : max_cells;
+        return max_cells;
       }
 
       Numerics &
