@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 using namespace crawler;
 using test::with;
@@ -114,26 +115,30 @@ TEST(Ladder, AutomaticChoice)
 
 TEST(Ladder, ScenesThatDoNotFitAreRefused)
 {
-  const test::Settings expression = {{"Active stress/Generator", "expression"}};
-  EXPECT_EQ(
-    complaint(with(expression, {{"Model", "perturbation"}})).find("Model: Model is perturbation, which is a series"),
-    0u);
-  EXPECT_EQ(complaint(with(test::wave(-1., 0.1), {{"Model", "linear"}})),
-            "Model: Model is linear, but a = 1 - p is -1; a = 0 is expected (Anchoring exponent p = 1)");
-  EXPECT_EQ(complaint(with(test::wave(0., 0.1), {{"Model", "linear"}})), "nothing");
-  EXPECT_EQ(complaint(with(expression, {{"Model", "kinematic"}})), "nothing");
-  EXPECT_EQ(complaint(with(expression, {{"Model", "kinematic"}, {"Body/Friction profile", "1+s"}})),
-            "Model: Model is kinematic, which is for plain bodies and grounds unless the strain is prescribed, but the "
-            "scene has "
-            "Body/Friction profile; nonlinear or auto is expected");
-  const test::Settings prescribed = {{"Active stress/Generator", "prescribed strain"},
+  const test::Settings expression = {{"Active stress/Generator", "expression"}},
+                       prescribed = {{"Active stress/Generator", "prescribed strain"},
                                      {"Body/Friction profile", "1+s"}};
-  EXPECT_EQ(complaint(with(prescribed, {{"Ground/Backward ratio", "2"}, {"Ground/Switching velocity", "0.1"}})),
-            "Generator is prescribed strain, which is for bodies whose motion follows from their strain alone, but the "
-            "scene has Ground/Backward ratio; another one is expected");
-  EXPECT_EQ(complaint(with(prescribed, {{"Ground/Friction law", "expression"}, {"Ground/Expression", "1.2-w"}}))
-              .find("the friction law has no positive value at the stretch 1.2"),
-            0u);
+  const std::vector<std::tuple<test::Settings, test::Settings, std::string>> cases = {
+    {expression, {{"Model", "perturbation"}}, "Model: Model is perturbation, which is a series"},
+    {test::wave(-1., 0.1),
+     {{"Model", "linear"}},
+     "Model: Model is linear, but a = 1 - p is -1; a = 0 is expected (Anchoring exponent p = 1)"},
+    {test::wave(0., 0.1), {{"Model", "linear"}}, "nothing"},
+    {expression, {{"Model", "kinematic"}}, "nothing"},
+    {expression,
+     {{"Model", "kinematic"}, {"Body/Friction profile", "1+s"}},
+     "Model: Model is kinematic, which is for plain bodies and grounds unless the strain is prescribed, but the scene "
+     "has Body/Friction profile; nonlinear or auto is expected"},
+    {prescribed,
+     {{"Ground/Backward ratio", "2"}, {"Ground/Switching velocity", "0.1"}},
+     "Active stress/Generator: Generator is prescribed strain, which is for bodies whose motion follows from their "
+     "strain alone, but the scene has Ground/Backward ratio; another one is expected"},
+    {prescribed,
+     {{"Ground/Friction law", "expression"}, {"Ground/Expression", "1.2-w"}},
+     "Active stress/Prescribed strain/Strain: the friction law has no positive value at the stretch 1.2"},
+  };
+  for (const auto &[scene, settings, words] : cases)
+    EXPECT_TRUE(complaint(with(scene, settings)).starts_with(words)) << complaint(with(scene, settings));
 }
 
 /// A level that was asked for gives its answer and its error, also if that is too large.
