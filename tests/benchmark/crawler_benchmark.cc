@@ -20,17 +20,12 @@
 //   robot/64/1e-4 ...    Robots of so many segments that switch by jumps, in the way of answer/.
 //   general/*/...        Bodies and grounds that are not plain, and the plain one, with one setting: one body (fused),
 //                        256 side by side (batch).
-//   level/linear/1e-4 ... A body at a = 0 by the linear level, and level/nonlinear/... the same by the fused engine,
-//   both
-//                        with that tolerance on the same mesh; "error" is that of the work of its actuators.
 //   sweep/1e-4, 1e-6     40 exponents a in [-3, -0.5] times 25 chi in [0.05, 0.45] by run_batch() with one setting for
 //                        each half of the chi: the cheapest with which the largest true error of all its scenes is
 //                        below that. Runs that the batch gives back are computed by a Simulation; the time includes
 //                        them.
-//   level/...             The levels without a mesh, from a scene to its result with the error (small optimal wave to
-//   1e-2,
-//                        prescribed strain to 1e-6), and the estimate of the models' errors alone.
-//   memory/sweep/1000... Peak memory of larger sweeps, in chunks.
+//   level/...            The levels without a mesh, from a scene to its result with the error (small optimal wave to
+//                        1e-2, prescribed strain to 1e-6), and the estimate of the models' errors alone.
 //   kernel/...           Residual, Jacobian, elimination and velocity on a mesh of n cells.
 //   kernel/expression/... The active stress as a formula: "bulk" evaluates it at the Gauss points of n cells of degree
 //                        4 (items are points), "construction" prepares it for a mesh.

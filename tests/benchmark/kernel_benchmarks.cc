@@ -62,28 +62,30 @@ namespace crawler::test
       return points;
     }
 
+    /// Values of a stress at all times of a run.
     void
-    expression_bulk(benchmark::State &state)
+    stress_values(benchmark::State &state, const ActiveStress &stress)
     {
       const auto points    = stress_points(static_cast<std::size_t>(state.range(0)));
-      const auto at_points = Expression({.active_stress = "0.1*sin(2*pi*(s+t))"}, 1., 1.).at(points);
+      const auto at_points = stress.at(points);
       std::vector<double> m(points.size());
       double t = 0.;
       for (auto _ : state)
       {
         at_points->values(t += 1e-3, m);
+        t = t > 1. ? 0. : t;
         benchmark::DoNotOptimize(m.data());
       }
       state.SetItemsProcessed(state.iterations() * state.range(0) * 5);
     }
 
+    /// What is prepared for a mesh.
     void
-    expression_construction(benchmark::State &state)
+    stress_construction(benchmark::State &state, const ActiveStress &stress)
     {
       const auto points = stress_points(static_cast<std::size_t>(state.range(0)));
-      const Expression expression({.active_stress = "0.1*sin(2*pi*(s+t))"}, 1., 1.);
       for (auto _ : state)
-        benchmark::DoNotOptimize(expression.at(points));
+        benchmark::DoNotOptimize(stress.at(points));
       state.SetItemsProcessed(state.iterations());
     }
 
@@ -130,40 +132,13 @@ namespace crawler::test
       state.SetItemsProcessed(state.iterations() * 1000000);
     }
 
-    /// Values of a table with 65 x 129 samples, to be compared with kernel/expression/bulk.
+    template <typename Function, typename Stress>
     void
-    table_values(benchmark::State &state, const std::string &interpolation)
+    add(const std::string &name, const Function &function, const Stress &make_stress)
     {
-      const auto points    = stress_points(static_cast<std::size_t>(state.range(0)));
-      const auto table     = TableFile(65, 129).read(interpolation);
-      const auto at_points = table.at(points);
-      std::vector<double> m(points.size());
-      double t = 0.;
-      for (auto _ : state)
-      {
-        at_points->values(t += 1e-3, m);
-        t = t > 1. ? 0. : t;
-        benchmark::DoNotOptimize(m.data());
-      }
-      state.SetItemsProcessed(state.iterations() * state.range(0) * 5);
-    }
-
-    /// Values of a generator by its settings.
-    void
-    generator_values(benchmark::State &state, const Settings &settings)
-    {
-      const auto points    = stress_points(static_cast<std::size_t>(state.range(0)));
-      const Scene scene    = parameters_with(settings).create_scene();
-      const auto at_points = scene.active_stress->at(points);
-      std::vector<double> m(points.size());
-      double t = 0.;
-      for (auto _ : state)
-      {
-        at_points->values(t += 1e-3, m);
-        t = t > 1. ? 0. : t;
-        benchmark::DoNotOptimize(m.data());
-      }
-      state.SetItemsProcessed(state.iterations() * state.range(0) * 5);
+      benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State &state) { function(state, *make_stress()); })
+        ->Arg(12)
+        ->Arg(1200);
     }
 
     void
@@ -187,19 +162,9 @@ namespace crawler::test
            "0.4*(0.0886*(erf(10*(s+t)) - erf(10*t) - s*(erf(10*(1+t)) - erf(10*t))) - exp(-100*(s+t)^2) + "
            "exp(-100*s^2))"}}}};
       for (const auto &[name, settings] : list)
-        benchmark::RegisterBenchmark(("kernel/" + name + "/values").c_str(), generator_values, settings)
-          ->Arg(12)
-          ->Arg(1200);
-    }
-
-    void
-    table_construction(benchmark::State &state)
-    {
-      const auto points = stress_points(static_cast<std::size_t>(state.range(0)));
-      const auto table  = TableFile(65, 129).read("cubic");
-      for (auto _ : state)
-        benchmark::DoNotOptimize(table.at(points));
-      state.SetItemsProcessed(state.iterations());
+        add("kernel/" + name + "/values", stress_values, [settings = settings]() {
+          return std::move(parameters_with(settings).create_scene().active_stress);
+        });
     }
 
     void
@@ -233,12 +198,19 @@ namespace crawler::test
     add_kernel("kernel/elimination", [](Bench &b) { b.matrix.factorize(); });
     add_kernel("kernel/solution", [](Bench &b) { b.matrix.solve(b.F, b.F); });
     add_kernel("kernel/velocity", [](Bench &b) { b.assembler.velocity(0.3, b.u, b.v); });
-    benchmark::RegisterBenchmark("kernel/expression/bulk", expression_bulk)->Arg(12)->Arg(1200);
-    benchmark::RegisterBenchmark("kernel/expression/construction", expression_construction)->Arg(12)->Arg(1200);
+    const auto expression = []() {
+      return std::make_unique<Expression>(ExpressionParameters{.active_stress = "0.1*sin(2*pi*(s+t))"}, 1., 1.);
+    };
+    add("kernel/expression/bulk", stress_values, expression);
+    add("kernel/expression/construction", stress_construction, expression);
     add_generators();
-    benchmark::RegisterBenchmark("kernel/table/cubic", table_values, "cubic")->Arg(12)->Arg(1200);
-    benchmark::RegisterBenchmark("kernel/table/linear", table_values, "linear")->Arg(12)->Arg(1200);
-    benchmark::RegisterBenchmark("kernel/table/construction", table_construction)->Arg(12)->Arg(1200);
+    // To be compared with kernel/expression/bulk.
+    const auto table = [](const std::string &interpolation) {
+      return [=]() { return std::make_unique<ActiveStressTable>(TableFile(65, 129).read(interpolation)); };
+    };
+    add("kernel/table/cubic", stress_values, table("cubic"));
+    add("kernel/table/linear", stress_values, table("linear"));
+    add("kernel/table/construction", stress_construction, table("cubic"));
     benchmark::RegisterBenchmark("kernel/table/reading", table_reading)->Unit(benchmark::kMillisecond);
     benchmark::RegisterBenchmark("scale/newton_step", newton_step)
       ->RangeMultiplier(10)

@@ -237,6 +237,11 @@ def manual():
 
 def helps():
     """Help has examples and the exit codes of the user guide."""
+    for arguments, words in (("--version", "crawler 0, deal.II, PETSc"), ("--help", "run, check, parameters, --version, PETSc"),
+                             ("run --help", "FILE, --set, --output, --overwrite, --quiet"), ("check --help", "FILE, --set"),
+                             ("parameters --help", "--format, prm, json, markdown")):
+        text = printed(*arguments.split())
+        check(all(word in text for word in words.split(", ")), f"{arguments} has {words}: {text}")
     text = printed("--help")
     guide = (PRM.parent / "doc/user_guide.md").read_text()
     rows = re.findall(r"^\| (\d) \| (.*?) \|", guide.split("\n## Exit codes\n")[1].split("\n## ")[0], re.M)
@@ -282,6 +287,7 @@ def full_disk(folder):
         done = crawler(*arguments, stdout=writer)
         os.close(writer)
         check(done.returncode == 0 and done.stderr == "", f"the reader of {arguments[0]} may leave {done.stderr}")
+    check(json.loads((folder / "left/summary.json").read_text())["status"] == "finished", "the run goes on without its reader")
 
 
 def without_scratch(folder):

@@ -4,7 +4,6 @@
 
     python3 fit.py PATH_TO_CRAWLER
 """
-import csv
 import json
 import os
 import pathlib
@@ -17,7 +16,8 @@ import tempfile
 import matplotlib.image
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call  # noqa: E402
+from program import Checks, call, sets  # noqa: E402
+from tables import csv_rows, json_of  # noqa: E402
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 STUDIES = pathlib.Path(__file__).resolve().parents[2] / "prm/studies"
@@ -26,15 +26,13 @@ TRUTH = {"Body/Anchoring exponent": 2.4, "Body/Elastic modulus": 1.3, "Active st
 REFUSED = [
     ([], 2, "FILE"), (["nowhere.prm"], 6, "nowhere.prm"), (["fit_worm.prm"], 2, "--overwrite"), (["fit_worm.prm", "--data", "no.csv"], 2, "no.csv"),
     (["fit_worm.prm", "--outptu", "x"], 2, "--output"), (["fit_worm.prm", "--set", "Body/Length"], 2, "Section/Entry=value"),
-    (["fit_worm.prm", "--set", "Body/Lenght=3"], 2, "Length"), (["fit_worm.prm", "--set", "Fit/Data="], 2, "Fit/Data is empty"),
-    (["fit_worm.prm", "--set", "Fit/Variables="], 2, 'Variables" is empty'), (["fit_worm.prm", "--unit-of-s", "1000"], 2, '"--unit-of-s"'),
-    (["fit_worm.prm", "--columns", "x=x1"], 2, '"--columns" has "x=x1"'), (["fit_worm.prm", "--set", "Fit/Variables=Ground/Backward ratio : 0.5 to 2"], 2, "a velocity is expected"),
+    (["fit_worm.prm", "--set", "Body/Lenght=3"], 2, "Length"), (["fit_worm.prm", "--unit-of-s", "1000"], 2, '"--unit-of-s"'),
+    (["fit_worm.prm", "--columns", "x=x1"], 2, '"--columns" has "x=x1"'),
     (["fit_worm.prm", "--unit-of-t", "1000"], 2, "Time/End time"),
     (["fit_worm.prm", "--output", "fit_worm.prm"], 2, "is a file"), (["fit_worm.prm", "--output", "other", "--overwrite"], 2, "not the folder of a fit"),
-    (["fit_worm.prm", "--set", "Fit/Variables=Active stress/Travelling wave/Amplitude : 5 to 6", "--set",
-      "Active stress/Travelling wave/Amplitude=5.5"], 2, "cannot be run"),
     (["fit_worm.prm", "--workers", "0"], 2, "from 1"), (["fit_worm.prm", "--workers", "two"], 2, "whole number"),
-    (["fit_worm.prm", "three.prm", "--output", "output-fit_worm"], 2, "not empty"), (["fit_worm.prm", "--set", "Fit/Markers at=0,1"], 2, "9 markers"), (["fit_worm.prm", "other/fit_worm.prm"], 2, '"fit_worm.prm" and "other/fit_worm.prm" have the same name'),
+    (["fit_worm.prm", "three.prm", "--output", "output-fit_worm"], 2, "not empty"),
+    (["fit_worm.prm", "other/fit_worm.prm"], 2, '"fit_worm.prm" and "other/fit_worm.prm" have the same name'),
     (["fit_worm.prm", "three.prm", "--set", "Fit/Variables="], 2, 'fit_worm.prm: --set "Fit/Variables=": "Fit/Variables" is empty')]
 THREE = ("fit", "three.prm")
 checks = Checks()
@@ -67,21 +65,19 @@ def compares_only_what_is_weighed_alike():
 
 def fits_two_kinds_together():
     """Tracks and the path of the centre of mass, each with its deviation: screen, files, picture and page, what is resumed and compared."""
-    ended = crawler("run", "fit_worm.prm", "--output", "truth", *(word for entry, value in TRUTH.items() for word in ("--set", f"{entry}={value}")))
-    with open("truth/statistics.csv", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+    ended = crawler("run", "fit_worm.prm", "--output", "truth", *sets(TRUTH))
+    rows = csv_rows("truth/statistics.csv")
     kept = [(float(row["time [time]"]), 7 + 1.5 + float(row["displacement [length]"])) for row in rows[::max(1, len(rows) // 50)]]  # tracks count from 7
     pathlib.Path("centre.csv").write_text("t,centre\n" + "".join(f"{t!r},{x + 1e-3 * (-1) ** i!r}\n" for i, (t, x) in enumerate(kept)), encoding="utf-8")
     words = ("fit", "fit_worm.prm", "--data", "fit_worm.csv", "--data", "centre.csv", "--set", "Fit/Standard deviation=0.01, 0.001", "--output", "two")
     ended = crawler(*words)
     check(ended.returncode == 0 and "of markers: 540 data" in ended.stdout and f"of centre: {len(kept)} data" in ended.stdout, f"two kinds: {ended.stdout}{ended.stderr}")
-    summary = json.loads(pathlib.Path("two/summary.json").read_text(encoding="utf-8"))
+    summary = json_of("two/summary.json")
     check([one["kind"] for one in summary["goodness"]["series"]] == ["markers", "centre"] and summary["goodness"]["n_data"] == 540 + len(kept)
           and [pathlib.Path(name).name for name in summary["measured"]["files"]] == ["fit_worm.csv", "centre.csv"], f"two kinds: {summary['goodness']}")
     for name, value in TRUTH.items():
         check(abs(summary["variables"][name]["value"] - value) < 4 * summary["variables"][name]["deviation"], f"two kinds: {name} = {summary['variables'][name]['value']}")
-    with open("two/residuals.csv", encoding="utf-8") as file:
-        check({row["kind"] for row in csv.DictReader(file)} == {"markers", "centre"}, "residuals.csv of two kinds")
+    check({row["kind"] for row in csv_rows("two/residuals.csv")} == {"markers", "centre"}, "residuals.csv of two kinds")
     again = crawler("fit", "two/fitted.prm", "--set", "Fit/Standard deviation=0.01, 0.001", "--output", "two again")
     check(again.returncode == 0 and "of centre" in again.stdout and crawler("report", "two").returncode == 0, f"the scene that was written: {again.stderr}")
     both = crawler(*words[:2], "three.prm", *words[2:-1], "both kinds")
@@ -112,7 +108,7 @@ def resumes():
         ended = crawler(*THREE, "--output", "part", stop_at=place)
         check(ended.returncode == code and ended.stderr.count("\n") == 1, f"{place}: {ended.returncode}, {ended.stderr}")
         summary = pathlib.Path("part/summary.json")
-        left = json.loads(summary.read_text(encoding="utf-8")) if summary.exists() else {"status": None}
+        left = json_of(summary) if summary.exists() else {"status": None}
         check(left["status"] == status and ("--resume continues" in ended.stderr or code == 3), f"{place} leaves {left['status']}: {ended.stderr}")
         if status and str(n_steps) in place:
             check(len(left["starts"]) == 2 and all(one["value"] is not None and one["deviation"] is None for one in left["variables"].values())
@@ -127,7 +123,7 @@ def resumes():
         check(ended.returncode == 0 and contents("part") == whole, f"{place} and --resume: {ended.stderr}")
         check(("2 of 3 starts" in ended.stdout) == (str(n_steps) in place), f"{place}: --resume searches again: {ended.stdout}")
     ended = crawler(*THREE, "--output", "shared", "--workers", "2", stop_at="step:1200:KILL")  # in a second start
-    check(ended.returncode == 5 and json.loads(pathlib.Path("shared/summary.json").read_text(encoding="utf-8"))["message"] in ended.stderr
+    check(ended.returncode == 5 and json_of("shared/summary.json")["message"] in ended.stderr
           and "--resume continues" in ended.stderr, f"a process that is killed: {ended.returncode}, {ended.stderr}")
     ended = crawler(*THREE, "--output", "shared", "--workers", "2", "--resume")
     check(ended.returncode == 0 and contents("shared") == whole, f"two processes find something else: {ended.stderr}")
@@ -137,7 +133,7 @@ def resumes():
         process.kill()
         process.stdout.read()  # comes to its end when the part in Python has ended, too
     summary = pathlib.Path("orphan/summary.json")
-    check(not summary.exists() or json.loads(summary.read_text(encoding="utf-8"))["status"] == "stopped", "a program that is killed leaves its fit behind")
+    check(not summary.exists() or json_of(summary)["status"] == "stopped", "a program that is killed leaves its fit behind")
     ended = crawler(*THREE, "--output", "orphan", "--resume")
     check(ended.returncode == 0 and contents("orphan") == whole, f"--resume behind a program that was killed: {ended.stderr}")
     pathlib.Path("part/starts/1.json").write_text("{", encoding="utf-8")
@@ -205,21 +201,20 @@ def main():
         shutil.copy(STUDIES / name, name)
     ended = crawler("fit", "fit_worm.prm")
     check(ended.returncode == 0, f"the example ends with {ended.returncode}: {ended.stderr}")
-    summary = json.loads(pathlib.Path("output-fit_worm/summary.json").read_text(encoding="utf-8"))
+    summary = json_of("output-fit_worm/summary.json")
     for name, value in TRUTH.items():
         one = summary["variables"][name]
         check(abs(one["value"] - value) < 4 * one["deviation"] and one["interval_95"][0] < one["value"] < one["interval_95"][1],
               f"{name} = {one}, but {value} made the data")
         check(f"{name} " in ended.stdout and f"{one['value']:.6g} +- {one['deviation']:.2g}" in ended.stdout, f"{name} is not printed")
-    with open("output-fit_worm/residuals.csv", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+    rows = csv_rows("output-fit_worm/residuals.csv")
     squares = sum(float(row["residual"]) ** 2 for row in rows) / 0.01 ** 2
     check(len(rows) == summary["goodness"]["n_data"] and abs(squares / summary["goodness"]["chi_square"] - 1) < 1e-4, "residuals and chi-square differ")
     check(matplotlib.image.imread("output-fit_worm/fit.png").shape[0] > 300, "there is no picture")
     pathlib.Path("output-fit_worm/fit.png").unlink()
     check(crawler("plot", "output-fit_worm").returncode == 0 and pathlib.Path("output-fit_worm/fit.png").exists(), "plot draws no fit")
     again = crawler("fit", "output-fit_worm/fitted.prm", "--output", "again")  # it starts where the first one ended
-    other = json.loads(pathlib.Path("again/summary.json").read_text(encoding="utf-8"))["variables"]
+    other = json_of("again/summary.json")["variables"]
     check(again.returncode == 0 and all(abs(other[name]["value"] - summary["variables"][name]["value"]) < 0.02 * other[name]["deviation"] for name in TRUTH),
           "the scene that was written fits otherwise")
     refuses()
@@ -230,10 +225,9 @@ def main():
     both = crawler("fit", "plain.prm", "fit_worm.prm", "--output", "both")
     order = re.findall(r"^(plain|fit_worm)\.prm +\d", both.stdout, re.M)
     check(both.returncode == 0 and order == ["fit_worm", "plain"] and "does not fit" in both.stdout, f"the comparison is {order}: {both.stderr}")
-    with open("both/comparison.csv", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    summary = json.loads(pathlib.Path("both/summary.json").read_text(encoding="utf-8"))
-    inner = json.loads(pathlib.Path("both/plain/summary.json").read_text(encoding="utf-8"))
+    rows = csv_rows("both/comparison.csv")
+    summary = json_of("both/summary.json")
+    inner = json_of("both/plain/summary.json")
     check([one["scene"] for one in rows] == ["fit_worm.prm", "plain.prm"] and float(rows[1]["aic"]) == inner["information"]["aic"]
           and float(rows[0]["bic_less_least"]) == 0 and summary["comparison"][1]["chi_square"] == inner["goodness"]["chi_square"], f"its table is {rows}")
     check(all({"seconds", "versions", "command_line"} <= one.keys() and "crawler" in one["versions"] for one in (summary, inner)), "what was run is not said")

@@ -9,9 +9,11 @@ import glob
 import os
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, call  # noqa: E402
 
 CMAKE, BUILD = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
@@ -24,17 +26,12 @@ PARTS = ["bin/crawler", "include/crawler/scene/stress_plugin.h", "lib*/**/cmake/
 # In a namespace of its own (user, files), with empty folders in place of source and build.
 HIDDEN = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c",
           f'mount -t tmpfs none "{SOURCE}" && {{ [ ! -d "{BUILD}" ] || mount -t tmpfs none "{BUILD}"; }} && exec "$@"', "sh"]
-failures = []
+checks = Checks()
+expect = checks.expect
 
 
-def expect(condition, what):
-    if not condition:
-        failures.append(what)
-
-
-def call(*words, folder, before=()):
-    end = subprocess.run([*before, *map(str, words)], cwd=folder, capture_output=True, text=True, check=False,
-                         env={**os.environ, "PATH": "/usr/bin:/bin"})
+def printed(*words, folder, before=()):
+    end = call([*before, *words], folder, variables={"PATH": "/usr/bin:/bin"})
     expect(end.returncode == 0, f"{' '.join(map(str, words))}: {end.returncode}\n{end.stdout}{end.stderr}")
     return end.stdout
 
@@ -42,7 +39,7 @@ def call(*words, folder, before=()):
 with tempfile.TemporaryDirectory() as name:
     here = pathlib.Path(name)
     prefix = here / "installed"
-    call(CMAKE, "--install", BUILD, "--prefix", prefix, "--strip", folder=here)
+    printed(CMAKE, "--install", BUILD, "--prefix", prefix, "--strip", folder=here)
     parts = list(PARTS)
     if (BUILD / "python/crawler").is_dir():
         parts += ["lib/python3*/dist-packages/crawler/" + file for file in ("__init__.py", "results.py", "_core*.so")]
@@ -54,22 +51,22 @@ with tempfile.TemporaryDirectory() as name:
             for folder in (SOURCE, BUILD):
                 expect(os.fsencode(folder) + b"/" not in path.read_bytes(), f"{path} names {folder}")
 
-    can_hide = shutil.which("unshare") and subprocess.run([*HIDDEN, "true"], capture_output=True, check=False).returncode == 0
+    can_hide = shutil.which("unshare") and call([*HIDDEN, "true"]).returncode == 0
     before = HIDDEN if can_hide else ()
     if not can_hide:
         print("Source and build folder are not hidden: unshare --user --mount is not allowed here")
     program = prefix / "bin/crawler"
-    (here / "a.prm").write_text(call(program, "init", "earthworm", folder=here, before=before))
-    call(program, "run", "a.prm", "--quiet", folder=here, before=before)
-    call(program, "plot", "output-a", "--output", "picture.png", folder=here, before=before)
-    call(program, "report", "output-a", folder=here, before=before)
+    (here / "a.prm").write_text(printed(program, "init", "earthworm", folder=here, before=before))
+    printed(program, "run", "a.prm", "--quiet", folder=here, before=before)
+    printed(program, "plot", "output-a", "--output", "picture.png", folder=here, before=before)
+    printed(program, "report", "output-a", folder=here, before=before)
     for file in ("output-a/summary.json", "picture.png", "output-a/report.html"):
         expect((here / file).is_file(), f"{file} is not there")
     expect("`inverted_inside`" in (here / "output-a/report.html").read_text(), "the report has no advice")
     if packages := glob.glob(str(prefix / "lib/python3*/dist-packages")):
-        call("/usr/bin/python3", "-c", f"import sys; sys.path.insert(0, '{packages[0]}'); import crawler; "
-             "assert crawler.run('a.prm').displacement > 0", folder=here, before=before)
-    call(program, "run", prefix / "share/crawler/prm/examples/earthworm.prm", "--quiet", "--output", "example",
+        printed("/usr/bin/python3", "-c", f"import sys; sys.path.insert(0, '{packages[0]}'); import crawler; "
+                "assert crawler.run('a.prm').displacement > 0", folder=here, before=before)
+    printed(program, "run", prefix / "share/crawler/prm/examples/earthworm.prm", "--quiet", "--output", "example",
          folder=here, before=before)
 
-sys.exit("\n".join(failures) or 0)
+checks.end()

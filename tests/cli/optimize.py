@@ -8,7 +8,6 @@ a study that is killed and resumed, ranks, and answers to bad input.
 --long: with narrow tolerances, more variables and more cases, some minutes.
 """
 import math
-import os
 import pathlib
 import signal
 import struct
@@ -16,7 +15,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import NO_PICTURES, Checks, call, on_ranks, tests_of_part  # noqa: E402
+from program import NO_PICTURES, Checks, call, on_ranks, sets, tests_of_part  # noqa: E402
 from tables import csv_rows, h5_columns, json_of  # noqa: E402
 
 CRAWLER, PRM, MPIRUN = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), sys.argv[3]
@@ -28,14 +27,9 @@ checks = Checks()
 expect = checks.expect
 
 
-def with_settings(settings):
-    """As the command line has them."""
-    return [word for setting in settings for word in ("--set", setting)]
-
-
 def run(study, folder, *settings, options=(), ranks=1, stop_at=None, picture=False):
     """The finished process; the study is the name of one in prm/studies. Most need no picture."""
-    return call([*on_ranks(MPIRUN, ranks), CRAWLER, "optimize", PRM / f"{study}.prm", *with_settings(settings),
+    return call([*on_ranks(MPIRUN, ranks), CRAWLER, "optimize", PRM / f"{study}.prm", *sets(settings),
                  "--output", folder, *options], None, stop_at, {} if picture else NO_PICTURES)
 
 
@@ -304,7 +298,7 @@ def test_starts(place):
     for settings, words in (([], "is within all limits"), (["Sweep/Axes=Optimize/Largest strain : 0.3, 0.1"],
                                                           "with Largest strain = 0.1: merit 0.145"),
                             (["Optimize/Largest strain=0.1"], "exceeds Largest strain by")):
-        check = call([CRAWLER, "check", PRM / "optimize_harmonics.prm", *with_settings(settings)])
+        check = call([CRAWLER, "check", PRM / "optimize_harmonics.prm", *sets(settings)])
         expect(check.returncode == 0 and words in check.stdout and "is valid" in check.stdout,
                f"check {settings}: {check.stdout}{check.stderr}")
 

@@ -6,12 +6,14 @@ show something and are those of the page, a number that is off ends with 7.
     python3 paper.py PATH_TO_CRAWLER
 """
 import pathlib
-import subprocess
 import sys
 import tempfile
 
 import numpy as np
 from PIL import Image
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, call  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRIPT = ROOT / "contrib" / "paper" / "make_figures.py"
@@ -26,19 +28,8 @@ make_figures.RUNS = {}
 make_figures.figures.ALL = [lambda results, numbers, out: numbers.require("Fig. 0", "a number", 1, VALUE, 1e-3, "nowhere")]
 make_figures.run_script(make_figures.main)
 """
-failures = []
-
-
-def check(condition, what):
-    """Prints what was checked and keeps failures."""
-    if not condition:
-        failures.append(what)
-    print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
-
-
-def call(*arguments):
-    """Runs Python."""
-    return subprocess.run([sys.executable, *map(str, arguments)], capture_output=True, text=True, timeout=600, check=False)
+checks = Checks()
+check = checks.expect
 
 
 def test_pictures(out):
@@ -85,19 +76,19 @@ def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory() as name:
         out = pathlib.Path(name) / "paper"
-        end = call(SCRIPT, program, out)
+        end = call([sys.executable, SCRIPT, program, out])
         check(end.returncode == 0, f"all numbers are right: {end.returncode} {end.stderr.strip()}")
         if end.returncode == 0:
             test_pictures(out)
             test_numbers(out, end.stdout)
         for value, code in ((1.0005, 0), (1.002, 7), (float("nan"), 7)):
-            end = call("-c", WRONG.replace("VALUE", f'float("{value}")'), SCRIPT.parent, program, out)
+            end = call([sys.executable, "-c", WRONG.replace("VALUE", f'float("{value}")'), SCRIPT.parent, program, out])
             check(end.returncode == code, f"{value}, where 1 +- 1e-3 is expected: {end.returncode} {end.stderr.strip()[-200:]}")
         for arguments, word in (((name,), "contrib/setup.sh"), ((program, program / "x"), "cannot make the folder"), ((), "BUILD")):
-            end = call(SCRIPT, *arguments)
+            end = call([sys.executable, SCRIPT, *arguments])
             check(end.returncode in (2, 6) and end.stderr.count("\n") == 1 and word in end.stderr,
                   f"bad input: {end.returncode} {end.stderr.strip()[-200:]}")
-    sys.exit("\n".join(failures) or 0)
+    checks.end()
 
 
 if __name__ == "__main__":

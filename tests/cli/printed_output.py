@@ -13,11 +13,13 @@ import math
 import os
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 
 from documentation import ROOT, split_blocks
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import call  # noqa: E402
 
 WRITES = sys.argv[1] == "--write"
 CRAWLER, *MPIEXEC = sys.argv[2 if WRITES else 1:]
@@ -93,8 +95,6 @@ class Place:
 
     def __init__(self, folder):
         self.folder, self.output = pathlib.Path(folder), ""
-        self.environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                                OMP_NUM_THREADS="1")
 
     def write(self, name, text):
         """A file of the user."""
@@ -103,8 +103,7 @@ class Place:
     def give(self, code, *words, ranks=1):
         """A command, and which exit code it has."""
         command = [*(MPIEXEC + ["-n", str(ranks)] if ranks > 1 else []), CRAWLER, *words]
-        done = subprocess.run(command, cwd=self.folder, env=self.environment, capture_output=True, text=True,
-                              timeout=600, check=False)
+        done = call(command, self.folder)
         if done.returncode != code:
             sys.exit(f"{' '.join(words)} ends with {done.returncode}: {done.stdout}{done.stderr}")
         self.output += done.stdout + done.stderr

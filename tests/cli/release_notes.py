@@ -6,21 +6,19 @@ of a version, the newest by default; and the version of the program is that of t
     python3 release_notes.py CMAKE
 """
 import pathlib
-import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import program  # noqa: E402
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-failures = []
-
-
-def expect(condition, what):
-    if not condition:
-        failures.append(what)
+checks = program.Checks()
+expect = checks.expect
 
 
 def call(*words, folder):
-    end = subprocess.run([str(word) for word in words], cwd=folder, capture_output=True, text=True, check=False)
+    end = program.call(words, folder)
     return end.returncode, end.stdout + end.stderr
 
 
@@ -81,4 +79,4 @@ with tempfile.TemporaryDirectory() as name:
         code, out = notes("--check")
         expect(code == 1 and "line 11" in out and line.splitlines()[0][:40] in out, f"{line} is not refused: {out}")
 
-sys.exit("\n".join(failures) or 0)
+checks.end()

@@ -5,7 +5,6 @@ without a pointer, wide and narrow, light and dark; texts of users stay texts; o
 
     python3 report.py PATH_TO_CRAWLER
 """
-import csv
 import json
 import pathlib
 import re
@@ -18,7 +17,8 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from browser import Browser  # noqa: E402
-from program import NO_PICTURES, Checks, call  # noqa: E402
+from program import NO_PICTURES, Checks, call, sets  # noqa: E402
+from tables import csv_rows, json_of  # noqa: E402
 
 NASTY = "</script><script>window.broken = 1</script><img src=x onerror='window.broken = 1'>"
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
@@ -74,9 +74,8 @@ class Program:
     def study(self, command, scene, output, **entries):
         """Writes a parameter file and runs it; entries with _ for blanks and __ for slashes."""
         (self.folder / f"{command}.prm").write_text(scene, encoding="utf-8")
-        sets = [word for entry, value in entries.items()
-                for word in ("--set", f"{entry.replace('__', '/').replace('_', ' ')}={value}")]
-        result = self(command, f"{command}.prm", "--quiet", "--output", output, *sets)
+        named = {entry.replace("__", "/").replace("_", " "): value for entry, value in entries.items()}
+        result = self(command, f"{command}.prm", "--quiet", "--output", output, *sets(named))
         check(result.returncode in (0, 4), f"{output} is made ({result.returncode}) {result.stderr.strip()}")
 
 
@@ -118,12 +117,6 @@ def column(data, name):
     return [found["values"][code] for code in found["codes"]] if "codes" in found else found["values"]
 
 
-def rows_of(path):
-    """The rows of a CSV file."""
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 def test_content(program):
     """The data of the pages are those of the files."""
     for name in (*FOLDERS, "<b>inverted", "formulas"):
@@ -132,7 +125,7 @@ def test_content(program):
     folder = program.folder
     data = {name: page_data(folder / name) for name in (*FOLDERS, "<b>inverted", "formulas")}
     for name in FOLDERS:
-        summary = json.loads((folder / name / "summary.json").read_text(encoding="utf-8"))
+        summary = json_of(folder / name / "summary.json")
         check(data[name]["kind"] == name.replace("checked", "sweep") and {**data[name]["summary"], **summary} == data[name]["summary"], f"the summary of the {name}")
     check(data["tradeoff"]["summary"]["recommendations"] and data["tradeoff"]["summary"]["pareto"], "advice where the study could not call Python")
     check(data["run"]["runs"][0]["summary"] == data["run"]["summary"] and NASTY in data["run"]["parameters"]["original"],
@@ -148,7 +141,7 @@ def test_content(program):
                                 ("tradeoff", "tradeoff.csv", ("error", "seconds", "entries")),
                                 ("optimisation", "results.csv", ("evaluation", "objective", "violation")),
                                 ("fit", "residuals.csv", ("t", "place", "data", "model", "residual"))):
-        rows = rows_of(folder / name / file)
+        rows = csv_rows(folder / name / file)
         good = all(value == (None if row[key] == "" else float(row[key]) if isinstance(value, (int, float)) else row[key])
                    for key in columns for value, row in zip(column(data[name], key), rows))
         check(good and data[name]["table"]["all_rows"] == len(rows), f"the table of the {name}")
@@ -304,7 +297,7 @@ def in_summary(summary, key):
 def test_run_in_browser(browser, folder):
     """Numbers, and time by keys and by the pointer."""
     browser.open(folder / "run/report.html")
-    summary = json.loads((folder / "run/summary.json").read_text(encoding="utf-8"))
+    summary = json_of(folder / "run/summary.json")
     shown = browser.ask(ALL_KNOWN_NUMBERS)
     check(len(shown) > 40 and all(in_summary(summary, key) == value for key, value in shown), f"{len(shown)} numbers are those of summary.json")
     text = browser.ask("document.body.innerText")
@@ -333,7 +326,7 @@ def test_run_in_browser(browser, folder):
 def test_fit_in_browser(browser, folder):
     """Values, profiles, correlation, starts; data with the run through them, and the map of residuals."""
     browser.open(folder / "fit/report.html")
-    summary = json.loads((folder / "fit/summary.json").read_text(encoding="utf-8"))
+    summary = json_of(folder / "fit/summary.json")
     shown = browser.ask("[...document.querySelectorAll('td data')].map(one => Number(one.value))")
     for one in summary["variables"].values():
         check({one["value"], *one["interval_95"]} <= set(shown), f"{one} is shown")
@@ -342,8 +335,8 @@ def test_fit_in_browser(browser, folder):
     check(any("540 measured numbers, dots" in text for text in captions) and any("a map" in text for text in captions), f"data and residuals: {captions}")
     browser.open(folder / "comparison/report.html")
     shown = browser.ask("[...document.querySelectorAll('td data')].map(one => Number(one.value))")
-    for row in json.loads((folder / "comparison/summary.json").read_text(encoding="utf-8"))["comparison"]:
-        fit = json.loads((folder / "comparison" / row["folder"] / "summary.json").read_text(encoding="utf-8"))
+    for row in json_of(folder / "comparison/summary.json")["comparison"]:
+        fit = json_of(folder / "comparison" / row["folder"] / "summary.json")
         check({row["aic"], row["bic_less_least"], fit["variables"][P]["value"]} <= set(shown), f"{row} is shown")
     check(browser.ask(BLANK) == 0 and not browser.complaints, f"bars of the criteria {browser.complaints}")
 
@@ -351,7 +344,7 @@ def test_fit_in_browser(browser, folder):
 def test_map_in_browser(browser, folder):
     """Points by pointer and keys: stored ones with their kymograph, others with their command."""
     browser.open(folder / "sweep/report.html", 1200, 1000)
-    rows = rows_of(folder / "sweep/results.csv")
+    rows = csv_rows(folder / "sweep/results.csv")
     canvas = "charts.find(one => one.keys)"
     x, y = browser.ask(f"(() => {{ const c = {canvas}, r = c.above.getBoundingClientRect(); return [r.x + c.x(0.3), r.y + c.y(2)]; }})()")
     browser.mouse(x, y)
@@ -361,7 +354,7 @@ def test_map_in_browser(browser, folder):
     panel = "document.querySelector('.details')"
     check("Kymograph" in browser.ask(f"{panel}.innerText") and browser.ask(BLANK) == 0, "a stored point shows its body")
     shown = browser.ask(ALL_KNOWN_NUMBERS)
-    stored = json.loads((folder / "sweep/points/5/summary.json").read_text(encoding="utf-8"))
+    stored = json_of(folder / "sweep/points/5/summary.json")
     check(shown and all(in_summary(stored, key) == value for key, value in shown), "its numbers are those of its summary.json")
     browser.ask(f"{canvas}.above.focus()")
     browser.key("ArrowRight")

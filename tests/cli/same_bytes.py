@@ -5,7 +5,6 @@ agree within the error bounds; a set that is not there is refused.
 
     python3 same_bytes.py PATH_TO_CRAWLER
 """
-import json
 import pathlib
 import re
 import sys
@@ -14,7 +13,8 @@ import tempfile
 import h5py
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-import program  # noqa: E402
+from program import Checks, call, sets  # noqa: E402
+from tables import h5_columns, json_of  # noqa: E402
 
 CRAWLER = pathlib.Path(sys.argv[1]).resolve()
 BASE = """
@@ -37,21 +37,14 @@ SETS = ("baseline", "avx2", "avx512")
 # What may differ: seconds, moments, the folder's name; in tables, columns and rows of them.
 TIMES = re.compile(rb'(?i)("?[\w. ]*(?:seconds|duration|processor|wall)[\w. ]*"?\s*[:=,]\s*)[-+\d.e]+|\d+(?:\.\d+)? ?(?:s|ms|us|min|h)\b'
                    rb'|\d{4}-\d\d-\d\d[T ][\d:.]+Z?|[\d.]+ points/s|(?<=[_/])(?:first|second)\b')
-failures = 0
+checks = Checks()
+check = checks.expect
 
 
-def check(condition, what):
-    """Prints what was checked and counts failures."""
-    global failures
-    failures += not condition
-    print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
-
-
-def call(folder, command, entries, output, instruction_set=None):
-    """Runs the command; its exit code and errors."""
-    sets = [word for entry in entries for word in ("--set", entry)]
-    return program.call([CRAWLER, command, "scene.prm", "--quiet", "--output", output, *sets], folder,
-                        variables={} if instruction_set is None else {"CRAWLER_INSTRUCTION_SET": instruction_set})
+def computed(folder, command, entries, output, instruction_set=None):
+    """Runs the command."""
+    return call([CRAWLER, command, "scene.prm", "--quiet", "--output", output, *sets(entries)], folder,
+                variables={} if instruction_set is None else {"CRAWLER_INSTRUCTION_SET": instruction_set})
 
 
 def without_seconds(value):
@@ -74,7 +67,7 @@ def content(path):
             file.visititems(note)
         return found
     if path.suffix == ".json":
-        return without_seconds(json.loads(path.read_text(encoding="utf-8")))
+        return without_seconds(json_of(path))
     if path.suffix == ".csv":
         rows = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines()]
         kept = [i for i, name in enumerate(rows[0]) if "seconds" not in name]
@@ -89,7 +82,7 @@ def files(folder):
 
 def same_files(folder, command, entries):
     """Twice the same."""
-    results = [call(folder, command, entries, f"{command}_{name}") for name in ("first", "second")]
+    results = [computed(folder, command, entries, f"{command}_{name}") for name in ("first", "second")]
     one, two = (files(folder / f"{command}_{name}") for name in ("first", "second"))
     differ = sorted(name for name in one.keys() | two.keys() if one.get(name) != two.get(name))
     check(all(r.returncode == 0 for r in results) and len(one) > 3 and not differ,
@@ -100,14 +93,13 @@ def same_answer(folder):
     """Every instruction set gives the answer within its error bound; they are not all the same computation."""
     answers = {}
     for name in SETS:
-        result = call(folder, "run", [], f"with_{name}", name)
+        result = computed(folder, "run", [], f"with_{name}", name)
         if result.returncode == 2 and "this processor does not have it" in result.stderr:
             print(f"       {name}: {result.stderr.strip()}")
             continue
-        summary = json.loads((folder / f"with_{name}" / "summary.json").read_text(encoding="utf-8"))
-        sweep = call(folder, "sweep", STUDIES["sweep"], f"sweep_{name}", name)
-        with h5py.File(folder / f"sweep_{name}" / "results.h5", "r") as file:
-            rows = {bytes(data.attrs["name"]).decode(): data[:] for data in file["results"].values()}
+        summary = json_of(folder / f"with_{name}" / "summary.json")
+        sweep = computed(folder, "sweep", STUDIES["sweep"], f"sweep_{name}", name)
+        rows = h5_columns(folder / f"sweep_{name}" / "results.h5", "results")
         answers[name] = (summary["displacement"], summary["displacement_error"]["total"], rows)
         check(result.returncode == sweep.returncode == 0, f"{name} is used {result.stderr.strip()}{sweep.stderr.strip()}")
     check("baseline" in answers, "baseline is there")
@@ -121,19 +113,18 @@ def same_answer(folder):
 
 
 def main():
-    """1 if any check failed."""
+    """All of it."""
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         (folder / "scene.prm").write_text(BASE, encoding="utf-8")
         for command, entries in STUDIES.items():
             same_files(folder, command, entries)
         same_answer(folder)
-        result = call(folder, "run", [], "none", "sse9")
+        result = computed(folder, "run", [], "none", "sse9")
         check(result.returncode == 2 and 'CRAWLER_INSTRUCTION_SET is "sse9"' in result.stderr and "baseline" in result.stderr
               and len(result.stderr.splitlines()) == 1 and not (folder / "none").exists(), f"unknown: {result.stderr.strip()}")
-    print(f"{failures} checks failed")
-    return 1 if failures else 0
+    checks.end()
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

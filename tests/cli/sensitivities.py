@@ -6,7 +6,6 @@ bad input, and the picture.
     python3 sensitivities.py PATH_TO_CRAWLER
 """
 import csv
-import json
 import pathlib
 import sys
 import tempfile
@@ -15,7 +14,8 @@ import matplotlib.image
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call  # noqa: E402
+from program import Checks, call, sets  # noqa: E402
+from tables import csv_rows, json_of  # noqa: E402
 
 PLOT = pathlib.Path(__file__).resolve().parents[2] / "contrib/python/crawler/plot" / "sensitivity.py"
 WAVE = """
@@ -66,10 +66,9 @@ def crawler(folder, text, *settings, stop_at=None):
     file = folder / "scene.prm"
     file.write_text(text, encoding="utf-8")
     output = folder / "output"
-    arguments = [word for setting in settings for word in ("--set", setting)]
-    result = call([sys.argv[1], "run", file, "--output", output, "--overwrite", *arguments], stop_at=stop_at)
+    result = call([sys.argv[1], "run", file, "--output", output, "--overwrite", *sets(settings)], stop_at=stop_at)
     summary = output / "summary.json"
-    return result, json.loads(summary.read_text(encoding="utf-8")) if summary.exists() else None
+    return result, json_of(summary) if summary.exists() else None
 
 
 def answers_without_adjoint(folder):
@@ -195,20 +194,19 @@ def in_sweeps(folder):
     result = call([sys.argv[1], "sweep", file, "--output", output, "--set", "Output/Sensitivities=" + K, "--set",
                    f"Output/Uncertainty={P} : 10 %"])
     expect(result.returncode == 0, f"a sweep with sensitivities: {result.stderr}")
-    with open(output / "results.csv", newline="", encoding="utf-8") as table:
-        rows = list(csv.DictReader(table))
-        expect(len(rows) == 4, f"{len(rows)} rows of a sweep")
-        for row in rows:
-            _, summary = crawler(folder, WAVE, f"{P}={row[P]}", f"{CHI}={row[CHI]}", f"Output/Sensitivities={K}, {P}")
-            for entry in (K, P):
-                one = summary["sensitivities"][entry]
-                for number, alone in (("", one), ("stress_power.", one["stress_power"]), ("gait.speed.", one["gait.speed"])):
-                    value, error = (float(row[f"sensitivities.{entry}.{number}{word}"]) for word in ("value", "error"))
-                    expect(abs(value - alone["value"]) <= error + alone["error"],
-                           f"{entry}, {number}: {value} in the sweep, {alone['value']} alone")
-            expect(abs(float(row["uncertainty.displacement"])
-                       / abs(0.1 * float(row[P]) * float(row[f"sensitivities.{P}.value"])) - 1) < 1e-9,
-                   f"uncertainty in the sweep: {row['uncertainty.displacement']}")
+    rows = csv_rows(output / "results.csv")
+    expect(len(rows) == 4, f"{len(rows)} rows of a sweep")
+    for row in rows:
+        _, summary = crawler(folder, WAVE, f"{P}={row[P]}", f"{CHI}={row[CHI]}", f"Output/Sensitivities={K}, {P}")
+        for entry in (K, P):
+            one = summary["sensitivities"][entry]
+            for number, alone in (("", one), ("stress_power.", one["stress_power"]), ("gait.speed.", one["gait.speed"])):
+                value, error = (float(row[f"sensitivities.{entry}.{number}{word}"]) for word in ("value", "error"))
+                expect(abs(value - alone["value"]) <= error + alone["error"],
+                       f"{entry}, {number}: {value} in the sweep, {alone['value']} alone")
+        expect(abs(float(row["uncertainty.displacement"])
+                   / abs(0.1 * float(row[P]) * float(row[f"sensitivities.{P}.value"])) - 1) < 1e-9,
+               f"uncertainty in the sweep: {row['uncertainty.displacement']}")
 
 
 if __name__ == "__main__":

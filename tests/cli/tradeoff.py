@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import NO_PICTURES, Checks, call, on_ranks, ranks_that_stop  # noqa: E402
+from program import NO_PICTURES, Checks, call, on_ranks, ranks_that_stop, sets  # noqa: E402
 from tables import csv_rows, h5_columns, json_of, number, same_as_csv  # noqa: E402
 
 BODY = """
@@ -206,7 +206,7 @@ def check_strides(folder):
     few = ("Tradeoff/Models=nonlinear", "Tradeoff/Engines=fused", "Tradeoff/Meshes=uniform", "Tradeoff/Formulations=position",
            "Tradeoff/Integrators=radau 5", "Tradeoff/Degrees=4", "Tradeoff/Cells=4", "Tradeoff/Tolerances=1e-2", "Time/End time=3",
            "Model=auto")
-    result = study(folder / "strides", *(word for entry in few for word in ("--set", entry)), picture=True)
+    result = study(folder / "strides", *sets(few), picture=True)
     advice = summary_of(folder / "strides")["recommendations"][0]
     pathlib.Path(folder, "strides.prm").write_text(BODY + advice["prm"], encoding="utf-8")
     call([PROGRAM, "run", "strides.prm", "--quiet", "--output", "pasted", "--set", "Time/End time=3"], folder)

@@ -30,13 +30,7 @@ TEST(Fused, ReachesItsOrderWithEqualSteps)
     std::vector<double> errors;
     for (const double n : steps)
       errors.push_back(std::abs(energy(integrator, static_cast<unsigned int>(n)) / exact - 1.));
-    const double observed = test::observed_order(steps, errors);
-    fmt::print("{}: errors {:.2e} {:.2e} {:.2e}: observed order {:.2f}\n",
-               integrator,
-               errors[0],
-               errors[1],
-               errors[2],
-               observed);
+    const double observed = test::observed_order(integrator, steps, errors);
     EXPECT_GE(observed, order - 0.3) << integrator;
   }
 }
@@ -65,14 +59,7 @@ TEST(Fused, ErrorsFallWithTheToleranceOnTheWholeEquation)
       errors.push_back(std::abs(result.displacement - exact));
       EXPECT_LT(errors.back(), 0.1 * tolerance) << integrator;
     }
-    const double observed = test::observed_order(steps, errors);
-    fmt::print("{}: errors {:.2e} ... {:.2e} with {} ... {} steps: observed order {:.2f}\n",
-               integrator,
-               errors.front(),
-               errors.back(),
-               steps.front(),
-               steps.back(),
-               observed);
+    const double observed = test::observed_order(integrator, steps, errors);
     EXPECT_GE(observed, order - 0.3) << integrator;
   }
 }
@@ -96,9 +83,7 @@ TEST(Fused, ReachesItsOrderInSpace)
       cells.push_back(n);
       errors.push_back(std::abs(result->displacement - exact.displacement(end_time)));
     }
-    const double observed = test::observed_order(cells, errors);
-    fmt::print(
-      "degree {}: errors {:.2e} ... {:.2e}, observed order {:.2f}\n", q, errors.front(), errors.back(), observed);
+    const double observed = test::observed_order("degree " + std::to_string(q), cells, errors);
     EXPECT_GE(observed, 2. * q - 0.3) << q;
   }
 }

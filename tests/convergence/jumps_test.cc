@@ -3,6 +3,7 @@
 // Active stresses that jump: full orders where the jumps are declared, and lost orders where they are not.
 #include "../support/lane_runs.h"
 #include "../support/observed_order.h"
+#include "../support/watched.h"
 #include "../support/with_breaks.h"
 
 #include <crawler/time/integrators.h>
@@ -28,28 +29,6 @@ namespace
       std::make_unique<test::WithBreaks>(std::move(run->scene.active_stress), in_space, in_time);
     return run;
   }
-
-  /// Keeps what the steps of a run were.
-  class Times : public Observer
-  {
-  public:
-    explicit Times(std::vector<double> &steps, std::vector<double> &output_times)
-      : steps_(steps)
-      , output_times_(output_times)
-    {
-    }
-    void
-    observe(const Snapshot &snapshot) override
-    {
-      if (snapshot.is_step_end)
-        steps_.push_back(snapshot.step.time);
-      if (snapshot.pictures.is_snapshot)
-        output_times_.push_back(snapshot.step.time);
-    }
-
-  private:
-    std::vector<double> &steps_, &output_times_;
-  };
 
   double
   distance(const std::vector<double> &list, const double value)
@@ -87,15 +66,8 @@ TEST(Jumps, InSpaceKeepTheOrder)
       declared.push_back(std::abs(displacement(form, q, static_cast<unsigned int>(n), true) - exact));
       hidden.push_back(std::abs(displacement(form, q, static_cast<unsigned int>(n), false) - exact));
     }
-    const double order = test::observed_order(cells, declared), lost = test::observed_order(cells, hidden);
-    fmt::print("degree {}: errors {:.2e} ... {:.2e}, order {:.2f}; not declared {:.2e} ... {:.2e}, order {:.2f}\n",
-               q,
-               declared.front(),
-               declared.back(),
-               order,
-               hidden.front(),
-               hidden.back(),
-               lost);
+    const double order = test::observed_order("declared", cells, declared),
+                 lost  = test::observed_order("hidden", cells, hidden);
     EXPECT_GE(order, 2. * q - 0.4);
     EXPECT_LT(lost, form == Formulation::position ? 2.5 : 1.5);
     EXPECT_GT(hidden.back(), (form == Formulation::position ? 100. : 10.) * declared.back());
@@ -133,16 +105,8 @@ TEST(Jumps, InTimeKeepTheOrder)
           declared.push_back(std::abs(energy(integrator, engine, static_cast<unsigned int>(n), true) / exact - 1.));
           hidden.push_back(std::abs(energy(integrator, engine, static_cast<unsigned int>(n), false) / exact - 1.));
         }
-        const double observed = test::observed_order(steps, declared), lost = test::observed_order(steps, hidden);
-        fmt::print("{} {}: errors {:.2e} ... {:.2e}, order {:.2f}; not declared {:.2e} ... {:.2e}, order {:.2f}\n",
-                   integrator,
-                   engine,
-                   declared.front(),
-                   declared.back(),
-                   observed,
-                   hidden.front(),
-                   hidden.back(),
-                   lost);
+        const double observed = test::observed_order(integrator, steps, declared),
+                     lost     = test::observed_order("hidden", steps, hidden);
         // A derivative that jumps excites all modes of the mesh, the stiff ones with a reduced order.
         EXPECT_GE(observed, of_value || order < 9. ? order - 0.4 : 5.6) << integrator << " " << engine;
         if (of_value)
@@ -169,12 +133,6 @@ TEST(Jumps, AreTheSameForAllMethods)
   ASSERT_TRUE(reference);
   const auto compare = [&](const std::string &name, const SimulationResult &result, const double within) {
     ASSERT_EQ(result.time.status, Status::finished) << name << ": " << result.time.message;
-    fmt::print("{:30} {:7} steps, displacement {:.10g}, off by {:.1e}, energy balance {:.1e}\n",
-               name,
-               result.time.steps,
-               result.displacement,
-               std::abs(result.displacement / reference->displacement - 1.),
-               result.energy_balance->residual());
     EXPECT_NEAR(result.displacement / reference->displacement, 1., within) << name;
     EXPECT_LT(result.energy_balance->residual(), 10. * within) << name;
   };
@@ -229,8 +187,12 @@ TEST(Jumps, ManyInTime)
     time.engine         = engine;
     Simulation simulation(MPI_COMM_WORLD, run->scene, time, run->numerics);
     std::vector<double> steps, output_times;
-    std::vector<std::unique_ptr<Observer>> observers;
-    observers.push_back(std::make_unique<Times>(steps, output_times));
+    const auto observers          = test::watched_by([&](const Snapshot &snapshot) {
+      if (snapshot.is_step_end)
+        steps.push_back(snapshot.step.time);
+      if (snapshot.pictures.is_snapshot)
+        output_times.push_back(snapshot.step.time);
+    });
     const SimulationResult result = simulation.run({wanted, {}, 2.}, {.energy_balance = true}, observers);
     ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
     EXPECT_EQ(result.time.steps + 1, steps.size());
@@ -242,7 +204,6 @@ TEST(Jumps, ManyInTime)
       EXPECT_EQ(output_times[i + 1], wanted[i]);
     EXPECT_LT(result.energy_balance->residual(), 1e-5);
     displacements.push_back(result.displacement);
-    fmt::print("{}: {} steps, {:.3f} s\n", word_of(engine), result.time.steps, result.solve_seconds);
   }
   const auto batch = test::run_alone(*run);
   ASSERT_TRUE(batch);
@@ -289,7 +250,6 @@ TEST(Jumps, GradedMeshesConvergeExponentially)
   for (const unsigned int levels : {0u, 2u, 4u, 6u})
   {
     errors.push_back(std::abs(displacement(levels) / exact - 1.));
-    fmt::print("{} levels: error {:.2e}\n", levels, errors.back());
     if (levels > 0)
     {
       EXPECT_LT(errors.back(), errors[errors.size() - 2] / 50.) << levels;
@@ -325,12 +285,6 @@ TEST(Jumps, GetGradedMeshes)
       EXPECT_LT(result.most_cells, 60u);
       EXPECT_LT(std::abs(result.displacement / exact->displacement - 1.), accuracy);
       EXPECT_LT(result.energy_balance->residual(), std::max(1e-8, 10. * accuracy));
-      fmt::print("Accuracy {:g}: {} cells, {} steps, error {:.1e}, energy balance {:.1e}\n",
-                 accuracy,
-                 result.most_cells,
-                 result.time.steps,
-                 std::abs(result.displacement / exact->displacement - 1.),
-                 result.energy_balance->residual());
     }
   }
   // A stress that starts and goes on smoothly does not need them.

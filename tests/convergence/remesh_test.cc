@@ -85,19 +85,6 @@ namespace
   }
 
   constexpr unsigned int never = 1000000;
-
-  void
-  print(const std::string &name, const double tolerance, const Count &count)
-  {
-    fmt::print("{:8} tolerance {:.0e}: {:4} meshes, {:4} steps, {:3} rejected, {:5} Newton iterations, {:.10f}\n",
-               name,
-               tolerance,
-               count.mesh_changes + 1,
-               count.steps,
-               count.rejected,
-               count.newton_iterations,
-               count.displacement);
-  }
 } // namespace
 
 TEST(Remesh, CostsARadauMethodNoSteps)
@@ -106,11 +93,9 @@ TEST(Remesh, CostsARadauMethodNoSteps)
     for (const double tolerance : {1e-5, 1e-6, 1e-7, 1e-8})
     {
       const Count plain = run(name, tolerance, never);
-      print(name, tolerance, plain);
       for (const unsigned int steps_on_a_mesh : {8u, 2u, 1u})
       {
         const Count remeshed = run(name, tolerance, steps_on_a_mesh);
-        print(name, tolerance, remeshed);
         EXPECT_GE(remeshed.mesh_changes, plain.steps / steps_on_a_mesh - 1) << name;
         EXPECT_LE(remeshed.steps + remeshed.rejected, plain.steps + plain.rejected + 2) << name;
         EXPECT_NEAR(remeshed.displacement, plain.displacement, 10. * tolerance) << name;
@@ -122,11 +107,9 @@ TEST(Remesh, CostsBdfManySteps)
 {
   const double tolerance = 1e-6;
   const Count plain      = run("bdf", tolerance, never);
-  print("bdf", tolerance, plain);
   for (const unsigned int steps_on_a_mesh : {40u, 20u})
   {
     const Count remeshed = run("bdf", tolerance, steps_on_a_mesh);
-    print("bdf", tolerance, remeshed);
     EXPECT_GE(remeshed.steps, plain.steps + 15 * remeshed.mesh_changes);
   }
 }
@@ -150,15 +133,6 @@ TEST(Remesh, AnAdaptiveRunTakesTheStepsOfAFineMesh)
       numerics.n_cells    = n_cells;
       numerics.mesh       = {.tolerance = 1e-8, .smallest_cell = 1e-3, .most_cells = 1000};
       const auto adaptive = Simulation(MPI_COMM_WORLD, scene, parameters.time, numerics).run({}, {});
-      fmt::print("{} tolerance {:.0e}: {} steps on {} cells; {} and {} rejected on {} meshes of up to {} cells\n",
-                 name,
-                 tolerance,
-                 fine.time.steps,
-                 fine.most_cells,
-                 adaptive.time.steps,
-                 adaptive.time.rejected_steps,
-                 adaptive.mesh_changes + 1,
-                 adaptive.most_cells);
       EXPECT_GE(adaptive.mesh_changes, 5u) << name;
       EXPECT_LE(adaptive.time.steps, 1.1 * fine.time.steps + 1.) << name;
       EXPECT_LE(adaptive.time.rejected_steps, adaptive.mesh_changes + 1) << name;

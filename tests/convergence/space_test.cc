@@ -4,6 +4,7 @@
 // degree 1.
 #include "../support/exact_solution.h"
 #include "../support/observed_order.h"
+#include "../support/watched.h"
 
 #include <crawler/output/field_sampler.h>
 
@@ -17,49 +18,29 @@ namespace
 {
   constexpr double end_time = 0.3;
 
-  /// Keeps the last state's L2 error.
-  class L2Error : public Observer
+  /// L2 error of a state.
+  double
+  l2_error(const Snapshot &snapshot)
   {
-  public:
-    explicit L2Error(double &error)
-      : error_(error)
-    {
-    }
-
-    void
-    observe(const Snapshot &snapshot) override
-    {
-      const Discretization &d = snapshot.assembler.discretization();
-      if (!sampler_)
-        sampler_ = std::make_unique<FieldSampler>(snapshot.assembler, snapshot.units, points(d));
-      const Fields &fields = sampler_->sample(snapshot.computed_time, snapshot.y, snapshot.v);
-      double sum           = 0.;
-      const auto &exact    = test::ExactSolution();
-      for (unsigned int c = 0; c < d.n_local_cells(); ++c)
-        for (unsigned int p = 0; p < fine_.n; ++p)
-        {
-          const std::size_t i = static_cast<std::size_t>(c) * fine_.n + p;
-          const double error  = fields.displacement[i] - exact.u(sampler_->coordinates()[i], snapshot.step.time);
-          sum += snapshot.units.length * d.cell_size()[c] * fine_.weights[p] * error * error;
-        }
-      error_ = std::sqrt(sum);
-    }
-
-  private:
-    std::vector<FieldSampler::Point>
-    points(const Discretization &discretization) const
-    {
-      std::vector<FieldSampler::Point> result;
-      for (unsigned int c = 0; c < discretization.n_local_cells(); ++c)
-        for (const double x : fine_.points)
-          result.push_back({c, x});
-      return result;
-    }
-
-    const ReferenceElement fine_{8};
-    std::unique_ptr<FieldSampler> sampler_;
-    double &error_;
-  };
+    const ReferenceElement fine(8);
+    const Discretization &d = snapshot.assembler.discretization();
+    std::vector<FieldSampler::Point> points;
+    for (unsigned int c = 0; c < d.n_local_cells(); ++c)
+      for (const double x : fine.points)
+        points.push_back({c, x});
+    FieldSampler sampler(snapshot.assembler, snapshot.units, points);
+    const Fields &fields = sampler.sample(snapshot.computed_time, snapshot.y, snapshot.v);
+    double sum           = 0.;
+    for (unsigned int c = 0; c < d.n_local_cells(); ++c)
+      for (unsigned int p = 0; p < fine.n; ++p)
+      {
+        const std::size_t i = static_cast<std::size_t>(c) * fine.n + p;
+        const double error =
+          fields.displacement[i] - test::ExactSolution().u(sampler.coordinates()[i], snapshot.step.time);
+        sum += snapshot.units.length * d.cell_size()[c] * fine.weights[p] * error * error;
+      }
+    return std::sqrt(sum);
+  }
 
   class Space : public ::testing::TestWithParam<std::tuple<Formulation, unsigned int>>
   {
@@ -90,25 +71,17 @@ TEST_P(Space, OrderOnAnExactSolution)
       scene,
       parameters.time,
       {.degree = q, .n_cells = n, .tolerance = 1e-13, .initial_step = 1e-6, .formulation = formulation});
-    double l2 = 0.;
-    std::vector<std::unique_ptr<Observer>> observers;
-    observers.push_back(std::make_unique<L2Error>(l2));
+    double l2                     = 0.; // of the last state
+    const auto observers          = test::watched_by([&](const Snapshot &snapshot) { l2 = l2_error(snapshot); });
     const SimulationResult result = simulation.run({}, {}, observers);
     ASSERT_EQ(result.time.status, Status::finished);
     cells.push_back(n);
     displacement_errors.push_back(std::abs(result.displacement - exact.displacement(end_time)));
     l2_errors.push_back(l2);
-    fmt::print(
-      "degree {}, {:3} cells: displacement error {:.3e}, L2 error {:.3e}\n", q, n, displacement_errors.back(), l2);
   }
-  const double in_displacement = test::observed_order(cells, displacement_errors),
-               in_l2           = test::observed_order(cells, l2_errors);
-  fmt::print("degree {}: observed order {:.2f} in the displacement (2q = {}), {:.2f} in L2 (q+1 = {})\n",
-             q,
-             in_displacement,
-             2 * q,
-             in_l2,
-             q + 1);
+  const std::string degree     = "degree " + std::to_string(q);
+  const double in_displacement = test::observed_order(degree + " in the displacement", cells, displacement_errors),
+               in_l2           = test::observed_order(degree + " in L2", cells, l2_errors);
   EXPECT_GE(in_displacement, 2. * q - 0.3);
   EXPECT_GE(in_l2, q + 1. - 0.2);
 }

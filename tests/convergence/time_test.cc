@@ -65,14 +65,7 @@ TEST(Time, RadauReachesItsOrder)
       std::vector<double> errors;
       for (const double n : steps)
         errors.push_back(std::abs(displacement(name, static_cast<unsigned int>(n), krylov) - exact));
-      const double observed = test::observed_order(steps, errors);
-      fmt::print("{} {}: errors {:.2e} {:.2e} {:.2e}: observed order {:.2f}\n",
-                 name,
-                 krylov.empty() ? "simplified Newton" : "Newton-Krylov",
-                 errors[0],
-                 errors[1],
-                 errors[2],
-                 observed);
+      const double observed = test::observed_order(name + (" " + krylov), steps, errors);
       EXPECT_GE(observed, name == std::string("radau 5") ? 4.8 : 8.) << name;
     }
 }
@@ -91,14 +84,7 @@ TEST(Time, BdfReachesItsOrder)
       steps.push_back(result.time.steps);
       errors.push_back(std::abs(result.displacement - reference()));
     }
-    const double observed = test::observed_order(steps, errors);
-    fmt::print("bdf of order {}: errors {:.2e} ... {:.2e} with {} ... {} steps: observed order {:.2f}\n",
-               order,
-               errors.front(),
-               errors.back(),
-               steps.front(),
-               steps.back(),
-               observed);
+    const double observed = test::observed_order("bdf " + std::to_string(order), steps, errors);
     EXPECT_GE(observed, order - 0.3) << order;
   }
 }
@@ -112,14 +98,6 @@ TEST(Time, IntegratorsFollowTheTolerance)
     const auto loose = run(method.name, 5, 100. * tolerance, 1e-5), tight = run(method.name, 5, tolerance, 1e-5);
     const double e_loose = std::abs(loose.displacement - reference()),
                  e_tight = std::abs(tight.displacement - reference());
-    fmt::print("{:8} tolerance {:.0e}: {:5} steps, error {:.2e}; tolerance {:.0e}: {:5} steps, error {:.2e}\n",
-               method.name,
-               100. * tolerance,
-               loose.time.steps,
-               e_loose,
-               tolerance,
-               tight.time.steps,
-               e_tight);
     ASSERT_EQ(tight.time.status, Status::finished) << method.name;
     EXPECT_GT(tight.time.steps, loose.time.steps) << method.name;
     EXPECT_LT(e_tight, 0.5 * e_loose) << method.name;

@@ -8,11 +8,9 @@ follows its sliders, complains of nothing and needs no network; what it cannot c
 Exit status 77 if emscripten or node is not installed.
 """
 import json
-import os
 import pathlib
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 
@@ -22,8 +20,9 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "contrib/python/crawler/plot")]
 from browser import Browser  # noqa: E402
 from plotting import Kymograph  # noqa: E402
+from program import Checks, call  # noqa: E402
+from tables import json_of  # noqa: E402
 
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
 # Runs the parameter files of a list; of each the answer and the fields that the page shows.
 NODE = """
 const [core, files] = process.argv.slice(1);
@@ -51,14 +50,8 @@ REFUSED = {"subsection Ground\n  set Profile = 1 + 0.5*sin(6*x)\nend\n": "muPars
            "subsection Discretization\n  set Mesh = adaptive\nend\n": "PETSc",
            "subsection Body\n  set Elastic modulus = -1\nend\n": "a positive number is expected",
            "set Acuracy = 1e-3\n": "Accuracy"}
-failures = []
-
-
-def check(condition, what):
-    """Prints what was checked and keeps failures."""
-    print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
-    if not condition:
-        failures.append(what)
+checks = Checks()
+check = checks.expect
 
 
 def numbers(json_object, before=""):
@@ -79,8 +72,7 @@ def is_near(key, ours, theirs):
 
 def answers_of(core, texts):
     """What the page computes, by node."""
-    result = subprocess.run(["node", "-e", NODE, str(core), json.dumps(texts)], check=True, capture_output=True, text=True)
-    return json.loads(result.stdout)
+    return json.loads(call(["node", "-e", NODE, core, json.dumps(texts)]).stdout)
 
 
 def test_numbers(program, core, texts):
@@ -88,12 +80,10 @@ def test_numbers(program, core, texts):
     with tempfile.TemporaryDirectory() as folder:
         for number, (name, ours) in enumerate(zip(texts, answers_of(core, [*texts.values()]))):
             path = pathlib.Path(folder, str(number))
-            result = subprocess.run([program, "run", "-", "--quiet", "--output", path], input=texts[name], text=True,
-                                    check=False, capture_output=True, env=ENVIRONMENT)
-            both = result.returncode == 0 and "problem" not in ours
-            check(both, f"{name} is computed by both {result.stderr.strip()} {ours.get('problem', '')}")
-            if both:
-                theirs = dict(numbers(json.loads((path / "summary.json").read_text(encoding="utf-8"))))
+            result = call([program, "run", "-", "--quiet", "--output", path], input=texts[name])
+            if check(result.returncode == 0 and "problem" not in ours,
+                     f"{name} is computed by both {result.stderr.strip()} {ours.get('problem', '')}"):
+                theirs = dict(numbers(json_of(path / "summary.json")))
                 own = dict(numbers(ours["summary"]))
                 common = {*own} & {*theirs}
                 wrong = [key for key in common if not is_near(key, own[key], theirs[key])]
@@ -225,21 +215,20 @@ def main():
     program, folder = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
     if not shutil.which("node"):
         print("node is not installed")
-        return 77
-    built = subprocess.run([ROOT / "contrib/live/build.sh", folder], check=False, capture_output=True, text=True)
+        sys.exit(77)
+    built = call([ROOT / "contrib/live/build.sh", folder])
     if built.returncode == 77:
         print(built.stderr)
-        return 77
-    check(built.returncode == 0, f"the page is built {built.stdout[-2000:] if built.returncode else ''} {built.stderr}")
-    if built.returncode == 0:
+        sys.exit(77)
+    if check(built.returncode == 0, f"the page is built {built.stdout[-2000:]} {built.stderr}"):
         core, page = folder / "crawler_live.js", folder / "crawler_live.html"
         texts = test_browser(page, folder)
         texts["prm/paper/fig_s1.prm"] = (ROOT / "prm/paper/fig_s1.prm").read_text(encoding="utf-8")
         texts["kinematic"] = "set Model = kinematic\n" + texts["given strain"]
         test_numbers(program, core, texts)
         test_refusals(core)
-    return "\n".join(failures) or 0
+    checks.end()
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

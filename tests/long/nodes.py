@@ -18,6 +18,9 @@ import tempfile
 import h5py
 import numpy as np
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, call, environment  # noqa: E402
+
 PROGRAM, MPIEXEC = str(pathlib.Path(sys.argv[1]).resolve()), shutil.which(sys.argv[2])
 KILLS = int(sys.argv[3]) if len(sys.argv) > 3 else 3
 NODES, RANKS_OF_NODE = 4, 4
@@ -35,15 +38,8 @@ subsection Sweep
              Body/Friction profile : 1, 1+0.3*sin(6*s)
 end
 """
-ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-failures = []
-
-
-def check(condition, what):
-    """Prints one line and keeps failures."""
-    print(("ok     " if condition else "FAILED ") + what, flush=True)
-    if not condition:
-        failures.append(what)
+checks = Checks()
+check = checks.expect
 
 
 def ip(*words, **more):
@@ -98,7 +94,7 @@ def sweep(folder, nodes, *options, stop_at=None):
              "--mca", "orte_keep_fqdn_hostnames", "1", "--mca", "mpi_yield_when_idle", "1",
              *stops, PROGRAM, "sweep", "sweep.prm", "--output", "nodes", *options]
     return subprocess.Popen(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True,
-                            env=ENVIRONMENT)
+                            env=environment())
 
 
 def table(folder):
@@ -118,9 +114,8 @@ def same(one, other):
 
 def finished_rows(folder):
     """How many rows a table has that may be written to at this moment."""
-    done = subprocess.run([sys.executable, "-c", "import sys, h5py\nwith h5py.File(sys.argv[1], 'r', locking=False) as f:\n"
-                           " print(int((f['results/status'][()] != b'').sum()))", str(folder / "results.h5")],
-                          capture_output=True, text=True, check=False)
+    done = call([sys.executable, "-c", "import sys, h5py\nwith h5py.File(sys.argv[1], 'r', locking=False) as f:\n"
+                 " print(int((f['results/status'][()] != b'').sum()))", folder / "results.h5"])
     return int(done.stdout) if done.returncode == 0 else 0
 
 
@@ -151,8 +146,7 @@ def main():
             except subprocess.CalledProcessError as error:
                 print(f"no namespaces here: {error.stderr.strip()}")
                 sys.exit(77)
-            done = subprocess.run([PROGRAM, "sweep", "sweep.prm", "--output", "one"], cwd=folder, capture_output=True, text=True,
-                                  check=False)
+            done = call([PROGRAM, "sweep", "sweep.prm", "--output", "one"], folder)
             if done.returncode != 0:
                 sys.exit(f"one process: {done.stderr}")
             reference = table(folder / "one")
@@ -175,7 +169,7 @@ def main():
             check(same(reference, table(folder / "nodes")), f"the table is that of one process ({len(nodes) * RANKS_OF_NODE} ranks)")
         finally:
             remove_nodes()
-    sys.exit("\n".join(failures) or 0)
+    checks.end()
 
 
 if __name__ == "__main__":

@@ -4,27 +4,22 @@ Octave it does not run (77, which ctest reports).
 
     python3 octave_tutorial.py PATH_TO_CRAWLER
 """
-import csv
-import json
 import os
 import pathlib
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, call  # noqa: E402
+from tables import csv_rows, json_of  # noqa: E402
+
 PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
 SCRIPT = ROOT / "contrib/octave/tutorial.m"
-failures = []
-
-
-def expect(condition, what):
-    """Notes what is wrong."""
-    if not condition:
-        failures.append(what)
+checks = Checks()
+expect = checks.expect
 
 
 def main():
@@ -37,13 +32,11 @@ def main():
         os.symlink(ROOT / "prm", "prm")
         # The commands that its first lines show, as they stand.
         for line in re.findall(r"^%   (crawler .*)", SCRIPT.read_text(encoding="utf-8"), re.M):
-            subprocess.run(line.replace("crawler", f"'{PROGRAM}'", 1) + " --quiet", shell=True, check=True,
-                           env=ENVIRONMENT)
-        ended = subprocess.run([octave, "--no-init-file", "--eval", f"draw = false; source('{SCRIPT}')"],
-                               capture_output=True, text=True)
-        summary = json.loads(pathlib.Path("output-fig_s1/summary.json").read_text())
-        with open("output-sweep/results.csv", newline="") as file:
-            rows = list(csv.DictReader(file))
+            done = call(["sh", "-c", line.replace("crawler", f"'{PROGRAM}'", 1) + " --quiet"])
+            expect(done.returncode == 0, f"{line}: {done.stderr}")
+        ended = call([octave, "--no-init-file", "--eval", f"draw = false; source('{SCRIPT}')"])
+        summary = json_of("output-fig_s1/summary.json")
+        rows = csv_rows("output-sweep/results.csv")
         os.chdir("/")
     screen = ended.stdout
     expect(ended.returncode == 0, f"Octave: {ended.stdout} {ended.stderr}")
@@ -57,7 +50,7 @@ def main():
     smallest = re.search(r"smallest stretch ([\d.]+)", screen)
     expect(len(rows) == 3 and smallest and abs(float(smallest[1]) / summary["min_stretch"]["value"] - 1) < 1e-3,
            f"the smallest stretch is {summary['min_stretch']}, read {smallest and smallest[1]}")
-    sys.exit("\n".join(failures) or 0)
+    checks.end()
 
 
 if __name__ == "__main__":

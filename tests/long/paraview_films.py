@@ -5,7 +5,6 @@ and has the colours of its stretch, and a film has a picture for each frame.
 
     python3 paraview_films.py PATH_TO_CRAWLER PATH_TO_PVBATCH      77 without ParaView, ffmpeg or Xvfb
 """
-import os
 import pathlib
 import shutil
 import subprocess
@@ -15,21 +14,18 @@ import tempfile
 import numpy as np
 from matplotlib.image import imread
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, call  # noqa: E402
+
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "contrib" / "paraview"
 SCENE = "subsection Output\n set Number of snapshots = 4\nend\n"
-failures = []
-
-
-def check(condition, what):
-    """Notes a failure and goes on."""
-    if not condition:
-        failures.append(what)
+checks = Checks()
+check = checks.expect
 
 
 def draw(folder, screen, script, *arguments):
     """Calls a script; gives its exit code and what it says."""
-    done = subprocess.run([sys.argv[2], str(SCRIPTS / script), *arguments], cwd=folder, text=True, capture_output=True,
-                          env=dict(os.environ, HOME=str(folder), DISPLAY=screen), timeout=240, check=False)
+    done = call([sys.argv[2], SCRIPTS / script, *arguments], folder, variables={"HOME": str(folder), "DISPLAY": screen})
     return done.returncode, done.stderr
 
 
@@ -57,12 +53,10 @@ def check_all(folder, screen):
     """Notes all that is wrong."""
     (folder / "scene.prm").write_text(SCENE)
     for style in ("vtu", "xdmf"):
-        subprocess.run([sys.argv[1], "run", "scene.prm", "--quiet", "--output", style, "--set",
-                        f"Output/Snapshot format={style}"], cwd=folder, check=True)
+        call([sys.argv[1], "run", "scene.prm", "--quiet", "--output", style, "--set", f"Output/Snapshot format={style}"], folder)
         code, text = draw(folder, screen, "movie.py", style, "--time", "0.25", "--output", f"{style}.png", "--size",
                           "800x240")
-        if code != 0:
-            failures.append(f"{style}: movie.py makes no picture: {code} {text}")
+        if not check(code == 0, f"{style}: movie.py makes no picture: {code} {text}"):
             return
     picture = imread(folder / "vtu.png")
     body = coloured(picture)[60:]  # below the words
@@ -74,8 +68,8 @@ def check_all(folder, screen):
     code, text = draw(folder, screen, "movie.py", "vtu", "--output", "film.gif", "--size", "320x120", "--state",
                       "view.pvsm")
     check(code == 0 and (folder / "view.pvsm").is_file(), f"movie.py makes a film and a state: {text}")
-    count = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames",
-                            "-of", "csv=p=0", "film.gif"], cwd=folder, capture_output=True, text=True, check=False)
+    count = call(["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames", "-of", "csv=p=0",
+                  "film.gif"], folder)
     check(count.stdout.strip() == "5", f"the film has 5 frames, not {count.stdout}")
     code, text = draw(folder, screen, "kymograph.py", "vtu")
     check(code == 0 and coloured(imread(folder / "vtu" / "kymograph.png")).mean() > 0.2, f"a kymograph: {text}")
@@ -84,4 +78,4 @@ def check_all(folder, screen):
 
 
 main()
-sys.exit("\n".join(failures) or 0)
+checks.end()

@@ -14,7 +14,7 @@ import tempfile
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, on_ranks  # noqa: E402
+from program import Checks, call, on_ranks, sets  # noqa: E402
 from tables import h5_columns  # noqa: E402
 
 BLOCK = 50  # points of a sweep
@@ -72,8 +72,7 @@ def ratios_of_block(program, mpirun, folder, seed, checks):
     (folder / "soft.prm").write_text(SCENES.replace("NUMBER", str(BLOCK)).replace("SEED", seed), encoding="utf-8")
     tables = []
     for which, settings in (("answer", ("Accuracy=1e-4",)), ("reference", ("Accuracy=1e-7", "Discretization/Formulation=position"))):
-        more = [word for setting in settings for word in ("--set", setting)]
-        result = call([*on_ranks(mpirun, 2), program, "sweep", "soft.prm", "--overwrite", "--output", which, *more], folder)
+        result = call([*on_ranks(mpirun, 2), program, "sweep", "soft.prm", "--overwrite", "--output", which, *sets(settings)], folder)
         checks.expect(result.returncode == 0, f"sweep {which}: {result.stderr}")
         tables.append(h5_columns(folder / which / "results.h5", "results"))
     both = np.array([all(table["status"][i] == "finished" for table in tables) for i in range(BLOCK)])

@@ -18,16 +18,14 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks  # noqa: E402
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PACKAGE = pathlib.Path(sys.argv[1]).resolve()
 LARGEST = 200_000  # bytes of a notebook, with its pictures
-failures = []
-
-
-def expect(condition, what):
-    """Notes what is wrong."""
-    if not condition:
-        failures.append(what)
+checks = Checks()
+expect = checks.expect
 
 
 def check_document():
@@ -63,8 +61,7 @@ def printed_by(name, folder, least_pictures):
                        IPYTHONDIR=str(folder), JUPYTER_RUNTIME_DIR=str(folder))
     ended = subprocess.run(["jupyter-nbconvert", "--to", "notebook", "--execute", "--output-dir", folder,
                             place], env=environment, capture_output=True, text=True)
-    if ended.returncode != 0:
-        failures.append(f"{name} does not run: {ended.stderr[-3000:]}")
+    if not expect(ended.returncode == 0, f"{name} does not run: {ended.stderr[-3000:]}"):
         return ""
     cells = json.loads((folder / f"{name}.ipynb").read_text(encoding="utf-8"))["cells"]
     outputs = [output for cell in cells if cell["cell_type"] == "code" for output in cell["outputs"]]
@@ -114,7 +111,7 @@ def main():
         if {"all", "--write"} & set(sys.argv):
             check_others(pathlib.Path(name))
         os.chdir("/")
-    sys.exit("\n".join(failures) or 0)
+    checks.end()
 
 
 if __name__ == "__main__":

@@ -5,19 +5,18 @@ folders of all commands; nothing is written or printed unless it is asked for.
 
     python3 same_numbers.py PATH_TO_CRAWLER FOLDER_OF_THE_PACKAGE
 """
-import json
 import os
 import pathlib
 import pickle
-import subprocess
 import sys
 import tempfile
 
 import numpy as np
 
 PROGRAM, PACKAGE = (str(pathlib.Path(path).resolve()) for path in sys.argv[1:3])
-sys.path.insert(0, PACKAGE)
+sys.path[:0] = [PACKAGE, str(pathlib.Path(__file__).resolve().parents[1] / "support")]
 import crawler  # noqa: E402
+from program import Checks, call, sets  # noqa: E402
 
 PRM = pathlib.Path(__file__).resolve().parents[2] / "prm"
 K, P = "Body/Elastic modulus", "Body/Anchoring exponent"
@@ -38,24 +37,13 @@ RUNS = {
     "adaptive": (WAVE, {"Discretization/Mesh": "adaptive"}),
     "inverted": (INVERTS, {}),
 }
-failures = []
-
-
-def expect(condition, what):
-    """Notes what is wrong."""
-    if not condition:
-        failures.append(what)
+checks = Checks()
+expect = checks.expect
 
 
 def program(*arguments, text=None):
     """What a command of the program says; its exit code."""
-    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
-    return subprocess.run([PROGRAM, *map(str, arguments), "--quiet", "--overwrite"], input=text, env=environment,
-                          capture_output=True, text=True)
-
-
-def settings(values):
-    return [word for name, value in values.items() for word in ("--set", f"{name}={value}")]
+    return call([PROGRAM, *arguments, "--quiet", "--overwrite"], input=text or "")
 
 
 def of_the_scene(summary):
@@ -90,7 +78,7 @@ def check_runs(folder):
         result = crawler.run(scene, set=values)
         expect(set(pathlib.Path.cwd().rglob("*")) == before, f"{name}: a file was written")
         file, text = (scene, None) if isinstance(scene, pathlib.Path) else ("-", crawler.to_prm(scene))
-        ended = program("run", file, "--output", folder / "program", *settings(values), text=text)
+        ended = program("run", file, "--output", folder / "program", *sets(values), text=text)
         read = crawler.read(folder / "program")
         expect(of_the_scene(result) == of_the_scene(read),
                f"{name}: other numbers than crawler run: {of_the_scene(result)} {of_the_scene(read)} {ended.stderr}")
@@ -186,18 +174,18 @@ def check_other_folders(folder):
     expect(of_the_scene(result) == of_the_scene(crawler.run(WAVE)) and (folder / "with_files/solution.pvd").exists() and
            (folder / "with_files/original.prm").read_text() == crawler.to_prm(WAVE), "a run with files")
     text = crawler.to_prm(WAVE)
-    program("sweep", "-", "--output", folder / "checked", *settings({
+    program("sweep", "-", "--output", folder / "checked", *sets({
         "Sweep/Axes": f"{K} : 1, 2; {P} : 2, 3", "Sweep/Cross-check": "true"}), text=text)
     checked = crawler.read(folder / "checked")
     expect(checked.kind == "sweep" and checked.cross_check.checked == 4 and list(checked.table["verdict"]) == 4 * ["agree"],
            f"{checked!r}")
-    program("tradeoff", "-", "--output", folder / "tradeoff", *settings({
+    program("tradeoff", "-", "--output", folder / "tradeoff", *sets({
         "Tradeoff/Models": "nonlinear", "Tradeoff/Formulations": "position", "Tradeoff/Meshes": "uniform",
         "Tradeoff/Engines": "fused", "Tradeoff/Integrators": "radau 5", "Tradeoff/Degrees": 4, "Tradeoff/Cells": 8,
         "Tradeoff/Tolerances": "1e-4, 1e-6", "Tradeoff/Repetitions": 1}), text=text)
     tradeoff = crawler.read(folder / "tradeoff")
     expect(tradeoff.kind == "tradeoff" and tradeoff.table["error"][1] < tradeoff.table["error"][0], f"{tradeoff!r}")
-    program("optimize", "-", "--output", folder / "optimize", *settings({
+    program("optimize", "-", "--output", folder / "optimize", *sets({
         "Optimize/Variables": "Active stress/Optimal wave/Wave speed : 0.5 to 2", "Optimize/Work": 0.1}), text=text)
     optimum = crawler.read(folder / "optimize")
     expect(optimum.kind == "optimize" and len(optimum.best) == 1 and optimum.best[0].status == "finished" and
@@ -215,7 +203,7 @@ def main():
         check_other_folders(folder)
         expect(not list(pathlib.Path(name).iterdir()), f"files were written: {list(pathlib.Path(name).iterdir())}")
         os.chdir("/")
-    sys.exit("\n".join(failures) or 0)
+    checks.end()
 
 
 if __name__ == "__main__":

@@ -198,6 +198,15 @@ namespace crawler::test
     return {exit_code, program.out(), program.err()};
   }
 
+  /// The words @p before, and those that set these entries on a command line.
+  inline std::vector<std::string>
+  sets(const std::vector<std::string> &entries, std::vector<std::string> before = {})
+  {
+    for (const std::string &entry : entries)
+      before.insert(before.end(), {"--set", entry});
+    return before;
+  }
+
   /// Wraps "set ..." lines in the subsections of a path like "Active stress/Expression".
   inline std::string
   in_section(const std::string &path, const std::string &lines)

@@ -59,6 +59,13 @@ def call(command, folder=None, stop_at=None, variables=None, **more):
                           text=True, timeout=PATIENCE, check=False, **{**streams, **more})
 
 
+def sets(settings):
+    """Words of the command line that set entries: texts like "Entry=value", or a dictionary of values."""
+    if isinstance(settings, dict):
+        settings = [f"{entry}={value}" for entry, value in settings.items()]
+    return [word for setting in settings for word in ("--set", setting)]
+
+
 def on_ranks(mpirun, n):
     """Words before a command that n ranks run; none for one rank."""
     return [mpirun, "--oversubscribe", "-n", n] if n > 1 else []

@@ -9,7 +9,7 @@ import shutil
 import h5py
 import numpy as np
 
-from program import call
+from program import call, sets
 
 WAVE = """
 set Accuracy = 1e-7
@@ -106,8 +106,7 @@ class Scene:
 
     def command(self, folder, options=()):
         """Words of the command."""
-        sets = [word for entry in self.entries for word in ("--set", entry)]
-        return [*self.before, self.program, "run", self.file, "--output", self.place / folder, "--quiet", *sets, *options]
+        return [*self.before, self.program, "run", self.file, "--output", self.place / folder, "--quiet", *sets(self.entries), *options]
 
     def run(self, folder, options=(), stop_at=None):
         """Runs the command; returns the finished process."""

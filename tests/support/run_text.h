@@ -9,6 +9,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +26,49 @@ namespace crawler::test
   with(Settings settings, const Settings &others)
   {
     settings.insert(settings.end(), others.begin(), others.end());
+    return settings;
+  }
+
+  /**
+   * Settings from a text like "p = 2; k = 0.5; T = 3; pulse; Width = 0.1". Letters are those of doc/theory.md, with the
+   * parameter chi and the speed c of the optimal wave; the name of a generator alone chooses it, and what follows
+   * without a section is its own.
+   */
+  inline Settings
+  set(const std::string &text)
+  {
+    static const std::string wave                           = "Active stress/Optimal wave/";
+    static const std::map<std::string, std::string> letters = {{"p", "Body/Anchoring exponent"},
+                                                               {"k", "Body/Elastic modulus"},
+                                                               {"gamma", "Body/Friction coefficient"},
+                                                               {"L", "Body/Length"},
+                                                               {"T", "Time/End time"},
+                                                               {"chi", wave + "Perturbation parameter"},
+                                                               {"c", wave + "Wave speed"},
+                                                               {"Accuracy", "Accuracy"},
+                                                               {"Model", "Model"}};
+    Settings settings;
+    std::string section;
+    std::istringstream items(text);
+    for (std::string item; std::getline(items >> std::ws, item, ';');)
+    {
+      const std::size_t equals = item.find(" =");
+      const std::string name   = item.substr(0, equals);
+      if (equals == std::string::npos)
+      {
+        section     = "Active stress/" + name + "/";
+        section[14] = static_cast<char>(std::toupper(section[14]));
+        settings.emplace_back("Active stress/Generator", name);
+        continue;
+      }
+      if (name == "c")
+        settings.emplace_back(wave + "Choose wave by", "wave speed");
+      const auto letter = letters.find(name);
+      settings.emplace_back(letter != letters.end()               ? letter->second
+                            : name.find('/') != std::string::npos ? name
+                                                                  : section + name,
+                            item.substr(std::min(equals + 3, item.size())));
+    }
     return settings;
   }
 

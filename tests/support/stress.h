@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include "complaint.h"
 #include "run_text.h"
-
-#include <crawler/base/exceptions.h>
 
 #include <gtest/gtest.h>
 
@@ -77,22 +76,12 @@ namespace crawler::test
   inline std::string
   complaint(const Settings &settings)
   {
-    try
-    {
-      parameters_with(settings).create_scene();
-    }
-    catch (const InputError &error)
-    {
-      return error.entry + ": " + error.what();
-    }
-    return "nothing";
+    return complaint_of([&]() { parameters_with(settings).create_scene(); });
   }
 
   inline void
   expect_complaint(const Settings &settings, const std::vector<std::string> &words)
   {
-    const std::string found = complaint(settings);
-    for (const std::string &word : words)
-      EXPECT_NE(found.find(word), std::string::npos) << "\"" << word << "\" is not in \"" << found << "\"";
+    expect_words(complaint(settings), words);
   }
 } // namespace crawler::test

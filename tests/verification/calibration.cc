@@ -220,20 +220,11 @@ namespace
     {
       parameters.accuracy = accuracy;
       const Scene scene   = random.create(parameters);
-      const auto choice   = choose_numerics(MPI_COMM_SELF, parameters, scene);
-      const Simulation::Options options{.energy_balance = true,
-                                        .cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false)};
-      const Answer answer = run_as_promised(
-        MPI_COMM_SELF,
-        parameters,
-        scene,
-        *choice,
-        [&](const NumericsChoice &c) {
-          Simulation run(MPI_COMM_SELF, scene, parameters.time, c.numerics);
-          return run.run({}, options);
-        },
-        options,
-        /*writes=*/false);
+      const Answer answer =
+        answer_in_memory(parameters,
+                         scene,
+                         {.energy_balance = true, .cycles = cycle_wish(parameters, scene, /*has_pictures=*/false)},
+                         {});
       const SimulationResult &result = answer.result;
       const DisplacementError error  = result.error.value_or(DisplacementError());
       rows.push_back({number,
@@ -408,16 +399,7 @@ main(int argc, char **argv)
     fmt::print(stderr, "calibration: cannot write {}\n", argv[2]);
     return 2;
   }
-  fmt::print("{:>8} {:>6} {:>7} {:>9} {:>9} {:>10} {:>8} {:>7} {:>9}\n",
-             "accuracy",
-             "runs",
-             "judged",
-             "covered %",
-             "met %",
-             "rep./true",
-             "refined",
-             "failed",
-             "overhead");
+  fmt::print("accuracy   runs  judged covered %     met %  rep./true  refined  failed  overhead\n");
   for (const auto &[accuracy, count] : counts)
     count.print(fmt::format("{:g}", accuracy));
   total.print("all");

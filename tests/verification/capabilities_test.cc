@@ -52,16 +52,9 @@ namespace
      {{"Discretization/Formulation", "stretch"}, {"Accuracy", "1e-2"}},
      "batches are in the position form"},
     {"adaptive mesh", {{"Discretization/Mesh", "adaptive"}, {"Time/End time", "4"}}, "the lanes have one mesh"},
-    {"jumps in s and t",
-     {{"Active stress/Generator", "segments"},
-      {"Active stress/Segments/Number of segments", "3"},
-      {"Active stress/Segments/Phase lag", "0.3"},
-      {"Active stress/Segments/Amplitude", "0.1"}}},
+    {"jumps in s and t", test::set("segments; Number of segments = 3; Phase lag = 0.3; Amplitude = 0.1")},
     {"jumps that move",
-     {{"Active stress/Generator", "travelling wave"},
-      {"Active stress/Travelling wave/Profile", "square"},
-      {"Accuracy", "0.1"},
-      {"Time/End time", "4"}},
+     test::set("Accuracy = 0.1; T = 4; travelling wave; Profile = square"),
      "an answer is made of several runs"},
     {"bdf", {{"Time/Integrator", "bdf"}, {"Time/End time", "4"}}, "the lanes have radau 5 and 9"},
   };
@@ -81,23 +74,12 @@ namespace
       settings.emplace_back("Active stress/Strain feedback/Distance", "0.2");
     if (row.name == "feedback by w_delayed")
       settings.emplace_back("Active stress/Strain feedback/Delay", "0.2");
-    const Parameters parameters = test::parameters_with(settings);
-    const Scene scene           = parameters.create_scene();
-    const NumericsChoice choice = *choose_numerics(MPI_COMM_SELF, parameters, scene);
-    Simulation::Options options = {.energy_balance = true,
-                                   .cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false),
-                                   .gait           = Simulation::GaitWish::any};
-    const Answer answer =
-      run_as_promised(MPI_COMM_SELF,
-                      parameters,
-                      scene,
-                      choice,
-                      [&](const NumericsChoice &chosen) {
-                        return Simulation(MPI_COMM_SELF, scene, parameters.time, chosen.numerics).run({}, options);
-                      },
-                      options,
-                      /*writes=*/false,
-                      {});
+    const Parameters parameters    = test::parameters_with(settings);
+    const Scene scene              = parameters.create_scene();
+    Simulation::Options options    = {.energy_balance = true,
+                                      .cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false),
+                                      .gait           = Simulation::GaitWish::any};
+    const Answer answer            = answer_in_memory(parameters, scene, options, {});
     const SimulationResult &result = answer.result;
     EXPECT_EQ(result.time.status, Status::finished) << row.name << ": " << result.time.message;
     bool in_batches = false;

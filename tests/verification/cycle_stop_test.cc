@@ -151,9 +151,7 @@ TEST(CycleStop, BehindAStart)
 TEST(CycleStop, PeriodOfAFormula)
 {
   const Pair pair = run_both(
-    accurate({{"Active stress/Generator", "expression"},
-              {"Active stress/Expression/Active stress", "(0.2*sin(2*pi*(s-t/0.7))+0.1*cos(4*pi*t/0.7))*sin(pi*s)"},
-              {"Time/End time", "9"}}),
+    accurate(test::set("T = 9; expression; Active stress = (0.2*sin(2*pi*(s-t/0.7))+0.1*cos(4*pi*t/0.7))*sin(pi*s)")),
     1e-6);
   expect_honest(pair, 1e-6);
   EXPECT_NEAR(pair.cycles.cycles->period, 0.7, 1e-14);
@@ -200,10 +198,7 @@ TEST(CycleStop, NotSettled)
 TEST(CycleStop, BodyThatInvertsLaterInverts)
 {
   // The mean of the stress grows from cycle to cycle; without this part the period would be 1.
-  test::Settings settings = {{"Body/Anchoring exponent", "0"},
-                             {"Active stress/Generator", "expression"},
-                             {"Active stress/Expression/Active stress", "(0.1*sin(2*pi*t)+0.12*t)*sin(pi*s)"},
-                             {"Time/End time", "20"}};
+  test::Settings settings = test::set("p = 0; T = 20; expression; Active stress = (0.1*sin(2*pi*t)+0.12*t)*sin(pi*s)");
   const auto result       = compute(test::parameters_with(settings));
   EXPECT_EQ(result.time.status, Status::inverted);
   EXPECT_FALSE(result.cycles);

@@ -135,12 +135,9 @@ TEST(GaitNumbers, SegmentsHaveTheWaveThatTheyDeclare)
 TEST(GaitNumbers, AWaveThatIsTooFastForTheSamplesIsAbsent)
 {
   const auto pulse = [](const double speed, const double end_time) {
-    return declared_gait({{"Active stress/Generator", "pulse"},
-                          {"Active stress/Pulse/Shape", "compact"},
-                          {"Active stress/Pulse/Width", "0.3"},
-                          {"Active stress/Pulse/Speed", test::text(speed)},
-                          {"Active stress/Pulse/Repetition period", "2"},
-                          {"Time/End time", test::text(end_time)}});
+    return declared_gait(
+      test::with(test::set("pulse; Shape = compact; Width = 0.3; Repetition period = 2"),
+                 {{"Active stress/Pulse/Speed", test::text(speed)}, {"Time/End time", test::text(end_time)}}));
   };
   const auto slow = pulse(1.5, 4.);
   ASSERT_TRUE(slow && slow->wave_speed());
@@ -159,20 +156,12 @@ TEST(GaitNumbers, AWaveThatIsTooFastForTheSamplesIsAbsent)
 /// run, and where the active stress jumps before.
 TEST(GaitNumbers, SideBySideTheyAreTheSame)
 {
-  const test::Settings units = {
-    {"Body/Length", "2.5"}, {"Body/Friction coefficient", "0.3"}, {"Active stress/Optimal wave/Wave speed", "2.5"}};
-  const test::Settings travelling = {{"Active stress/Generator", "travelling wave"},
-                                     {"Active stress/Travelling wave/Amplitude", "0.3"},
-                                     {"Active stress/Travelling wave/Ramp duration", "0.5"}};
-  const test::Settings segments   = {{"Active stress/Generator", "segments"},
-                                     {"Active stress/Segments/Gap", "0.1"},
-                                     {"Active stress/Segments/Number of segments", "4"},
-                                     {"Active stress/Segments/Rate limit", "1.5"},
-                                     {"Active stress/Segments/Ramp duration", "0.5"}};
-  const test::Settings pulses     = {{"Active stress/Generator", "pulse"},
-                                     {"Active stress/Pulse/Speed", "40"},
-                                     {"Active stress/Pulse/Repetition period", "2"}};
-  const Numerics numerics         = {.degree = 6, .n_cells = 8, .tolerance = 1e-8, .initial_step = 1e-4};
+  const test::Settings units      = test::set("L = 2.5; gamma = 0.3; Active stress/Optimal wave/Wave speed = 2.5");
+  const test::Settings travelling = test::set("travelling wave; Amplitude = 0.3; Ramp duration = 0.5");
+  const test::Settings segments =
+    test::set("segments; Gap = 0.1; Number of segments = 4; Rate limit = 1.5; Ramp duration = 0.5");
+  const test::Settings pulses = test::set("pulse; Speed = 40; Repetition period = 2");
+  const Numerics numerics     = {.degree = 6, .n_cells = 8, .tolerance = 1e-8, .initial_step = 1e-4};
   test::LaneRuns runs;
   const auto add = [&](const test::Settings &settings) {
     runs.push_back(std::make_unique<test::LaneRun>(settings, "radau 9", numerics));

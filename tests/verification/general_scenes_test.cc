@@ -170,14 +170,11 @@ TEST(GeneralScenes, DelayedModesDecay)
   for (const double T : {0.3, 1.})
     for (const std::string integrator : {"bdf", "radau 9"})
     {
-      const Settings settings = {{"Body/Elastic modulus", text(k)},
-                                 {"Body/Initial stretch", "1+1e-6*sin(pi*s)"},
-                                 {"Discretization/Degree", "4"},
-                                 {"Discretization/Number of cells", "8"},
-                                 {"Time/Tolerance", "1e-13"},
-                                 {"Time/Integrator", integrator},
-                                 {"Time/End time", text(T)}};
-      const double e          = T <= delay ? first(T) : second(T - delay);
+      const Settings settings =
+        test::with(test::set("Body/Initial stretch = 1+1e-6*sin(pi*s); Discretization/Degree = 4; "
+                             "Discretization/Number of cells = 8; Time/Tolerance = 1e-13"),
+                   {{"Body/Elastic modulus", text(k)}, {"Time/Integrator", integrator}, {"Time/End time", text(T)}});
+      const double e = T <= delay ? first(T) : second(T - delay);
       expect_near(energy_left(settings + feedback(text(kappa) + "*(w_delayed-1)", 0., delay)), e * e, 1e-4);
     }
 }
@@ -225,13 +222,10 @@ TEST(GeneralScenes, AModeGrowsByItself)
   constexpr double rate = 4.8993, half_period = 0.43825, start = 1.6;
   const auto energy = [&](const double T) {
     return energy_left(feedback("0.05*tanh(10*(w_near-1))", -0.25, 0., 0.2) +
-                       Settings{{"Body/Elastic modulus", "0.1"},
-                                {"Body/Initial stretch", "1+1e-7*exp(-((s-0.425)/0.05)^2)"},
-                                {"Discretization/Degree", "6"},
-                                {"Discretization/Number of cells", "16"},
-                                {"Time/Integrator", "radau 9"},
-                                {"Time/Tolerance", "1e-10"},
-                                {"Time/End time", text(T)}});
+                       test::with(test::set("k = 0.1; Body/Initial stretch = 1+1e-7*exp(-((s-0.425)/0.05)^2); "
+                                            "Discretization/Degree = 6; Discretization/Number of cells = 16; "
+                                            "Time/Integrator = radau 9; Time/Tolerance = 1e-10"),
+                                  {{"Time/End time", text(T)}}));
   };
   expect_near(energy(start + half_period) / energy(start), std::exp(2. * rate * half_period), 1e-3);
 }
@@ -305,14 +299,10 @@ TEST(GeneralScenes, IntegratorsAgree)
 {
   const Settings all =
     feedback("0.2*sin(2*pi*(s+t))*s*(1-s)*4-0.1*(w-1)+0.05*w_t+0.1*(w_near-1)-0.05*(w_delayed-1)", 0.5, 0.25) +
-    Settings{{"Body/Elastic modulus profile", "1+0.3*s"},
-             {"Body/Friction profile", "1.2-0.3*s"},
-             {"Body/Initial stretch", "1+0.05*sin(pi*s)^2"},
-             {"Ground/Profile", "1+0.2*tanh(x)"},
-             {"Ground/Friction law", "expression"},
-             {"Ground/Expression", "0.3+0.7/w^1.5"},
-             {"Ground/Backward ratio", "2"},
-             {"Ground/Switching velocity", "0.2"}};
+    test::set("Body/Elastic modulus profile = 1+0.3*s; Body/Friction profile = 1.2-0.3*s; "
+              "Body/Initial stretch = 1+0.05*sin(pi*s)^2; Ground/Profile = 1+0.2*tanh(x); "
+              "Ground/Friction law = expression; Ground/Expression = 0.3+0.7/w^1.5; "
+              "Ground/Backward ratio = 2; Ground/Switching velocity = 0.2");
   const Settings fine    = {{"Discretization/Number of cells", "16"}, {"Time/Tolerance", "1e-9"}};
   const double reference = displacement(all + fine);
   for (const Settings &other :
@@ -348,8 +338,6 @@ namespace
     EXPECT_EQ(position.formulation, Formulation::position) << name;
     EXPECT_EQ(stretch.formulation, Formulation::stretch) << name;
     ASSERT_TRUE(stretch.error) << name;
-    fmt::print(
-      "{:24} {:.9f}, {:.9f} +- {:.1e}\n", name, position.displacement, stretch.displacement, stretch.error->total);
     EXPECT_NEAR(
       stretch.displacement, position.displacement, stretch.error->total + 1e-7 * std::abs(position.displacement))
       << name;

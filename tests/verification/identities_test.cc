@@ -14,8 +14,8 @@ using test::with;
 namespace
 {
   /// Explicit numerics: no pilot runs, and the same mesh for both of a pair.
-  const test::Settings numerics = {
-    {"Discretization/Degree", "4"}, {"Discretization/Number of cells", "10"}, {"Time/Tolerance", "1e-9"}};
+  const test::Settings numerics =
+    test::set("Discretization/Degree = 4; Discretization/Number of cells = 10; Time/Tolerance = 1e-9");
 } // namespace
 
 /// int g v ds = 0 and stress power = dissipation + change of the elastic energy, from p = -20 to 21.
@@ -72,9 +72,8 @@ TEST(Identities, LedgerOfStiffBodies)
       for (const test::Settings &more : {test::Settings{},
                                          test::Settings{{"Time/Engine", "petsc"}},
                                          test::Settings{{"Discretization/Mesh", "adaptive"}},
-                                         test::Settings{{"Body/Elastic modulus profile", "1+0.3*s"},
-                                                        {"Ground/Backward ratio", "2"},
-                                                        {"Ground/Switching velocity", "0.01"}}})
+                                         test::set("Body/Elastic modulus profile = 1+0.3*s; Ground/Backward ratio = 2; "
+                                                   "Ground/Switching velocity = 0.01")})
       {
         const auto settings = with(with(test::wave(a, 0.2, 1., 1., k), {{"Accuracy", "1e-8"}}), more);
         const auto &result  = test::run_with(settings).result;
@@ -97,50 +96,6 @@ TEST(Identities, MirroredStressMirrorsTheDisplacement)
   const double forward = run("0.3*sin(2*pi*(s+t))*s"), mirrored = run("0.3*sin(2*pi*(1-s+t))*(1-s)");
   EXPECT_GT(std::abs(forward), 1e-4);
   EXPECT_NEAR(forward, -mirrored, 1e-7 * std::abs(forward));
-}
-
-/// Scaling gamma, k and m together changes nothing; neither do units of length and time.
-TEST(Identities, Scaling)
-{
-  const double reference = test::run_with(with(test::wave(-1., 0.3), numerics)).result.displacement;
-  const double scaled =
-    test::run_with(with(test::wave(-1., 0.3),
-                        with(numerics, {{"Body/Elastic modulus", "1000"}, {"Body/Friction coefficient", "1000"}})))
-      .result.displacement;
-  EXPECT_NEAR(scaled / reference, 1., 1e-10);
-  // Lengths in micrometres instead of metres: L, c and a_1 times 1e-6; k in N, gamma in N s/m^2.
-  const double micro = test::run_with(with(test::wave(-1., 0.3, 1e-6),
-                                           {{"Body/Length", "1e-6"},
-                                            {"Body/Friction coefficient", "1e12"},
-                                            {"Active stress/Optimal wave/Sine coefficients", "1e-6"},
-                                            {"Discretization/Degree", "4"},
-                                            {"Discretization/Number of cells", "10"},
-                                            {"Time/Tolerance", "1e-15"}}))
-                         .result.displacement;
-  EXPECT_NEAR(micro / (1e-6 * reference), 1., 1e-7);
-}
-
-/// Without actuation a small strain mode sin(j pi s/L) decays with the rate k (j pi/L)^2/gamma: the stress ends at t0.
-TEST(Identities, StrainModesDecay)
-{
-  // Forced up to about t = 0.1 by m = A sin(pi s) f(t), f = exp(-((t-0.05)/0.012)^2), then free.
-  const auto strain = [](const double end_time) {
-    const auto parameters = test::parameters_with(
-      with({{"Body/Length", "2"},
-            {"Body/Elastic modulus", "0.8"},
-            {"Body/Friction coefficient", "1.7"},
-            {"Active stress/Generator", "expression"},
-            {"Active stress/Expression/Active stress", "1e-5*sin(pi*s/L)*exp(-((t-0.05)/0.012)^2)"},
-            {"Time/End time", test::text(end_time)}},
-           {}));
-    const Scene scene = parameters.create_scene();
-    Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, {5, 6, 1e-14, 1e-7});
-    const auto result = simulation.run({}, {.energy_balance = true});
-    EXPECT_EQ(result.time.status, Status::finished);
-    return std::sqrt(result.energy_balance->elastic_energy);
-  };
-  const double rate = 0.8 * std::pow(std::numbers::pi / 2., 2) / 1.7;
-  EXPECT_NEAR(std::log(strain(0.3) / strain(1.3)), rate, 1e-5 * rate);
 }
 
 /// The whole solution for a = +1, known in closed form.

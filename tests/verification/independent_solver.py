@@ -6,11 +6,13 @@ scenes and compares the results.
     python3 independent_solver.py PATH_TO_CRAWLER          needs python3-numpy and python3-scipy, takes 10 s
 """
 import json
-import os
 import pathlib
-import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import program as started  # noqa: E402
+from tables import json_of  # noqa: E402
 
 REFERENCE = pathlib.Path(__file__).resolve().parents[2] / "contrib/reference/crawler_reference.py"
 
@@ -31,8 +33,7 @@ SCENES = {
 
 def call(*arguments):
     """Calls a program, which must succeed."""
-    done = subprocess.run(arguments, capture_output=True, text=True, timeout=600,
-                          env=dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1"))
+    done = started.call(arguments)
     if done.returncode != 0:
         sys.exit(f"{' '.join(arguments)}\nexits with {done.returncode}:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
     return done.stdout
@@ -80,7 +81,7 @@ def crawler(program, *scene):
             output = pathlib.Path(folder, f"{cells}")
             call(program, "run", str(file), "--quiet", "--output", str(output),
                  "--set", f"Discretization/Number of cells={cells}")
-            summaries.append(json.loads((output / "summary.json").read_text()))
+            summaries.append(json_of(output / "summary.json"))
     automatic, fine = summaries
     return {name: fine[name]["value"] if name.endswith("_stretch") else automatic[name] for name in TOLERANCE}
 

@@ -8,14 +8,15 @@ Random sweeps over five kinds of crawlers, POINTS of each, at three accuracies, 
 Accuracy 1e-9. Prints a table; fails if a number is above its bar in more points than 1 % of these can be expected to
 give by chance (in one of 100 samples).
 """
-import csv
-import os
 import pathlib
-import subprocess
 import sys
 import tempfile
 
 from scipy.stats import binom
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, call, sets  # noqa: E402
+from tables import csv_rows  # noqa: E402
 
 BODY = "Body/Anchoring exponent : uniform(1.5, 4); Body/Elastic modulus : "
 WAVE = "Active stress/Optimal wave/"
@@ -36,8 +37,7 @@ SCENES = {  # settings, axes
     "pulses": (["Active stress/Generator=pulse", "Time/End time=2"], BODY + "loguniform(0.7, 10)"),
 }
 ACCURACIES = ("1e-3", "1e-4", "1e-6")
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1",
-                   OPENBLAS_NUM_THREADS="1")
+checks = Checks()
 
 
 def sweep(program, folder, settings, axes, points, seed, accuracy, more=()):
@@ -45,11 +45,9 @@ def sweep(program, folder, settings, axes, points, seed, accuracy, more=()):
     text = (f"set Accuracy = {accuracy}\nsubsection Sweep\n  set Design = latin hypercube\n  set Number of points = {points}\n"
             f"  set Seed = {seed}\n  set Axes = {axes}\nend\n")
     (folder / "sweep.prm").write_text(text, encoding="utf-8")
-    arguments = [word for setting in (*settings, *more) for word in ("--set", setting)]
-    subprocess.run([program, "sweep", "sweep.prm", "--output", "out", "--overwrite", "--quiet", *arguments], cwd=folder,
-                   env=ENVIRONMENT, stdin=subprocess.DEVNULL, timeout=600, check=True)
-    with open(folder / "out" / "results.csv", newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    done = call([program, "sweep", "sweep.prm", "--output", "out", "--overwrite", "--quiet", *sets([*settings, *more])], folder)
+    checks.expect(done.returncode == 0, f"the sweep over {axes}: {done.stderr}")
+    return csv_rows(folder / "out" / "results.csv")
 
 
 def judge(rows, reference, judged):
@@ -77,20 +75,16 @@ def main():
                               ["Discretization/Number of cells=24"])
             for accuracy in ACCURACIES:
                 judge(sweep(program, pathlib.Path(name), settings, axes, points, seed, accuracy), reference, judged)
-    failures = 0
     print(f"{'number':40s} {'judged':>7s} {'covered':>9s} {'bar/error':>10s} {'worst':>8s} {'largest relative error':>23s}")
     for number, rows in judged.items():
         ratios = sorted(bar / max(error, 1e-300) for bar, error, _ in rows)
         covered = sum(ratio >= 1 for ratio in ratios) / len(ratios)
         largest = max(error / size for _, error, size in rows if size > 0)
-        too_few = sum(ratio < 1 for ratio in ratios) > binom.ppf(0.99, len(rows), 0.01)
-        failures += too_few or len(rows) < points
-        print(f"{number:40s} {len(rows):7d} {100 * covered:7.2f} % {ratios[len(ratios) // 2]:10.3g} {ratios[0]:8.2g} "
-              f"{largest:23.1e}{'   FAILED: 99 % are wanted' if too_few else ''}")
-    if len(judged) < 17:
-        print(f"FAILED: {len(judged)} numbers have error bounds, 17 are expected")
-        failures += 1
-    sys.exit(failures > 0)
+        print(f"{number:40s} {len(rows):7d} {100 * covered:7.2f} % {ratios[len(ratios) // 2]:10.3g} {ratios[0]:8.2g} {largest:23.1e}")
+        checks.expect(sum(ratio < 1 for ratio in ratios) <= binom.ppf(0.99, len(rows), 0.01), f"{number}: 99 % are wanted")
+        checks.expect(len(rows) >= points, f"{number}: {len(rows)} were judged")
+    checks.expect(len(judged) >= 17, f"{len(judged)} numbers have error bounds, 17 are expected")
+    checks.end()
 
 
 if __name__ == "__main__":

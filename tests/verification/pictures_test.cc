@@ -2,6 +2,7 @@
 //
 // Pictures come from the dense output of the integrator (doc/numerics.md, "Pictures").
 #include "../support/run_text.h"
+#include "../support/watched.h"
 
 #include <crawler/output/field_sampler.h>
 
@@ -24,40 +25,29 @@ namespace
     PictureKinds pictures;
   };
 
-  class Watcher : public Observer
+  Seen
+  seen_in(const Snapshot &snapshot)
   {
-  public:
-    explicit Watcher(std::vector<Seen> &seen)
-      : seen_(seen)
+    const Discretization &d = snapshot.assembler.discretization();
+    std::vector<FieldSampler::Point> points;
+    for (unsigned int i = 0; i <= 20; ++i)
     {
+      const double place      = 0.05 * i * d.n_cells();
+      const unsigned int cell = std::min(static_cast<unsigned int>(place), d.n_cells() - 1);
+      points.push_back({cell, place - cell});
     }
-    void
-    observe(const Snapshot &snapshot) override
-    {
-      const Discretization &d = snapshot.assembler.discretization();
-      std::vector<FieldSampler::Point> points;
-      for (unsigned int i = 0; i <= 20; ++i)
-      {
-        const double place      = 0.05 * i * d.n_cells();
-        const unsigned int cell = std::min(static_cast<unsigned int>(place), d.n_cells() - 1);
-        points.push_back({cell, place - cell});
-      }
-      FieldSampler sampler(snapshot.assembler, snapshot.units, points);
-      const Fields &fields = sampler.sample(snapshot.computed_time, snapshot.y, snapshot.v);
-      seen_.push_back({snapshot.step.time,
-                       snapshot.integrals.displacement,
-                       snapshot.energy_balance.dissipation,
-                       snapshot.energy_balance.residual(),
-                       fields.stretch,
-                       fields.velocity,
-                       fields.active_stress,
-                       snapshot.is_step_end,
-                       snapshot.pictures});
-    }
-
-  private:
-    std::vector<Seen> &seen_;
-  };
+    FieldSampler sampler(snapshot.assembler, snapshot.units, points);
+    const Fields &fields = sampler.sample(snapshot.computed_time, snapshot.y, snapshot.v);
+    return {snapshot.step.time,
+            snapshot.integrals.displacement,
+            snapshot.energy_balance.dissipation,
+            snapshot.energy_balance.residual(),
+            fields.stretch,
+            fields.velocity,
+            fields.active_stress,
+            snapshot.is_step_end,
+            snapshot.pictures};
+  }
 
   struct Compared
   {
@@ -86,9 +76,8 @@ namespace
     prepare_for_pictures(run.choice, parameters);
     if (numerics)
       run.choice.numerics = *numerics;
-    std::vector<std::unique_ptr<Observer>> observers;
-    observers.push_back(std::make_unique<Watcher>(run.seen));
-    run.result = Simulation(MPI_COMM_SELF, scene, parameters.time, run.choice.numerics)
+    const auto observers = test::watched_by([&](const Snapshot &snapshot) { run.seen.push_back(seen_in(snapshot)); });
+    run.result           = Simulation(MPI_COMM_SELF, scene, parameters.time, run.choice.numerics)
                    .run(has_pictures ? picture_times(parameters.output, scene) : PictureTimes(),
                         {.energy_balance = true},
                         observers);
@@ -159,18 +148,6 @@ TEST(Pictures, AreAsAccurateAsWanted)
         residual    = std::max(residual, some[i].residual);
       }
       const double A = std::stod(accuracy);
-      fmt::print("{} {} steps ({}): displacement {:.2e} of {:.2e} wanted, velocity {:.2e} of {:.2g}, dissipation "
-                 "{:.2e} of {:.2g}, ledger {:.1e}\n",
-                 accuracy,
-                 coarse.result.time.steps,
-                 exact.result.time.steps,
-                 u,
-                 coarse.choice.wanted_error,
-                 v,
-                 largest_v,
-                 dissipation,
-                 exact.result.energy_balance->dissipation,
-                 residual);
       EXPECT_LT(u, coarse.choice.wanted_error);
       EXPECT_LT(v, 200. * A * largest_v); // one order less
       EXPECT_LT(dissipation, 10. * A * exact.result.energy_balance->dissipation);

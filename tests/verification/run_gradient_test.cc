@@ -144,9 +144,7 @@ namespace
     return RunGradient(run).derivatives({&variation, 1}, {{Quantity::displacement}}).front().front();
   }
 
-  const test::Settings wave = {{"Active stress/Optimal wave/Choose wave by", "wave speed"},
-                               {"Active stress/Optimal wave/Wave speed", "1.3"},
-                               {"Active stress/Optimal wave/Perturbation parameter", "0.3"}};
+  const test::Settings wave = test::set("c = 1.3; chi = 0.3");
 } // namespace
 
 TEST(RunGradient, OfPlainBodies)
@@ -180,15 +178,8 @@ TEST(RunGradient, OfGeneralBodies)
 /// Jumps of the active stress move with these entries, in time and in space.
 TEST(RunGradient, OfJumpsThatMove)
 {
-  const test::Settings robot                        = {{"Active stress/Generator", "segments"},
-                                                       {"Active stress/Segments/Number of segments", "3"},
-                                                       {"Active stress/Segments/Amplitude", "0.3"},
-                                                       {"Active stress/Segments/Frequency", "1"},
-                                                       {"Active stress/Segments/Phase lag", "0.27"},
-                                                       {"Active stress/Segments/Duty cycle", "0.4"},
-                                                       {"Active stress/Segments/Gap", "0.05"},
-                                                       {"Active stress/Segments/Ramp duration", "0.6"},
-                                                       {"Time/End time", "1.33"}};
+  const test::Settings robot = test::set("T = 1.33; segments; Number of segments = 3; Amplitude = 0.3; Frequency = 1; "
+                                         "Phase lag = 0.27; Duty cycle = 0.4; Gap = 0.05; Ramp duration = 0.6");
   const test::Settings trapezoids                   = with(robot, {{"Active stress/Segments/Rate limit", "2.5"}});
   using Entries                                     = std::vector<std::pair<const char *, double>>;
   const std::pair<test::Settings, Entries> scenes[] = {{robot,
@@ -209,14 +200,8 @@ TEST(RunGradient, OfJumpsThatMove)
 /// Jumps of different segments that come together, as those of robots with a lag of 1/N do.
 TEST(RunGradient, OfJumpsThatComeTogether)
 {
-  const test::Settings robot      = {{"Active stress/Generator", "segments"},
-                                     {"Active stress/Segments/Number of segments", "4"},
-                                     {"Active stress/Segments/Amplitude", "0.3"},
-                                     {"Active stress/Segments/Frequency", "1"},
-                                     {"Active stress/Segments/Phase lag", "0.25"},
-                                     {"Active stress/Segments/Duty cycle", "0.5"},
-                                     {"Active stress/Segments/Ramp duration", "0.6"},
-                                     {"Time/End time", "1.33"}};
+  const test::Settings robot = test::set("T = 1.33; segments; Number of segments = 4; Amplitude = 0.3; Frequency = 1; "
+                                         "Phase lag = 0.25; Duty cycle = 0.5; Ramp duration = 0.6");
   const test::Settings trapezoids = with(robot, {{"Active stress/Segments/Rate limit", "2.5"}});
   for (const test::Settings &scene : {robot, trapezoids})
     for (const auto &[entry, value] : {std::pair("Active stress/Segments/Phase lag", 0.25),
@@ -230,12 +215,9 @@ TEST(RunGradient, OfJumpsThatComeTogether)
 /// A jump at the very end of the run comes in with a higher frequency, but does not go out with a lower one.
 TEST(RunGradient, OfJumpsAtTheEndThereIsNone)
 {
-  const test::Settings robot = {{"Active stress/Generator", "segments"},
-                                {"Active stress/Segments/Number of segments", "4"},
-                                {"Active stress/Segments/Phase lag", "0.25"},
-                                {"Active stress/Segments/Ramp duration", "0.6"},
-                                {"Time/End time", "1"}};
-  const Scene scene          = scene_of(robot, "Active stress/Segments/Frequency", 1.);
+  const test::Settings robot =
+    test::set("T = 1; segments; Number of segments = 4; Phase lag = 0.25; Ramp duration = 0.6");
+  const Scene scene = scene_of(robot, "Active stress/Segments/Frequency", 1.);
   std::vector<Scene> near;
   for (const int i : {-2, -1, 1, 2})
     near.push_back(scene_of(robot, "Active stress/Segments/Frequency", 1. + i * 1e-3));
@@ -325,10 +307,9 @@ TEST(RunGradient, LocalSensitivitiesAddUp)
 /// The stretch at a place and a time, between stages and right behind the start of a step, too.
 TEST(RunGradient, OfStretches)
 {
-  const test::Settings settings = {{"Active stress/Generator", "expression"},
-                                   {"Active stress/Expression/Active stress", "A*sin(2*pi*(s+t))*sin(2*pi*t)"},
-                                   {"Active stress/Expression/Constants", "A=0.2"}};
-  const std::string entry       = "Active stress/Expression/Constants[A]";
+  const test::Settings settings =
+    test::set("expression; Active stress = A*sin(2*pi*(s+t))*sin(2*pi*t); Constants = A=0.2");
+  const std::string entry = "Active stress/Expression/Constants[A]";
   const double value = 0.2, step = 2e-4;
   const Scene scene         = scene_of(settings, entry, value);
   const TimeParameters time = test::parameters_with(settings).time;

@@ -4,39 +4,30 @@
 
     python3 scaling.py PATH_TO_CRAWLER
 """
-import os
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, call  # noqa: E402
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TABLE = ROOT / "prm" / "studies" / "scaling.csv"
+DRAW = (sys.executable, ROOT / "contrib/python/crawler/plot/scaling.py")
 EXACT = 1e-4  # per cent; Accuracy of the runs is 1e-6
-failures = 0
-
-
-def check(condition, what):
-    """Prints what was checked and counts failures."""
-    global failures
-    failures += not condition
-    print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
-
-
-def call(*command, env=None):
-    """Runs a command in the root of the repository, whose paths the study has."""
-    return subprocess.run(command, cwd=ROOT, env=env, capture_output=True, text=True, timeout=600, check=False)
+checks = Checks()
+check = checks.expect
 
 
 def main():
     """Runs the sweep and the fits."""
-    made = call(sys.executable, "contrib/scaling_table.py")
+    made = call([sys.executable, "contrib/scaling_table.py"], ROOT)
     check(made.stdout == TABLE.read_text(encoding="utf-8"), "scaling.csv is what contrib/scaling_table.py makes")
     with tempfile.TemporaryDirectory() as name:
-        sweep = call(str(pathlib.Path(sys.argv[1]).resolve()), "sweep", "prm/studies/scaling.prm", "--output", name, "--strict")
+        sweep = call([pathlib.Path(sys.argv[1]).resolve(), "sweep", "prm/studies/scaling.prm", "--output", name, "--strict"], ROOT)
         check(sweep.returncode == 0, f"the sweep finishes ({sweep.returncode}) {sweep.stderr.strip()}")
-        plot = call(sys.executable, "contrib/python/crawler/plot/scaling.py", name, str(TABLE), "--require", "1")
+        plot = call([*DRAW, name, TABLE, "--require", "1"])
         check(plot.returncode == 0, f"all exponents within 1 % ({plot.returncode}) {plot.stderr.strip()}")
         laws = re.findall(r"(\w+): (\w+) = (\S+) \* (\w+)\^(\S+) \(theory (\S+), off by (\S+) %\)", plot.stdout)
         check(len(laws) == 6, f"{len(laws)} laws")
@@ -49,14 +40,14 @@ def main():
         blind = pathlib.Path(name, "blind")
         blind.mkdir()
         (blind / "matplotlib.py").write_text("raise ImportError(\"No module named 'matplotlib'\")\n", encoding="utf-8")
-        without = call(sys.executable, "contrib/python/crawler/plot/scaling.py", name, str(TABLE), env={**os.environ, "PYTHONPATH": str(blind)})
+        without = call([*DRAW, name, TABLE], variables={"PYTHONPATH": str(blind)})
         check(without.returncode == 69 and "apt install python3-matplotlib" in without.stderr and without.stderr.count("\n") == 1,
               f"without matplotlib: {without.stderr.strip()}")
         picture = pathlib.Path(name, "scaling.png")
         check(picture.is_file() and picture.stat().st_size > 20000, "the picture is there")
-        strict = call(sys.executable, "contrib/python/crawler/plot/scaling.py", name, str(TABLE), "--require", "0.01")
+        strict = call([*DRAW, name, TABLE, "--require", "0.01"])
         check(strict.returncode == 1 and "at most 0.01 %" in strict.stderr, "--require ends with 1 if an exponent is off by more")
-    sys.exit(failures > 0)
+    checks.end()
 
 
 if __name__ == "__main__":

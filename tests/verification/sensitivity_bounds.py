@@ -6,15 +6,15 @@
     python3 sensitivity_bounds.py PATH_TO_CRAWLER REFERENCE FILE.prm...
 """
 import collections
-import json
-import os
 import pathlib
 import statistics
-import subprocess
 import sys
 import tempfile
 
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, call  # noqa: E402
+from tables import json_of  # noqa: E402
+
 ACCURACIES = (1e-3, 1e-4, 1e-6)
 
 
@@ -22,12 +22,12 @@ def sensitivities(program, file, accuracy, folder):
     """{(entry, number): (value, error)} of a run; nothing if it failed."""
     command = [program, "run", file, "--overwrite", "--quiet", "--output", folder, "--set", f"Accuracy={accuracy}",
                "--set", "Output/Sensitivities=all", "--set", "Output/Number of snapshots=0"]
-    done = subprocess.run(command, check=False, capture_output=True, text=True, env=ENVIRONMENT)
+    done = call(command)
     if done.returncode != 0:
         print(f"{file}, Accuracy {accuracy}: {done.stderr.strip()}")
         return {}
     found = {}
-    for entry, one in json.loads((pathlib.Path(folder) / "summary.json").read_text())["sensitivities"].items():
+    for entry, one in json_of(pathlib.Path(folder, "summary.json"))["sensitivities"].items():
         if one["value"] is not None:
             found[entry, "displacement"] = one["value"], one["error"]
         for number, other in one.items():
@@ -37,8 +37,8 @@ def sensitivities(program, file, accuracy, folder):
 
 
 def main():
-    """Prints the coverage of each number; returns what is wrong."""
-    ratios, failures, reference = collections.defaultdict(list), [], float(sys.argv[2])
+    """Prints the coverage of each number."""
+    ratios, checks, reference = collections.defaultdict(list), Checks(), float(sys.argv[2])
     with tempfile.TemporaryDirectory() as folder:
         for file in sys.argv[3:]:
             exact = sensitivities(sys.argv[1], file, reference, folder)
@@ -48,13 +48,13 @@ def main():
                         continue
                     true, of_true = exact[entry, number]
                     ratios[number].append(abs(value - true) / error)
-                    if abs(value - true) > error + of_true:
-                        failures.append(f"{file}, Accuracy {accuracy}: d({number})/d({entry}) = {value} +- {error}, "
-                                        f"but {true} +- {of_true} at Accuracy {reference}")
+                    checks.expect(abs(value - true) <= error + of_true,
+                                  f"{file}, Accuracy {accuracy}: d({number})/d({entry}) = {value} +- {error}, "
+                                  f"but {true} +- {of_true} at Accuracy {reference}")
     for number, list_of_one in ratios.items():
         print(f"{number}: {len(list_of_one)} derivatives, true error/bound {statistics.median(list_of_one):.2g} in the "
               f"median, {max(list_of_one):.2g} at most")
-    return failures or (["nothing was compared"] if not ratios else [])
+    checks.end()
 
 
-sys.exit("\n".join(main()) or 0)
+main()

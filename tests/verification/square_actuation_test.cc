@@ -28,24 +28,17 @@ namespace
   Settings
   standing_wave(const double end_time)
   {
-    return {{"Active stress/Generator", "standing wave"},
-            {"Active stress/Standing wave/Amplitude", "0.3"},
-            {"Active stress/Standing wave/Wave number", "0.5"},
-            {"Active stress/Standing wave/Duty cycle", "0.3"},
-            {"Active stress/Standing wave/Profile", "square"},
-            {"Active stress/Standing wave/Window start", "0.2"},
-            {"Active stress/Standing wave/Window end", "0.7"},
-            {"Time/End time", test::text(end_time)}};
+    return test::with(
+      test::set("standing wave; Amplitude = 0.3; Wave number = 0.5; Duty cycle = 0.3; Profile = square; "
+                "Window start = 0.2; Window end = 0.7"),
+      {{"Time/End time", test::text(end_time)}});
   }
 
   Settings
   travelling_wave(const std::string &profile, const double end_time)
   {
-    return {{"Active stress/Generator", "travelling wave"},
-            {"Active stress/Travelling wave/Amplitude", "0.3"},
-            {"Active stress/Travelling wave/Wave number", "1.5"},
-            {"Active stress/Travelling wave/Profile", profile},
-            {"Time/End time", test::text(end_time)}};
+    return test::with(test::set("travelling wave; Amplitude = 0.3; Wave number = 1.5"),
+                      {{"Active stress/Travelling wave/Profile", profile}, {"Time/End time", test::text(end_time)}});
   }
 
   bool
@@ -59,18 +52,7 @@ namespace
   answer(const Settings &settings)
   {
     const Parameters parameters = test::parameters_with(settings);
-    const Scene scene           = parameters.create_scene();
-    const Simulation::Options options{.energy_balance = true};
-    return run_as_promised(
-      MPI_COMM_SELF,
-      parameters,
-      scene,
-      *choose_numerics(MPI_COMM_SELF, parameters, scene),
-      [&](const NumericsChoice &choice) {
-        return Simulation(MPI_COMM_SELF, scene, parameters.time, choice.numerics).run({}, options);
-      },
-      options,
-      /*writes=*/false);
+    return answer_in_memory(parameters, parameters.create_scene(), {.energy_balance = true}, {});
   }
 
   SimulationResult
@@ -130,9 +112,7 @@ namespace
 /// reach the run says so.
 TEST(SquareActuation, UnknownMovingJumpsHaveAnHonestBound)
 {
-  const Settings settings = {{"Active stress/Generator", "expression"},
-                             {"Active stress/Expression/Active stress", "mod(1.5*s+t,1) < 0.5 ? 0.3 : -0.3"},
-                             {"Time/End time", "0.5"}};
+  const Settings settings = test::set("T = 0.5; expression; Active stress = mod(1.5*s+t,1) < 0.5 ? 0.3 : -0.3");
   const double limit      = 2. * with_jumps_through_cells(settings, 256) - with_jumps_through_cells(settings, 128);
   const auto good         = answer(test::with(settings, {{"Accuracy", "1e-2"}}));
   EXPECT_EQ(good.result.time.status, Status::finished) << good.result.time.message;

@@ -37,20 +37,8 @@ main(int argc, char **argv)
 
   int failures = 0;
   bool any     = false;
-  fmt::print("{:>4} {:>6} {:>3} {:>4} {:>5} {:>9} {:>18} {:>18} {:>10} {:>10} {:>9} {:>5} {:>6}\n",
-             "a",
-             "chi",
-             "c",
-             "T",
-             "k",
-             "accuracy",
-             "displacement",
-             "reference",
-             "rel error",
-             "work err",
-             "energy balance",
-             "cells",
-             "steps");
+  fmt::print("   a    chi   c    T     k  accuracy       displacement          reference  rel error   work err "
+             "energy balance cells  steps\n");
   for (const auto &row : rows)
     for (const double accuracy : accuracies)
     {

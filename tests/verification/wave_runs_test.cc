@@ -38,31 +38,6 @@ namespace
     2.);
 } // namespace
 
-/// doc/theory.md, table of reference numbers: chi = 0.4.
-TEST(WaveRuns, ShapedWaveIsThePapersCase)
-{
-  auto settings = test::wave(-1., 0.4);
-  settings.emplace_back("Active stress/Optimal wave/Shape", "expression");
-  settings.emplace_back("Active stress/Optimal wave/Shape formula", "sin(2*pi*x)");
-  EXPECT_NEAR(displacement(settings), 9.00725298e-2, 1e-6 * 9e-2);
-}
-
-TEST(WaveRuns, TravellingWaveIsItsFormula)
-{
-  const double wave    = displacement(generator("travelling wave", {{"Amplitude", "0.3"}, {"Wave number", "1.5"}}, 2.)),
-               formula = displacement(generator("expression", {{"Active stress", "0.3*sin(2*pi*(1.5*s + t))"}}, 2.));
-  EXPECT_NEAR(wave, formula, 1e-12);
-}
-
-TEST(WaveRuns, MirrorFlipsTheDisplacement)
-{
-  Settings back = two_pulses;
-  back.emplace_back("Active stress/Pulse/Direction", "from head to tail");
-  const double there = displacement(two_pulses);
-  EXPECT_GT(std::abs(there), 0.01);
-  EXPECT_NEAR(displacement(back), -there, 2e-7 * std::abs(there));
-}
-
 /// A contracted part grips (a < 0): against the pulse; it slips (a > 0): with it.
 TEST(WaveRuns, FrictionDecidesTheDirectionOfPeristalsis)
 {
@@ -89,17 +64,6 @@ TEST(WaveRuns, AllNumericsAgree)
     EXPECT_EQ(result.time.status, Status::finished) << numerics.front().second;
     EXPECT_NEAR(result.displacement, reference, 5e-5 * std::abs(reference)) << numerics.front().second;
   }
-}
-
-/// The batch engine gives what a run gives.
-TEST(WaveRuns, Batch)
-{
-  const Numerics numerics{.degree = 6, .n_cells = 24, .tolerance = 1e-7, .initial_step = 1e-4};
-  const test::LaneRun run(two_pulses, "radau 9", numerics);
-  const auto alone = run.simulate(Engine::petsc);
-  const auto batch = test::run_alone(run);
-  ASSERT_TRUE(batch.has_value());
-  EXPECT_NEAR(batch->displacement, alone.displacement, 2. * numerics.tolerance);
 }
 
 /// Jumps in space at ends of cells: the accuracy that is asked for is reached.

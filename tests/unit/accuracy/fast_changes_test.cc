@@ -104,23 +104,17 @@ TEST(FastChanges, GeneratorsSayWhenTheyAct)
     settings.emplace_back("Time/End time", "1000");
     return test::parameters_with(settings).create_scene();
   };
-  const Scene pulse = scene_with({{"Active stress/Generator", "pulse"},
-                                  {"Active stress/Pulse/Amplitude", "0.4"},
-                                  {"Active stress/Pulse/Speed", "20"}});
+  const Scene pulse = scene_with(test::set("pulse; Amplitude = 0.4; Speed = 20"));
   const auto limits = stress_scales(pulse).step_limits;
   EXPECT_NEAR(longest_step(limits, 0.05), 0.1 / 20. / 0.858, 1e-3);
   EXPECT_GT(longest_step(limits, 1.), 100.);
-  const Scene robot = scene_with({{"Active stress/Generator", "segments"},
-                                  {"Active stress/Segments/Switching", "smooth"},
-                                  {"Active stress/Segments/Front width", "1e-4"},
-                                  {"Active stress/Segments/Frequency", "0.01"}});
+  const Scene robot = scene_with(test::set("segments; Switching = smooth; Front width = 1e-4; Frequency = 0.01"));
   EXPECT_LT(longest_step(stress_scales(robot).step_limits, 0.), 0.02);
-  const Scene sum = scene_with({{"Active stress/Generator", "sum"},
-                                {"Active stress/Sum/Term 1/Generator", "travelling wave"},
-                                {"Active stress/Sum/Term 1/Travelling wave/Frequency", "0.01"},
-                                {"Active stress/Sum/Term 2/Generator", "pulse"},
-                                {"Active stress/Sum/Term 2/Pulse/Speed", "20"},
-                                {"Active stress/Sum/Term 2/Pulse/Start position", "-9000"}});
+  const Scene sum =
+    scene_with(test::set("sum; Active stress/Sum/Term 1/Generator = travelling wave; "
+                         "Active stress/Sum/Term 1/Travelling wave/Frequency = 0.01; "
+                         "Active stress/Sum/Term 2/Generator = pulse; Active stress/Sum/Term 2/Pulse/Speed = 20; "
+                         "Active stress/Sum/Term 2/Pulse/Start position = -9000"));
   EXPECT_LT(longest_step(stress_scales(sum).step_limits, 450.01), 0.02);
 }
 

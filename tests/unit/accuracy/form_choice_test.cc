@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "../../support/run_text.h"
-
 #include <crawler/accuracy/form_choice.h>
 
 #include <gtest/gtest.h>
@@ -35,20 +33,4 @@ TEST(FormChoice, LimitsFallWithAccuracy)
 TEST(FormChoice, NothingIsEmptiedWhereFrictionVanishes)
 {
   EXPECT_FALSE(empties(1e-3, 0.5, 1e-4));
-}
-
-/// What the user has chosen is not changed, and what the stretch form cannot compute stays with the position form.
-TEST(FormChoice, IsMadeByTheProgramOnly)
-{
-  const auto form_of = [](const test::Settings &more) {
-    test::Settings settings = test::wave(-1., 0.6);
-    settings.emplace_back("Accuracy", "1e-3");
-    settings.insert(settings.end(), more.begin(), more.end());
-    const Parameters parameters = test::parameters_with(settings);
-    const Scene scene           = parameters.create_scene();
-    return choose_numerics(MPI_COMM_WORLD, parameters, scene)->numerics.formulation;
-  };
-  EXPECT_EQ(form_of({}), Formulation::stretch);
-  EXPECT_EQ(form_of({{"Discretization/Formulation", "position"}}), Formulation::position);
-  EXPECT_EQ(form_of({{"Discretization/Number of cells", "16"}, {"Time/Tolerance", "1e-3"}}), Formulation::position);
 }

@@ -56,8 +56,7 @@ TEST(MeshFamily, IsOfSecondOrder)
     displacements.push_back(result.displacement);
     errors.push_back(std::abs(result.displacement - exact));
   }
-  const double order = test::observed_order(cells, errors);
-  fmt::print("errors {:.2e}, {:.2e}, {:.2e}, order {:.3f}\n", errors[0], errors[1], errors[2], order);
+  const double order = test::observed_order("stretch form", cells, errors);
   EXPECT_NEAR(order, 2., 0.1);
   EXPECT_GT(errors[2], 1e-4 * exact); // what extrapolation gains
   const auto extrapolated = [&](const int i) {
@@ -154,12 +153,20 @@ TEST(MeshFamily, WorksEnergiesAndTheirErrors)
 
 TEST(MeshFamily, IsChosenWhereTheStretchIsSmallOrTheBodySoft)
 {
-  const auto form = [](const Settings &settings) { return test::run_with(settings).choice.numerics.formulation; };
+  const auto form = [](const Settings &settings) {
+    const Parameters parameters = test::parameters_with(settings);
+    return choose_numerics(MPI_COMM_SELF, parameters, parameters.create_scene())->numerics.formulation;
+  };
   EXPECT_EQ(form(test::wave(-1., 0.2)), Formulation::position);
   EXPECT_EQ(form(test::wave(1., 0.2, -1.)), Formulation::position);
   EXPECT_EQ(form(test::wave(-1., 0.6)), Formulation::stretch);
   EXPECT_EQ(form(test::wave(-1., 0.2, 1., 1., 1e-5)), Formulation::stretch);
-  // What only the other form has.
+  // What the user has chosen, and what only the other form has.
+  EXPECT_EQ(form(test::with(test::wave(-1., 0.6), {{"Discretization/Formulation", "position"}})),
+            Formulation::position);
+  EXPECT_EQ(
+    form(test::with(test::wave(-1., 0.6), test::set("Discretization/Number of cells = 16; Time/Tolerance = 1e-3"))),
+    Formulation::position);
   EXPECT_EQ(form(test::with(test::wave(-1., 0.2, 1., 1., 1e-4), {{"Discretization/Degree", "4"}})),
             Formulation::position);
 }

@@ -82,8 +82,7 @@ TEST(RateQuadrature, ConvergesWithOrderSix)
     n.push_back(i);
     errors.push_back(quadrature_error(i));
   }
-  fmt::print("errors {:.2e} {:.2e} {:.2e}\n", errors[0], errors[1], errors[2]);
-  EXPECT_GE(test::observed_order(n, errors), 5.3);
+  EXPECT_GE(test::observed_order("quadrature", n, errors), 5.3);
 }
 
 TEST(EnergyBalance, ResidualIsRelativeToTheExchangedWork)

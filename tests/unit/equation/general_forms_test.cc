@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/derivative.h"
-#include "../../support/run_text.h"
+#include "../../support/features.h"
 
 #include <crawler/equation/general_position_form.h>
 
@@ -9,55 +9,40 @@
 #include <cmath>
 
 using namespace crawler;
+using test::Feature;
+using test::largest;
+using test::Settings;
 
 namespace
 {
   constexpr double t = 0.3;
 
-  struct Feature
-  {
-    std::string name;
-    test::Settings settings;
-  };
-
-  test::Settings
+  Settings
   feedback(const std::string &formula, const std::string &distance = "0.37", const std::string &sensor = "0")
   {
-    return {{"Active stress/Generator", "strain feedback"},
-            {"Active stress/Strain feedback/Active stress", formula},
-            {"Active stress/Strain feedback/Distance", distance},
-            {"Active stress/Strain feedback/Sensor length", sensor},
-            {"Active stress/Strain feedback/Delay", "0.1"}};
+    return test::with(test::feedback(formula),
+                      {{"Active stress/Strain feedback/Distance", distance},
+                       {"Active stress/Strain feedback/Sensor length", sensor},
+                       {"Active stress/Strain feedback/Delay", "0.1"}});
   }
 
   /// Each new term alone, and all together.
   std::vector<Feature>
   features()
   {
-    std::vector<Feature> list = {
-      {"elastic modulus", {{"Body/Elastic modulus profile", "1+0.5*s"}}},
-      {"friction", {{"Body/Friction profile", "2-s^2"}}},
-      {"expression", {{"Ground/Friction law", "expression"}, {"Ground/Expression", "0.5*w^(-1.5)+0.5*w"}}},
+    std::vector<Feature> list = test::laws();
+    list.push_back({"ground", {{"Ground/Profile", "1+0.4*sin(3*x)"}}});
+    const Feature all = test::all_of(list, feedback("0.3*sin(w)*(1+s)+0.2*w_t*w+0.3*w_near*w_delayed+0.1*sin(t)"));
+    const std::vector<Feature> more = {
       {"Newtonian", {{"Ground/Friction law", "Newtonian"}}},
-      {"ground", {{"Ground/Profile", "1+0.4*sin(3*x)"}}},
-      {"direction", {{"Ground/Backward ratio", "3"}, {"Ground/Switching velocity", "0.2"}}},
       {"stretch", feedback("0.3*sin(w)*(1+s)")},
       {"rate", feedback("0.2*w_t+0.1*tanh(w_t)*w")},
       {"nearby", feedback("0.3*w_near^2*w")},
       {"sensor", feedback("0.3*w_near^2*w", "-0.37", "0.28")},
       {"sensor at the place", feedback("0.2*tanh(5*(w_near-1))*w", "0", "0.4")},
-    };
-    Feature all{"all", {}};
-    for (const Feature &feature : list)
-      if (feature.name != "Newtonian" && feature.name != "stretch" && feature.name != "rate" &&
-          feature.name != "nearby" && feature.name.rfind("sensor", 0) != 0)
-        all.settings.insert(all.settings.end(), feature.settings.begin(), feature.settings.end());
-    for (const auto &setting : feedback("0.3*sin(w)*(1+s)+0.2*w_t*w+0.3*w_near*w_delayed+0.1*sin(t)"))
-      all.settings.push_back(setting);
-    list.push_back(all);
-    all.name = "all with sensors";
-    all.settings.push_back({"Active stress/Strain feedback/Sensor length", "0.5"});
-    list.push_back(all);
+      all,
+      {"all with sensors", test::with(all.settings, {{"Active stress/Strain feedback/Sensor length", "0.5"}})}};
+    list.insert(list.end(), more.begin(), more.end());
     return list;
   }
 
@@ -108,15 +93,6 @@ namespace
     std::unique_ptr<PositionForm> form;
     std::vector<double> y, y_dot;
   };
-
-  double
-  largest(const std::vector<double> &x)
-  {
-    double result = 0.;
-    for (const double value : x)
-      result = std::max(result, std::abs(value));
-    return result;
-  }
 
   void
   expect_close(const std::vector<double> &x, const std::vector<double> &y, const std::string &what)

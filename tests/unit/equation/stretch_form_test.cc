@@ -2,7 +2,7 @@
 //
 // What the stretch form says of a state: identities of the velocity and its energies, and the rules for the mobility of
 // a node (stretch_loops.h).
-#include "../../support/run_text.h"
+#include "../../support/features.h"
 
 #include <crawler/equation/stretch_form.h>
 #include <crawler/equation/stretch_loops.h>
@@ -19,27 +19,16 @@ using generic::node_mobility;
 using generic::NodeDirection;
 using generic::NodeMobility;
 using generic::NodeRule;
+using test::Feature;
 
 namespace
 {
   constexpr double t = 0.3;
 
-  struct Feature
-  {
-    std::string name;
-    test::Settings settings;
-  };
-
   Feature
   plain(const double a, const double k = 1.)
   {
     return {"a = " + test::text(a) + ", k = " + test::text(k), test::wave(a, 0.3, 1., 1., k)};
-  }
-
-  test::Settings
-  feedback(const std::string &formula)
-  {
-    return {{"Active stress/Generator", "strain feedback"}, {"Active stress/Strain feedback/Active stress", formula}};
   }
 
   /// Plain scenes with all rules for the nodes, and general ones: each law alone, and all together.
@@ -48,23 +37,12 @@ namespace
   {
     std::vector<Feature> list = {
       plain(-5., 5e-4), plain(-3.), plain(-1.), plain(-0.5), plain(0.), plain(0.5), plain(2.)};
-    const std::vector<Feature> general = {
-      {"elastic modulus", {{"Body/Elastic modulus profile", "1+0.5*s"}}},
-      {"friction profile", {{"Body/Friction profile", "2-s^2"}}},
-      {"expression", {{"Ground/Friction law", "expression"}, {"Ground/Expression", "0.5*w^(-1.5)+0.5*w"}}},
-      {"direction", {{"Ground/Backward ratio", "3"}, {"Ground/Switching velocity", "0.2"}}},
-      {"feedback", feedback("0.3*sin(w)*(1+s)+0.1*sin(t)")},
-      {"rate", feedback("0.2*w_t+0.1*tanh(w_t)*w")},
-    };
+    const std::vector<Feature> general = test::laws();
     list.insert(list.end(), general.begin(), general.end());
+    list.push_back({"feedback", test::feedback("0.3*sin(w)*(1+s)+0.1*sin(t)")});
+    list.push_back({"rate", test::feedback("0.2*w_t+0.1*tanh(w_t)*w")});
     list.push_back({"Newtonian", {{"Ground/Friction law", "Newtonian"}}});
-    Feature all{"all", {}};
-    for (const Feature &feature : general)
-      if (feature.name != "feedback" && feature.name != "rate")
-        all.settings.insert(all.settings.end(), feature.settings.begin(), feature.settings.end());
-    for (const auto &setting : feedback("0.3*sin(w)*(1+s)+0.2*w_t*w+0.1*sin(t)"))
-      all.settings.push_back(setting);
-    list.push_back(all);
+    list.push_back(test::all_of(general, test::feedback("0.3*sin(w)*(1+s)+0.2*w_t*w+0.1*sin(t)")));
     return list;
   }
 

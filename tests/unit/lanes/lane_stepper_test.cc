@@ -2,6 +2,7 @@
 //
 // The fused engine carries out what the PETSc type "radau" does.
 #include "../../support/lane_runs.h"
+#include "../../support/watched.h"
 
 #include <gtest/gtest.h>
 
@@ -169,46 +170,26 @@ namespace
     unsigned int steps = 0;
   };
 
-  class Recorder : public Observer
-  {
-  public:
-    explicit Recorder(Seen &seen)
-      : seen_(seen)
-    {
-    }
-
-    void
-    observe(const Snapshot &snapshot) override
-    {
-      seen_.steps = snapshot.step.number;
-      if (!snapshot.pictures.is_snapshot || snapshot.step.time == 0.)
-        return;
-      seen_.times.push_back(snapshot.step.time);
-      seen_.computed_times.push_back(snapshot.computed_time);
-      seen_.y.insert(seen_.y.end(), snapshot.y.begin(), snapshot.y.end());
-      const CellIntegrals &i = snapshot.integrals;
-      for (const double value : {i.displacement,
-                                 i.velocity,
-                                 i.stress_power,
-                                 i.dissipation,
-                                 snapshot.stretch.min.value,
-                                 snapshot.stretch.max.value})
-        seen_.numbers.push_back(value);
-    }
-
-  private:
-    Seen &seen_;
-  };
-
   Seen
   watch(const LaneRun &run, const Engine engine, const std::vector<double> &output_times)
   {
     TimeParameters time = run.parameters.time;
     time.engine         = engine;
     Seen seen;
-    std::vector<std::unique_ptr<Observer>> observers;
-    observers.push_back(std::make_unique<Recorder>(seen));
-    const auto result = Simulation(MPI_COMM_WORLD, run.scene, time, run.numerics)
+    const auto observers = test::watched_by([&](const Snapshot &snapshot) {
+      seen.steps = snapshot.step.number;
+      if (!snapshot.pictures.is_snapshot || snapshot.step.time == 0.)
+        return;
+      seen.times.push_back(snapshot.step.time);
+      seen.computed_times.push_back(snapshot.computed_time);
+      seen.y.insert(seen.y.end(), snapshot.y.begin(), snapshot.y.end());
+      const CellIntegrals &i    = snapshot.integrals;
+      const StretchRange &range = snapshot.stretch;
+      seen.numbers.insert(
+        seen.numbers.end(),
+        {i.displacement, i.velocity, i.stress_power, i.dissipation, range.min.value, range.max.value});
+    });
+    const auto result    = Simulation(MPI_COMM_WORLD, run.scene, time, run.numerics)
                           .run({output_times, {}, run.scene.end_time}, {.energy_balance = true}, observers);
     EXPECT_EQ(result.time.status, Status::finished);
     return seen;

@@ -2,7 +2,7 @@
 //
 // The equations of the stretch form in the fused engine, and their linear systems, for one body and in packs.
 #include "../../support/derivative.h"
-#include "../../support/run_text.h"
+#include "../../support/features.h"
 
 #define CRAWLER_PACK pack2 // of what is compiled here
 #include <crawler/lanes/lane_states.h>
@@ -15,6 +15,8 @@
 #include <cmath>
 
 using namespace crawler;
+using test::Feature;
+using test::largest;
 
 namespace
 {
@@ -24,40 +26,10 @@ namespace
   template <typename Pack>
   using System = generic::StretchSystem<Pack, pairs>;
 
-  struct Feature
-  {
-    std::string name;
-    test::Settings settings;
-  };
-
   Feature
   plain(const double a)
   {
     return {"a = " + test::text(a), test::wave(a, 0.3)};
-  }
-
-  test::Settings
-  feedback(const std::string &formula)
-  {
-    return {{"Active stress/Generator", "strain feedback"}, {"Active stress/Strain feedback/Active stress", formula}};
-  }
-
-  std::vector<Feature>
-  general()
-  {
-    test::Settings all = feedback("0.3*sin(w)*(1+s)+0.2*w_t*w+0.1*sin(t)");
-    all.insert(all.end(),
-               {{"Body/Elastic modulus profile", "1+0.5*s"},
-                {"Body/Friction profile", "2-s^2"},
-                {"Ground/Friction law", "expression"},
-                {"Ground/Expression", "0.5*w^(-1.5)+0.5*w"},
-                {"Ground/Backward ratio", "3"},
-                {"Ground/Switching velocity", "0.2"}});
-    return {{"profiles", {{"Body/Elastic modulus profile", "1+0.5*s"}, {"Body/Friction profile", "2-s^2"}}},
-            {"direction", {{"Ground/Backward ratio", "3"}, {"Ground/Switching velocity", "0.2"}}},
-            {"feedback", feedback("0.3*sin(w)*(1+s)+0.1*sin(t)")},
-            {"rate", feedback("0.2*w_t+0.1*tanh(w_t)*w")},
-            {"all", all}};
   }
 
   /// @p n cells of two sizes.
@@ -198,19 +170,15 @@ namespace
     }
   };
 
-  double
-  largest(const std::vector<double> &x)
-  {
-    double result = 0.;
-    for (const double value : x)
-      result = std::max(result, std::abs(value));
-    return result;
-  }
-
   std::vector<Feature>
   all_features()
   {
-    std::vector<Feature> list = general();
+    const std::vector<Feature> laws = test::laws();
+    std::vector<Feature> list       = {{"profiles", test::with(laws[0].settings, laws[1].settings)},
+                                       laws[3],
+                                       {"feedback", test::feedback("0.3*sin(w)*(1+s)+0.1*sin(t)")},
+                                       {"rate", test::feedback("0.2*w_t+0.1*tanh(w_t)*w")},
+                                       test::all_of(laws, test::feedback("0.3*sin(w)*(1+s)+0.2*w_t*w+0.1*sin(t)"))};
     for (const double a : {-3., -1., -0.5, 0., 0.7, 2.})
       list.push_back(plain(a));
     return list;

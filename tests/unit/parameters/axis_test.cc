@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/exceptions.h>
+#include "../../support/complaint.h"
+
 #include <crawler/parameters/axis.h>
 #include <crawler/parameters/declarations.h>
 
@@ -20,17 +21,9 @@ namespace
   void
   expect_error(const std::string &text, const std::vector<std::string> &parts)
   {
-    try
-    {
-      values_of(text);
-      ADD_FAILURE() << "\"" << text << "\" was accepted";
-    }
-    catch (const InputError &error)
-    {
-      EXPECT_EQ(error.entry, name);
-      for (const std::string &part : parts)
-        EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << part << " not in: " << error.what();
-    }
+    const std::string found = test::complaint_of([&]() { values_of(text); });
+    EXPECT_TRUE(found.starts_with(name + ": ")) << found;
+    test::expect_words(found, parts);
   }
 } // namespace
 
@@ -100,14 +93,6 @@ TEST(Axis, AllValuesAreCheckedAgainstTheDeclarations)
   EXPECT_EQ(length, 3.);
   for (const auto &[axis, part] : {std::pair(Axis{"Body/Length", {"2", "-1"}}, "a positive number is expected"),
                                    std::pair(Axis{"Body/Lenght", {"2"}}, "nearest name is \"Length\"")})
-    try
-    {
-      require_valid(axis, name, declarations);
-      ADD_FAILURE() << axis.entry;
-    }
-    catch (const InputError &error)
-    {
-      EXPECT_EQ(error.entry, name);
-      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-    }
+    test::expect_words(test::complaint_of([&, &axis = axis]() { require_valid(axis, name, declarations); }),
+                       {name + ": ", part});
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/exceptions.h>
+#include "../../support/complaint.h"
+
 #include <crawler/base/nearest_name.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/parameters/entry_lists.h>
@@ -32,23 +33,9 @@ namespace
   };
 
   std::string
-  refusal(const auto &action)
-  {
-    try
-    {
-      action();
-    }
-    catch (const InputError &error)
-    {
-      return error.what();
-    }
-    return "";
-  }
-
-  std::string
   error_of(Example &example, const std::string &path, const std::string &value)
   {
-    return refusal([&]() { example.declarations.set(path, value); });
+    return test::complaint_of([&]() { example.declarations.set(path, value); });
   }
 } // namespace
 
@@ -76,7 +63,7 @@ TEST(Declarations, RefusesValuesOutOfRange)
   for (const char *value : {"0", "11", "-1", "2.5", "99999999999999999999"})
     EXPECT_NE(error_of(example, "Body/Cells", value).find("from 1 to 10"), std::string::npos) << value;
   for (const char *value : {"", "1,", "1,,2", "a"})
-    EXPECT_NE(error_of(example, "List", value), "") << value;
+    EXPECT_NE(error_of(example, "List", value), "nothing") << value;
   EXPECT_NE(error_of(example, "Word", "mo").find("the nearest is \"no\""), std::string::npos);
 }
 
@@ -113,7 +100,8 @@ TEST(Declarations, NumbersOfAnEntryHaveNames)
                                    std::pair("X/Profile[3]", "has 2 of them, so [1] to [2] are expected"),
                                    std::pair("X/Formula[1]", "is \"1+s\"; numbers at equally spaced places"),
                                    std::pair("X/List[0]", "a whole number from 1 to 10000")})
-    EXPECT_NE(refusal([&, &path = path]() { declarations.value(path); }).find(part), std::string::npos) << path;
+    EXPECT_NE(test::complaint_of([&, &path = path]() { declarations.value(path); }).find(part), std::string::npos)
+      << path;
 }
 
 TEST(Declarations, PrintsAllEntries)

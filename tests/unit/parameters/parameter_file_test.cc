@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/complaint.h"
 #include "../../support/program.h"
 #include "../../support/run_text.h"
 
@@ -28,15 +29,7 @@ namespace
   std::string
   error_of(const std::string &text)
   {
-    try
-    {
-      read(text);
-    }
-    catch (const InputError &error)
-    {
-      return error.what();
-    }
-    return "";
+    return test::complaint_of([&]() { read(text); });
   }
 } // namespace
 

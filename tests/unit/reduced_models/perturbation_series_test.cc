@@ -18,16 +18,9 @@ namespace
   test::Settings
   settings()
   {
-    return {{"Body/Length", "2"},
-            {"Body/Elastic modulus", "3"},
-            {"Body/Friction coefficient", "0.5"},
-            {"Body/Anchoring exponent", "3.3"},
-            {"Time/End time", "1.7"},
-            {"Active stress/Optimal wave/Perturbation parameter", "0.1"},
-            {"Active stress/Optimal wave/Choose wave by", "wave speed"},
-            {"Active stress/Optimal wave/Wave speed", "0.8"},
-            {"Active stress/Optimal wave/Sine coefficients", "1, 0.3"},
-            {"Active stress/Optimal wave/Cosine coefficients", "0.2, -0.4"}};
+    return test::set("L = 2; k = 3; gamma = 0.5; p = 3.3; T = 1.7; chi = 0.1; c = 0.8; "
+                     "Active stress/Optimal wave/Sine coefficients = 1, 0.3; "
+                     "Active stress/Optimal wave/Cosine coefficients = 0.2, -0.4");
   }
 } // namespace
 

@@ -2,9 +2,8 @@
 //
 // The generator "two-level wave" against theory.md, "Gait efficiency": its strain, its share, what it reaches on the
 // kinematic level and in the nonlinear model, and what it refuses.
-#include "../../support/lane_runs.h"
+#include "../../support/stress.h"
 
-#include <crawler/base/exceptions.h>
 #include <crawler/run/reduced_model.h>
 
 #include <gtest/gtest.h>
@@ -46,16 +45,7 @@ namespace
   void
   expect_complaint(const Settings &own, const std::string &entry, const std::string &part, const Settings &others = {})
   {
-    try
-    {
-      test::parameters_with(two_level_wave(-1., own, others)).create_scene();
-      ADD_FAILURE() << entry << ": nothing is refused";
-    }
-    catch (const InputError &error)
-    {
-      EXPECT_EQ(error.entry, section + entry);
-      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-    }
+    test::expect_complaint(two_level_wave(-1., own, others), {section + entry + ": ", part});
   }
 } // namespace
 

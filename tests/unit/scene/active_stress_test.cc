@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/exceptions.h>
+#include "../../support/stress.h"
+
 #include <crawler/scene/active_stress/expression.h>
 #include <crawler/scene/active_stress/none.h>
 #include <crawler/scene/active_stress/optimal_wave.h>
@@ -10,17 +11,6 @@
 #include <numbers>
 
 using namespace crawler;
-
-namespace
-{
-  std::vector<double>
-  evaluate(const ActiveStress &stress, const std::vector<double> &points, const double t)
-  {
-    std::vector<double> m(points.size());
-    stress.at(points)->values(t, m);
-    return m;
-  }
-} // namespace
 
 /// The formula of the theorem written out, for several harmonics and any L, gamma, k.
 TEST(OptimalWave, IsTheFormulaOfThePaper)
@@ -40,7 +30,7 @@ TEST(OptimalWave, IsTheFormulaOfThePaper)
   const OptimalWave wave(parameters, body, 1.);
   for (const double t : {0., 0.2, 1.7, 250.})
   {
-    const auto m = evaluate(wave, points, t);
+    const auto m = test::values(wave, points, t);
     for (std::size_t i = 0; i < points.size(); ++i)
     {
       double expected = 0.;
@@ -61,20 +51,9 @@ TEST(OptimalWave, IsTheFormulaOfThePaper)
   }
 }
 
-TEST(OptimalWave, RefusesCoefficientsOfDifferentLength)
-{
-  OptimalWaveParameters parameters;
-  parameters.sine_coefficients   = {1., 2.};
-  parameters.cosine_coefficients = {1., 2., 3.};
-  parameters.choose_wave_by      = "wave speed";
-  EXPECT_THROW(OptimalWave(parameters, Body(), 1.), InputError);
-  parameters.cosine_coefficients = {0.}; // a single 0 stands for none
-  EXPECT_NO_THROW(OptimalWave(parameters, Body(), 1.));
-}
-
 TEST(NoActiveStress, IsZero)
 {
-  for (const double m : evaluate(NoActiveStress(), {0., 0.5, 1.}, 0.3))
+  for (const double m : test::values(NoActiveStress(), {0., 0.5, 1.}, 0.3))
     EXPECT_EQ(m, 0.);
 }
 
@@ -85,30 +64,10 @@ TEST(Expression, EvaluatesWithConstants)
   parameters.constants     = "A = 0.3, B=2";
   const Expression expression(parameters, 2., 5.);
   const std::vector<double> points = {0., 0.5, 2.};
-  const auto m                     = evaluate(expression, points, 1.25);
+  const auto m                     = test::values(expression, points, 1.25);
   for (std::size_t i = 0; i < points.size(); ++i)
     EXPECT_NEAR(m[i],
                 0.3 * std::sin(2. * std::numbers::pi * (points[i] / 2. + 0.25)) + points[i] * points[i] + 2. +
                   (points[i] > 0.4 ? 1. : 2.),
                 1e-14);
-}
-
-TEST(Expression, ErrorsNameThePosition)
-{
-  ExpressionParameters parameters;
-  parameters.active_stress = "sin(s) + * t";
-  try
-  {
-    const Expression expression(parameters, 1., 1.);
-    FAIL() << "a syntax error was accepted";
-  }
-  catch (const InputError &error)
-  {
-    EXPECT_NE(std::string(error.what()).find("position 10"), std::string::npos) << error.what();
-    EXPECT_EQ(error.entry, "Active stress/Expression/Active stress");
-  }
-  parameters.active_stress = "1/s"; // infinite at s = 0
-  EXPECT_THROW(Expression(parameters, 1., 1.), InputError);
-  parameters.active_stress = "unknown*s";
-  EXPECT_THROW(Expression(parameters, 1., 1.), InputError);
 }

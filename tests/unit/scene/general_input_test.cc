@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/program.h"
-#include "../../support/run_text.h"
+#include "../../support/stress.h"
 
 #include <crawler/base/exceptions.h>
 #include <crawler/formula/formula_gradient.h>
@@ -14,27 +14,10 @@ using namespace crawler;
 
 namespace
 {
-  /// What the user is told.
-  std::string
-  message(const test::Settings &settings)
-  {
-    try
-    {
-      test::parameters_with(settings).create_scene();
-    }
-    catch (const InputError &error)
-    {
-      return error.entry + ": " + error.what();
-    }
-    return "";
-  }
-
   void
   expect_message(const test::Settings &settings, const std::string &entry, const std::string &part)
   {
-    const std::string found = message(settings);
-    EXPECT_TRUE(found.starts_with(entry + ": ")) << found;
-    EXPECT_NE(found.find(part), std::string::npos) << found;
+    test::expect_complaint(settings, {entry + ": ", part});
   }
 
   class ProfileFile : public testing::Test
@@ -184,7 +167,7 @@ TEST(GeneralInput, IsCheckedInOneSentence)
   expect_message(feedback("w_near"), section + "Distance", "other than 0");
   expect_message(feedback("w_delayed"), section + "Delay", "at least");
   expect_message(feedback("log(w-1)"), section + "Active stress", "finite number is expected");
-  EXPECT_EQ(message(feedback("w_t*(w-1)")), "");
+  EXPECT_EQ(test::complaint(feedback("w_t*(w-1)")), "nothing");
   const auto sensor = [&](const std::string &length) {
     auto settings = feedback("w_near");
     settings.push_back({section + "Sensor length", length});
@@ -192,5 +175,5 @@ TEST(GeneralInput, IsCheckedInOneSentence)
   };
   expect_message(sensor("1.5"), section + "Sensor length", "from 1e-6 L to L");
   expect_message(sensor("1e-9"), section + "Sensor length", "from 1e-6 L to L");
-  EXPECT_EQ(message(sensor("0.3")), "");
+  EXPECT_EQ(test::complaint(sensor("0.3")), "nothing");
 }

@@ -123,29 +123,3 @@ TEST(Envelope, WindowAndRamp)
   EXPECT_NEAR(fading.window(1.75), 0.5, 1e-14);
   EXPECT_EQ(fading.window(2.), 0.);
 }
-
-TEST(Envelope, RefusesWindowsThatAreNone)
-{
-  const auto entry = [](const EnvelopeParameters &parameters) -> std::string {
-    try
-    {
-      Envelope(parameters, "X/", 2.);
-    }
-    catch (const InputError &error)
-    {
-      return error.entry;
-    }
-    return "nothing";
-  };
-  EnvelopeParameters parameters;
-  parameters.window_start = 1.;
-  parameters.window_end   = 1.;
-  EXPECT_EQ(entry(parameters), "X/Window start");
-  parameters.window_end = 2.5;
-  EXPECT_EQ(entry(parameters), "X/Window end");
-  parameters.window_end  = 1.5;
-  parameters.window_edge = 0.3;
-  EXPECT_EQ(entry(parameters), "X/Window edge");
-  parameters.window_edge = 0.25;
-  EXPECT_EQ(entry(parameters), "nothing");
-}

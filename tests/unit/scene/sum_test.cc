@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "../../support/run_text.h"
+#include "../../support/stress.h"
 
 #include <crawler/base/exceptions.h>
 #include <crawler/scene/active_stress/expression.h>
@@ -52,32 +52,15 @@ namespace
   const std::vector<double> times  = {0., 0.17, 0.9, 1.31, 2.2, 3.};
 
   std::vector<double>
-  values(const ActiveStress &stress, const double t, const std::vector<double> &places = points)
+  values(const ActiveStress &stress, const double t)
   {
-    std::vector<double> m(places.size());
-    stress.at(places)->values(t, m);
-    return m;
+    return test::values(stress, points, t);
   }
 
   std::vector<double>
   rates(const ActiveStress &stress, const double t)
   {
-    std::vector<double> m(points.size());
-    stress.rate_at(points)->values(t, m);
-    return m;
-  }
-
-  /// The rate by central differences, to the fourth order.
-  std::vector<double>
-  differences(const ActiveStress &stress, const double t)
-  {
-    constexpr double h = 1e-3;
-    const auto a = values(stress, t - 2 * h), b = values(stress, t - h), c = values(stress, t + h),
-               d = values(stress, t + 2 * h);
-    std::vector<double> result;
-    for (std::size_t i = 0; i < a.size(); ++i)
-      result.push_back((a[i] - 8. * b[i] + 8. * c[i] - d[i]) / (12. * h));
-    return result;
+    return test::rates(stress, points, t);
   }
 
   void
@@ -147,8 +130,7 @@ TEST(Sum, RateIsTheDerivativeOfTheValues)
   const Sum all = sum_of(term(expression("sin(s+5*t)"), false, 0.7, {{0.2, 1.9}, 0.3}, {{0.1, 2.}, 0.8}),
                          term(expression("t*t*s"), false, 1.),
                          term(expression("1+0.3*cos(4*t-s)"), true, 1.5, {{-1., 1.7}, 0.5}, {{-1., 2.9}, 0.9}));
-  for (const double t : {0.35, 0.6, 1.2, 1.7, 2.4})
-    expect_near(rates(all, t), differences(all, t), 1e-7);
+  test::expect_rate(all, L, {0.35, 0.6, 1.2, 1.7, 2.4}, 1e-7, /*h=*/1e-3);
 }
 
 TEST(Sum, HasThePeriodThatItsTermsHaveInCommon)
@@ -385,7 +367,7 @@ TEST(Sum, RunsAsItsFormula)
   for (const double t : {0., 0.3, 1.})
   {
     const std::vector<double> places = {0., 0.21, 0.5, 1.};
-    const auto m = values(*scene.active_stress, t, places), g = values(*wave.active_stress, t, places);
+    const auto m = test::values(*scene.active_stress, places, t), g = test::values(*wave.active_stress, places, t);
     for (std::size_t i = 0; i < places.size(); ++i)
       EXPECT_NEAR(m[i], (g[i] + 0.1 * std::sin(std::numbers::pi * places[i])) * (1. - std::exp(-t / 0.2)), 1e-15);
   }

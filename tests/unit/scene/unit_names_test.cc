@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/complaint.h"
 #include "../../support/run_text.h"
 
 #include <crawler/base/exceptions.h>
@@ -41,15 +42,11 @@ TEST(UnitNames, StandBehindNumbersOnlyIfTheUserGaveSome)
 TEST(UnitNames, FitIntoHeaders)
 {
   EXPECT_NO_THROW(own.require_plain());
-  for (const auto &[name, entry] :
-       {std::pair("Units/Length", "m,m"), std::pair("Units/Time", ""), std::pair("Units/Force", "[N]")})
-    try
-    {
+  for (const auto &[name, entry] : {std::pair("Units/Length", "m,m"), {"Units/Time", ""}, {"Units/Force", "[N]"}})
+  {
+    const auto require = [&, name = name, entry = entry]() {
       test::parameters_with({{name, entry}}).units.require_plain();
-      ADD_FAILURE() << name << " = " << entry;
-    }
-    catch (const InputError &error)
-    {
-      EXPECT_EQ(error.entry, name);
-    }
+    };
+    test::expect_words(test::complaint_of(require), {std::string(name) + ": "});
+  }
 }

@@ -152,18 +152,3 @@ TEST(OptimalWave, ChoosesByRuleAndIndex)
   EXPECT_NE(report.str().find("inadmissible"), std::string::npos);
   EXPECT_NE(report.str().find("<- chosen"), std::string::npos);
 }
-
-TEST(OptimalWave, ErrorStatesTheSmallestEnergy)
-{
-  OptimalWaveParameters parameters;
-  parameters.energy = 9.;
-  try
-  {
-    const OptimalWave wave(parameters, Body(), 20.);
-    FAIL() << "no wave spends H = 9";
-  }
-  catch (const InputError &error)
-  {
-    EXPECT_NE(std::string(error.what()).find("the smallest, 10"), std::string::npos) << error.what();
-  }
-}

@@ -145,7 +145,8 @@ TEST(PetscStepper, RadauReachesItsOrder)
       ASSERT_EQ(equation.solve(1e-12, 1.5 / n).status, Status::finished) << name;
       errors.push_back(std::abs(equation.y[0] - std::sin(1.5)));
     }
-    EXPECT_GE(test::observed_order(steps, errors), (1. - 0.05) * order) << name << " " << errors[0] << " " << errors[2];
+    EXPECT_GE(test::observed_order(name, steps, errors), (1. - 0.05) * order)
+      << name << " " << errors[0] << " " << errors[2];
   }
 }
 
