@@ -34,23 +34,18 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       if (!has(LaneLaws::general))
         return;
-      Pack **const always[]    = {&u, &v, &e, &rate, &w_, &k_, &b_, &g_, &w_dg_, &N_, &f_, &f_v_, &w_f_w_};
-      Pack **const of_ground[] = {&c_, &c_x_, &f_u_}, **const of_feedback[] = {&m_, &N_w_};
-      for (Pack **const array : always)
-        memory.piece(*array, n_);
+      memory.pieces(n_, u, v, e, rate, w_, k_, b_, g_, w_dg_, N_, f_, f_v_, w_f_w_);
       if (has(LaneLaws::direction))
-        memory.piece(tanh_, n_);
+        memory.pieces(n_, tanh_);
       if (has(LaneLaws::host_ground))
-        for (Pack **const array : of_ground)
-          memory.piece(*array, n_);
+        memory.pieces(n_, c_, c_x_, f_u_);
       if (has(LaneLaws::feedback))
-        for (Pack **const array : of_feedback)
-          memory.piece(*array, n_);
+        memory.pieces(n_, m_, N_w_);
       if (has(LaneLaws::rate))
-        memory.piece(N_rate_, n_);
+        memory.pieces(n_, N_rate_);
       if (lanes > 1 && asks_host())
         for (double *&array : scratch_)
-          memory.piece(array, n_);
+          memory.pieces(n_, array);
     }
 
     void

@@ -60,14 +60,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     lay_out(LaneMemory &memory)
     {
-      const std::size_t n = n_;
-      memory.piece(power_, n);
-      memory.piece(slope_, n);
-      memory.piece(mobility_, n);
-      memory.piece(mobility_slope_, n);
-      memory.piece(force_, n);
-      memory.piece(force_slope_, n);
-      memory.piece(scratch_, n);
+      memory.pieces(n_, power_, slope_, mobility_, mobility_slope_, force_, force_slope_, scratch_);
       cells_.lay_out(memory);
     }
 

@@ -108,11 +108,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       general_.lay_out(memory);
       const std::size_t cells = setup_.n_cells, block = block_size(), corners = cells + 1;
-      memory.piece(blocks_, block);
-      memory.piece(schur_, 4 * cells);
+      memory.pieces(block, blocks_);
+      memory.pieces(4 * cells, schur_);
       real_.lay_out(corners, memory);
-      memory.piece(complex_blocks_, pairs * block);
-      memory.piece(complex_schur_, pairs * 4 * cells);
+      memory.pieces(pairs * block, complex_blocks_);
+      memory.pieces(pairs * 4 * cells, complex_schur_);
       for (LaneCorners<Number> &one : complex_)
         one.lay_out(corners, memory);
     }
@@ -121,13 +121,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     lay_out(LaneSlopes<Pack> &slopes, const std::size_t points, LaneMemory &memory) const
     {
-      memory.piece(slopes.f_v, points);
-      memory.piece(slopes.f_w, points);
-      memory.piece(slopes.N_w, points);
+      memory.pieces(points, slopes.f_v, slopes.f_w, slopes.N_w);
       if ((setup_.laws & LaneLaws::host_ground) != 0)
-        memory.piece(slopes.f_u, points);
+        memory.pieces(points, slopes.f_u);
       if ((setup_.laws & LaneLaws::rate) != 0)
-        memory.piece(slopes.N_rate, points);
+        memory.pieces(points, slopes.N_rate);
     }
 
     /// Slopes of the laws, for the state (@p u, @p v).
