@@ -16,12 +16,6 @@ namespace crawler
     constexpr double steep_exponent = -4., soft = 1e-3;
     /// Stretch below which extremes are those of the cells: parabolas are useless there.
     constexpr double nearly_empty = 0.1;
-
-    std::vector<double>
-    middles(const Discretization &discretization)
-    {
-      return discretization.points({0.5});
-    }
   } // namespace
 
   StretchMethod
@@ -104,7 +98,7 @@ namespace crawler
     , method_(stretch_method(scene, other))
     , power_(1. + scene.friction_exponent())
     , may_be_empty_(scene.friction_exponent() < 0.)
-    , laws_(scene, middles(discretization))
+    , laws_(scene, discretization.points({0.5}))
     , nodes_{method_.node_rule,
              static_cast<int>(discretization.n_cells()),
              discretization.cell_size().data(),

@@ -65,9 +65,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         take_next(l);
       while (any(lanes_, &Lane::busy))
       {
-        if (friction_changed_)
-          system_.sort_bodies();
-        friction_changed_ = false;
         load_step();
         ask_for_sources();
         look_at_break();
@@ -100,7 +97,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         job.k = 1.;
       lane.left = lane.past.n_steps;
       system_.set_body(l, job, lane.busy);
-      friction_changed_ = true;
       for (int d = 0; d < n_; ++d)
       {
         set_lane(lambda_[d], l, lane.busy ? lane.past.gradient[d] : 0.);
@@ -286,7 +282,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Lane lanes_[lanes];
     Pack inverse_h_;
     double times_[s][lanes]; ///< times of the stages
-    bool friction_changed_ = true, has_sources_ = false;
+    bool has_sources_ = false;
 
     Pack *lambda_, *zeta_;      ///< [unknown]
     Pack *old_mu_;              ///< [stage][unknown] of the following step

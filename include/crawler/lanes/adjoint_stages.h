@@ -159,7 +159,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       Pack *const step    = directions_ + n_directions_ * n;
       Pack *const image   = step + max_directions * n;
       radau::to_eigenbasis(radau::Stages<s>{}, rows_, residual_, n_, real_, complex_);
-      system_.solve_all(real_, complex_);
+      system_.solve(real_, complex_);
       for (int i = 0; i < s; ++i)
         for (int d = 0; d < n_; ++d)
           step[i * n_ + d] = radau::from_eigenbasis(radau::Stages<s>{}, vectors_, i, d, n_, real_, complex_);

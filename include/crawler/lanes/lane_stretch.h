@@ -69,13 +69,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       set_lane(k_, l, job.k);
       set_lane(a_, l, job.a);
-      set_lane(friction_.a, l, -job.a);
-    }
-
-    void
-    sort_bodies()
-    {
-      friction_.sort();
+      friction_.set(l, -job.a);
     }
 
     /// Residual of the state @p q with the rates @p q_dot and the active stress @p m, at a time for each lane. Returns
@@ -129,15 +123,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       cells_.factorize(shift_, shifts_, sees_rate);
     }
 
-    void
-    solve(Pack *x) const
-    {
-      solve_all(x, nullptr);
-    }
-
     /// Solves the real system and those of all pairs, @p y [pair][unknown]; null: the real one alone.
     void
-    solve_all(Pack *x, Number *y) const
+    solve(Pack *x, Number *y = nullptr) const
     {
       cells_.solve(x, y, n_unknowns());
       x[n_] = (x[n_] - (end_by_w_ + shift_ * end_by_rate_) * x[0]) / shift_;

@@ -58,14 +58,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     set_body(const int l, const LaneJob &job, const bool is_busy)
     {
       set_lane(mesh_.k, l, job.k);
-      set_lane(mesh_.friction.a, l, job.a);
+      mesh_.friction.set(l, job.a);
       general_.set_body(l, job, is_busy);
-    }
-
-    void
-    sort_bodies()
-    {
-      mesh_.friction.sort();
     }
 
     Pack
@@ -168,16 +162,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       factorize_corners(pairs);
     }
 
-    /// Solves with K + (g/h) M.
-    void
-    solve(Pack *x) const
-    {
-      solve_all(x, nullptr);
-    }
-
     /// Solves with the real system and, unless @p y is null, K + (l_j/h) M for all pairs, @p y [pair][unknown].
     void
-    solve_all(Pack *x, Number *y) const
+    solve(Pack *x, Number *y = nullptr) const
     {
       const int N = mesh_.n_cells, q = static_cast<int>(setup_.degree), n = n_unknowns();
       const int n_pairs = y != nullptr ? pairs : 0;

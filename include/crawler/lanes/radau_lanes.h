@@ -61,9 +61,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           take_next(l);
       if (!any(step_.bodies, &Lane::busy))
         return false;
-      if (friction_changed_)
-        step_.system.sort_bodies();
-      friction_changed_ = false;
       begin_step();
       step_.make();
       decide();
@@ -87,7 +84,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         static_cast<LaneProgress &>(lane) = *lane.job.progress;
       step_.system.set_body(l, lane.job, lane.busy);
       set_lane(step_.tolerance, l, lane.job.tolerance);
-      friction_changed_ = true;
       step_.states.start(l, lane.job.start, lane.job.old_z);
       for (int i = 0; i < s * step_.n_points; ++i)
         set_lane(step_.m[i], l, 0.);
@@ -274,7 +270,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     const LaneHost &host_;
     RadauStep<Pack, s, Equations> step_;
     LaneMemory memory_;
-    bool friction_changed_ = true;
     LaneStage stages_[lanes][s]; ///< stages as the host sees them
     Pack elastic_energy_{};
     Pack unsettled_{}; ///< error of the velocity at the end of the step, relative to the requested one

@@ -119,7 +119,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int l = 0; l < lanes; ++l)
         set_lane(mask, l, bodies[l].iterating);
       radau::to_eigenbasis(radau::Stages<s>{}, setup.rows, F, n, real, complex);
-      system.solve_all(real, complex);
+      system.solve(real, complex);
       const Pack square = states.template correct<System::largest>(real, complex, mask > 0.);
       return relative(square, s * n);
     }
