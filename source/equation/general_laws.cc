@@ -25,9 +25,10 @@ namespace crawler
   long
   SlidingAtPoints::evaluate(const std::span<const double> u, const std::span<const double> v)
   {
-    const std::size_t n    = points_.size();
-    const Ground &ground   = scene_.ground;
-    const bool directional = ground.direction.is_uneven();
+    const std::size_t n                    = points_.size();
+    const Ground &ground                   = scene_.ground;
+    const auto [ratio, switching_velocity] = ground.direction;
+    equation::DirectionFactor<double> direction{1., 1.};
     if (ground.profile)
     {
       for (std::size_t i = 0; i < n; ++i)
@@ -37,12 +38,12 @@ namespace crawler
     long bad = -1;
     for (std::size_t i = 0; i < n; ++i)
     {
-      const double factor = directional ? ground.direction.factor(v[i]) : 1.;
-      const double slope  = directional ? ground.direction.force_slope(v[i]) : 1.;
-      const auto here     = equation::sliding(b_[i], c_[i], slope_[i], factor, slope, v[i]);
-      force[i]            = here.force;
-      by_v[i]             = here.by_v;
-      by_u[i]             = here.by_u;
+      if (ratio != 1.)
+        direction = equation::direction_factor(ratio, switching_velocity, v[i], std::tanh(v[i] / switching_velocity));
+      const auto here = equation::sliding(b_[i], c_[i], slope_[i], direction, v[i]);
+      force[i]        = here.force;
+      by_v[i]         = here.by_v;
+      by_u[i]         = here.by_u;
       if (bad < 0 && !(c_[i] > 0. && std::isfinite(c_[i])))
         bad = static_cast<long>(i);
     }

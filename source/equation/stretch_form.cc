@@ -1,30 +1,21 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/parabola.h>
 #include <crawler/equation/crawler_equation.h>
+#include <crawler/equation/newton_velocity.h>
 #include <crawler/equation/stretch_form.h>
-#include <crawler/equation/stretch_loops.h>
+#include <crawler/mesh/block_tridiagonal_matrix.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace crawler
 {
-  using generic::node_force;
-  using generic::NodeDirection;
-  using generic::NodeRule;
-
   namespace
   {
     /// Steep friction on a soft body makes fronts that the mean of two cells does not follow.
     constexpr double steep_exponent = -4., soft = 1e-3;
     /// Stretch below which extremes are those of the cells: parabolas are useless there.
     constexpr double nearly_empty = 0.1;
-
-    std::vector<double>
-    middles(const Discretization &discretization)
-    {
-      return discretization.points({0.5});
-    }
   } // namespace
 
   StretchMethod
@@ -37,7 +28,7 @@ namespace crawler
                                   ? NodeRule::upwind
                                   : NodeRule::fronts;
     const NodeRule other_rule = rule == NodeRule::fronts ? NodeRule::upwind : NodeRule::fronts;
-    return {static_cast<unsigned char>(other ? other_rule : rule), may_invert && scene.is_plain()};
+    return {other ? other_rule : rule, may_invert && scene.is_plain()};
   }
 
   std::string
@@ -56,13 +47,13 @@ namespace crawler
 
   StretchLaws::StretchLaws(const Scene &scene, const std::vector<double> &middles)
     : friction(middles.size())
-    , mobility(middles.size())
-    , mobility_by_w(middles.size())
     , scene_(scene)
     , profile_(profile_at(scene.profiles.friction, middles))
     , w_(middles.size())
     , w_dg_(middles.size())
     , strain_(middles.size())
+    , mobility_(middles.size())
+    , mobility_slope_(middles.size())
     , force_(scene, middles)
   {
   }
@@ -85,11 +76,21 @@ namespace crawler
     {
       if (bad < 0 && !(friction[j] > 0.))
         bad = static_cast<long>(j);
-      mobility[j]      = 1. / (friction[j] * profile_[j]);
-      mobility_by_w[j] = mobility[j] > 0. ? -w_dg_[j] / friction[j] * mobility[j] / w_[j] : 0.;
+      mobility_[j]       = 1. / (friction[j] * profile_[j]);
+      mobility_slope_[j] = mobility_[j] > 0. ? -w_dg_[j] / friction[j] * mobility_[j] / w_[j] : 0.;
     }
     force_.evaluate(t, strain_, {w, rate, {}, {}}, known_m);
     return bad;
+  }
+
+  CellLaws<double>
+  StretchLaws::at_cells() const
+  {
+    return {mobility_.data(),
+            mobility_slope_.data(),
+            force_.N.data(),
+            force_.by_w.data(),
+            force_.by_rate.empty() ? nullptr : force_.by_rate.data()};
   }
 
   StretchForm::StretchForm(const Scene &scene, const Discretization &discretization, const bool other)
@@ -97,7 +98,11 @@ namespace crawler
     , method_(stretch_method(scene, other))
     , power_(1. + scene.friction_exponent())
     , may_be_empty_(scene.friction_exponent() < 0.)
-    , laws_(scene, middles(discretization))
+    , laws_(scene, discretization.points({0.5}))
+    , nodes_{method_.node_rule,
+             static_cast<int>(discretization.n_cells()),
+             discretization.cell_size().data(),
+             scene.ground.direction}
     , w_(discretization.n_cells())
     , u_(discretization.n_unknowns())
     , rate_(discretization.n_cells(), 0.)
@@ -151,29 +156,23 @@ namespace crawler
     return slopes;
   }
 
-  void
-  StretchForm::evaluate(const double t, const ConstVector y, const ConstVector v) const
+  long
+  StretchForm::evaluate(const double t, const ConstVector w, const ConstVector v) const
   {
-    const auto w = stretch(y);
     for (std::size_t j = 0; j < w.size(); ++j)
       rate_[j] = (v[j + 1] - v[j]) / discretization_.cell_size()[j];
-    laws_.evaluate(t, w, rate_);
+    const long bad = laws_.evaluate(t, w, rate_);
+    nodes_.laws    = laws_.at_cells();
+    return bad;
   }
 
   std::vector<double>
   StretchForm::node_friction(const double t, const ConstVector y, const ConstVector v) const
   {
-    evaluate(t, y, v);
-    const int n = static_cast<int>(w_.size());
-    std::vector<double> friction(w_.size() + 1);
-    for (int i = 0; i <= n; ++i)
-      friction[i] = node_force(static_cast<NodeRule>(method_.node_rule),
-                               n,
-                               discretization_.cell_size().data(),
-                               laws_.mobility.data(),
-                               laws_.force().N.data(),
-                               i)
-                      .slope;
+    evaluate(t, stretch(y), v);
+    std::vector<double> friction;
+    for (int i = 0; i <= nodes_.n; ++i)
+      friction.push_back(nodes_.force(i).slope);
     return friction;
   }
 
@@ -244,74 +243,54 @@ namespace crawler
   bool
   StretchForm::velocity(const double t, const ConstVector y, const Vector v)
   {
-    const StretchFeedback *feedback = scene_.active_stress->feedback();
-    const bool sees_rate            = feedback != nullptr && feedback->uses_rate();
-    const auto &h                   = discretization_.cell_size();
-    const int n                     = static_cast<int>(w_.size());
-    const NodeDirection direction{scene_.ground.direction.ratio, scene_.ground.direction.switching_velocity};
-    const auto rule = static_cast<NodeRule>(method_.node_rule);
-    std::fill(rate_.begin(), rate_.end(), 0.);
-    const auto w = stretch(y);
-    std::vector<double> lower, diagonal, upper, rest;
-    // One pass, unless the active stress depends on the rate: then Newton's method for w_t - (v_{j+1} - v_j)/h_j = 0.
-    for (unsigned int i = 0; i < (sees_rate ? 20 : 1); ++i)
-    {
-      if (laws_.evaluate(t, w, rate_) >= 0)
+    const auto w        = stretch(y);
+    const auto residual = [&](const ConstVector at, const Vector F) {
+      if (evaluate(t, w, at) >= 0)
       {
         look_at_friction(w, laws_.friction);
         return false;
       }
-      const auto &N = laws_.force().N;
-      std::vector<double> by_left(n + 1, 0.), by_right(n + 1, 0.);
-      for (int node = 0; node <= n; ++node)
-      {
-        const auto f = node_force(rule, n, h.data(), laws_.mobility.data(), N.data(), node);
-        double slope = 1.;
-        v[node]      = direction.velocity(f.mobility.value * f.slope, slope);
-        if (!std::isfinite(v[node]))
-          return false;
-        if (!sees_rate)
-          continue;
-        const double conductance = slope * f.mobility.value / f.spacing;
-        if (node > 0)
-          by_left[node] = -conductance * laws_.force().by_rate[node - 1];
-        if (node < n)
-          by_right[node] = conductance * laws_.force().by_rate[node];
-      }
-      if (!sees_rate)
-        return true;
-      lower.assign(n, 0.), diagonal.assign(n, 1.), upper.assign(n, 0.), rest.assign(n, 0.);
-      double largest = 0., scale = 0.;
-      for (int j = 0; j < n; ++j)
-      {
-        rest[j]  = rate_[j] - (v[j + 1] - v[j]) / h[j];
-        lower[j] = by_left[j] / h[j];
-        diagonal[j] -= (by_left[j + 1] - by_right[j]) / h[j];
-        upper[j] = -by_right[j + 1] / h[j];
-        if (j > 0)
-        {
-          const double factor = lower[j] / diagonal[j - 1];
-          diagonal[j] -= factor * upper[j - 1];
-          rest[j] -= factor * rest[j - 1];
-        }
-      }
-      for (int j = n - 1; j >= 0; --j)
-      {
-        rest[j] = (rest[j] - (j + 1 < n ? upper[j] * rest[j + 1] : 0.)) / diagonal[j];
-        rate_[j] -= rest[j];
-        largest = std::max(largest, std::abs(rest[j]));
-        scale   = std::max(scale, std::abs(rate_[j]));
-      }
-      if (largest <= 1e-13 * scale || scale == 0.)
-        return true;
+      for (int i = 0; i <= nodes_.n; ++i)
+        F[i] = at[i] - nodes_.velocity(i);
+      return true;
+    };
+    std::fill(v.begin(), v.end(), 0.);
+    const StretchFeedback *feedback = scene_.active_stress->feedback();
+    if (feedback == nullptr || !feedback->uses_rate()) // the residual of rest is minus the velocity
+    {
+      if (!residual(v, v))
+        return false;
+      for (double &value : v)
+        value = 0. - value;
+      return std::ranges::all_of(v, [](const double value) { return std::isfinite(value); });
     }
-    return false;
+    BlockTridiagonalMatrix<double> matrix(discretization_);
+    const auto solve = [&](const ConstVector at, const Vector F) {
+      evaluate(t, w, at);
+      auto left = nodes_.with_derivatives(0);
+      for (int j = 0; j < nodes_.n; ++j)
+      {
+        const auto right     = nodes_.with_derivatives(j + 1);
+        const double by_left = left.by_right_rate / nodes_.h[j], by_right = right.by_left_rate / nodes_.h[j];
+        double *const block = matrix.blocks().data() + 4 * j;
+        block[0]            = 1. + by_left;
+        block[1]            = -by_left;
+        block[2]            = by_right;
+        block[3]            = (j + 1 < nodes_.n ? 0. : 1.) - by_right;
+        left                = right;
+      }
+      if (!matrix.factorize())
+        return false;
+      matrix.solve(F, F);
+      return true;
+    };
+    return newton_velocity(discretization_, v, residual, solve);
   }
 
   CellIntegrals
   StretchForm::integrals(const double t, const ConstVector y, const ConstVector v)
   {
-    evaluate(t, y, v);
+    evaluate(t, stretch(y), v);
     const auto u                   = displacement(y);
     const auto w                   = ConstVector(w_);
     const auto &h                  = discretization_.cell_size();

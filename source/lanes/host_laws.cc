@@ -29,10 +29,9 @@ namespace crawler
   void
   HostLaws::set(LaneJob &job) const
   {
-    job.k_profile          = k_.data();
-    job.friction_profile   = b_.data();
-    job.backward_ratio     = scene_.ground.direction.ratio;
-    job.switching_velocity = scene_.ground.direction.switching_velocity;
+    job.k_profile        = k_.data();
+    job.friction_profile = b_.data();
+    job.direction        = scene_.ground.direction;
   }
 
   bool

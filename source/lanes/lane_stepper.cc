@@ -20,11 +20,8 @@ namespace crawler
   {
     if (method.is_stretch)
     {
-      const StretchMethod stretch = stretch_method(scene, method.other_rule);
-      setup_.node_rule            = stretch.node_rule;
-      setup_.is_power             = stretch.is_power;
-      setup_.backward_ratio       = scene.ground.direction.ratio;
-      setup_.switching_velocity   = scene.ground.direction.switching_velocity;
+      setup_.stretch   = stretch_method(scene, method.other_rule);
+      setup_.direction = scene.ground.direction;
       if (!scene.is_plain())
         cell_laws_.emplace(scene, tables_.points);
     }
@@ -121,8 +118,9 @@ namespace crawler
     return static_cast<LaneStepper *>(context)->laws_->evaluate(points);
   }
 
-  LaneCellLaws
-  LaneStepper::cell_laws(void *context, const double t, const double *m, const double *w, const double *rate)
+  double
+  LaneStepper::cell_laws(
+    void *context, const double t, const double *m, const double *w, const double *rate, CellLaws<double> &at_cells)
   {
     auto &self          = *static_cast<LaneStepper *>(context);
     StretchLaws &laws   = *self.cell_laws_;
@@ -131,16 +129,9 @@ namespace crawler
     // Power laws fail only where the stretch is lost.
     if (bad >= 0 && w[bad] > 0. && !self.scene_.has_power_law())
       self.bad_friction_ = {w[bad], laws.friction[static_cast<std::size_t>(bad)]};
-    const bool may_be_empty        = self.scene_.friction_exponent() < 0.;
-    const BodyForceAtPoints &force = laws.force();
-    return {laws.mobility.data(),
-            laws.mobility_by_w.data(),
-            force.N.data(),
-            force.by_w.data(),
-            force.by_rate.data(),
-            bad >= 0       ? -1.
-            : may_be_empty ? 1.
-                           : *std::min_element(w, w + n)};
+    at_cells                = laws.at_cells();
+    const bool may_be_empty = self.scene_.friction_exponent() < 0.;
+    return bad >= 0 ? -1. : may_be_empty ? 1. : *std::min_element(w, w + n);
   }
 
   bool

@@ -193,19 +193,6 @@ namespace crawler
     declarations.leave();
   }
 
-  double
-  Direction::factor(const double v) const
-  {
-    return 0.5 * (1. + ratio) + 0.5 * (1. - ratio) * std::tanh(v / switching_velocity);
-  }
-
-  double
-  Direction::force_slope(const double v) const
-  {
-    const double x = v / switching_velocity, tangent = std::tanh(x);
-    return factor(v) + 0.5 * (1. - ratio) * x * (1. - tangent * tangent);
-  }
-
   std::unique_ptr<const FrictionLaw>
   create_friction_law(const GroundParameters &parameters, const Body &body, const double end_time)
   {

@@ -47,6 +47,22 @@ namespace crawler::equation::inline CRAWLER_INSTRUCTION_SET
     return g * v;
   }
 
+  /// Factor d of the friction by the direction (scene/direction.h), and the derivative of d(v) v.
+  template <typename Number>
+  struct DirectionFactor
+  {
+    Number d, dv_v;
+  };
+
+  /// Computes it for the velocity @p v, whose tanh(v/v_s) is @p th.
+  template <typename Number>
+  inline DirectionFactor<Number>
+  direction_factor(const Number ratio, const Number switching_velocity, const Number v, const Number th)
+  {
+    const Number mean = 0.5 * (1. + ratio), half = 0.5 * (1. - ratio);
+    return {mean + half * th, mean + half * (th + v / switching_velocity * (1. - th * th))};
+  }
+
   /// Factors of the friction of a general scene besides g(w): b(s) c(x) d(v) v [velocity], and its derivatives by the
   /// velocity and by the place.
   template <typename Number>
@@ -55,13 +71,12 @@ namespace crawler::equation::inline CRAWLER_INSTRUCTION_SET
     Number force, by_v, by_u;
   };
 
-  /// Computes it from @p b of the body, @p c of the ground and its slope @p c_x, @p d of the direction and the
-  /// derivative @p dv_v of d(v) v.
+  /// Computes it from @p b of the body, @p c of the ground and its slope @p c_x, and that of the direction.
   template <typename Number>
   inline Sliding<Number>
-  sliding(const Number b, const Number c, const Number c_x, const Number d, const Number dv_v, const Number v)
+  sliding(const Number b, const Number c, const Number c_x, const DirectionFactor<Number> &direction, const Number v)
   {
-    return {b * c * d * v, b * c * dv_v, b * c_x * d * v};
+    return {b * c * direction.d * v, b * c * direction.dv_v, b * c_x * direction.d * v};
   }
 
   /// Power of the active stress per reference length [force/time], for the stretch rate v_s.

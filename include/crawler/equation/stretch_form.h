@@ -2,17 +2,10 @@
 #pragma once
 
 #include <crawler/equation/assembler.h>
+#include <crawler/equation/stretch_loops.h>
 
 namespace crawler
 {
-  /// Settings of the stretch form for a scene (equation/stretch_loops.h, lanes/lane_stretch.h).
-  struct StretchMethod
-  {
-    unsigned char node_rule; ///< a NodeRule
-    /// True if the unknown is w^(1+a)/(1+a), which passes 0 at a finite rate where a body inverts (-1 < a < 0).
-    bool is_power;
-  };
-
   /// @p scene is in natural units. @p other selects a rule other than the best one, as a check.
   StretchMethod
   stretch_method(const Scene &scene, bool other = false);
@@ -33,17 +26,19 @@ namespace crawler
     long
     evaluate(double t, std::span<const double> w, std::span<const double> rate, const double *known_m = nullptr);
 
-    std::vector<double> friction;                ///< g(w), without the body's profile
-    std::vector<double> mobility, mobility_by_w; ///< mobility 1/(g b); 0 where the cell is empty and sticks
+    std::vector<double> friction; ///< g(w), without the body's profile
     const BodyForceAtPoints &
     force() const
     {
       return force_;
     }
+    /// Laws for the unknown w; the mobility is 0 where a cell is empty and sticks.
+    CellLaws<double>
+    at_cells() const;
 
   private:
     const Scene &scene_;
-    std::vector<double> profile_, w_, w_dg_, strain_;
+    std::vector<double> profile_, w_, w_dg_, strain_, mobility_, mobility_slope_;
     BodyForceAtPoints force_;
   };
 
@@ -93,15 +88,16 @@ namespace crawler
     lost_places(double t, ConstVector y, double reach);
 
   private:
-    /// Evaluates the laws for the state @p y with the velocity @p v at the nodes.
-    void
-    evaluate(double t, ConstVector y, ConstVector v) const;
+    /// Evaluates the laws for the stretch @p w with the velocity @p v at the nodes; the result as in StretchLaws.
+    long
+    evaluate(double t, ConstVector w, ConstVector v) const;
 
     const StretchMethod method_;
     const double power_;      ///< 1 + a
     const bool may_be_empty_; ///< a < 0
     // State that was evaluated last.
     mutable StretchLaws laws_;
+    mutable generic::StretchNodes<double> nodes_;
     mutable std::vector<double> w_, u_, rate_;
   };
 } // namespace crawler

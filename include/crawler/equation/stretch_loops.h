@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/base/instruction_set.h>
+#include <crawler/equation/crawler_equation.h>
+#include <crawler/equation/stretch_method.h>
+#include <crawler/scene/direction.h>
 
 #include <cmath>
 
@@ -15,14 +17,6 @@
  */
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  /// Rule that gives the mobility of a node from those of the adjacent cells.
-  enum class NodeRule : unsigned char
-  {
-    friction, ///< mean of their frictions
-    fronts,   ///< mean of their frictions, but of their mobilities where the emptier cell receives
-    upwind    ///< mobility of the cell that gives, with van Leer's correction
-  };
-
   /// Mobility of a node and its derivatives by those of the cells to the left and to the right.
   template <typename Number>
   struct NodeMobility
@@ -82,61 +76,106 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     return result;
   }
 
-  /// Mobility M_i and (N_i - N_{i-1})/H_i of any node, 0 <= i <= n.
-  template <typename Number>
-  struct NodeForce
+  /// Velocity v with d(v) v = @p q for the ground's d(v), and its derivative @p slope by q.
+  inline double
+  directed_velocity(const Direction &direction, const double q, double &slope)
   {
-    NodeMobility<Number> mobility;
-    Number slope;
-    double spacing; ///< H_i
-  };
-
-  template <typename Number>
-  inline NodeForce<Number>
-  node_force(
-    const NodeRule rule, const int n, const double *h, const Number *mobility, const Number *force, const int i)
-  {
-    const Number none{}, one = 1. + Number{};
-    if (i == 0)
-      return {{mobility[0], none, one}, force[0] * (2. / h[0]), 0.5 * h[0]};
-    if (i == n)
-      return {{mobility[n - 1], one, none}, -force[n - 1] * (2. / h[n - 1]), 0.5 * h[n - 1]};
-    const double spacing    = 0.5 * (h[i - 1] + h[i]);
-    const Number difference = force[i] - force[i - 1];
-    return {node_mobility(rule, n, h, mobility, i, difference), difference / spacing, spacing};
+    slope              = 1.;
+    const double ratio = direction.ratio, switching_velocity = direction.switching_velocity;
+    if (ratio == 1.)
+      return q;
+    // Newton's method; d(v) v increases with v. As d is between 1 and the ratio, v is between these bounds.
+    const double one = q / ratio, other = q;
+    double low = one < other ? one : other, high = one < other ? other : one, v = q > 0. ? q : q / ratio;
+    for (int i = 0; i < 100; ++i)
+    {
+      const auto here       = equation::direction_factor(ratio, switching_velocity, v, ::tanh(v / switching_velocity));
+      const double f        = here.d * v - q;
+      slope                 = 1. / here.dv_v;
+      (f > 0. ? high : low) = v;
+      double next           = v - f / here.dv_v;
+      if (!(next >= low && next <= high))
+        next = 0.5 * (low + high);
+      const double change = next - v;
+      v                   = next;
+      if (::fabs(change) <= 1e-15 * ::fabs(v))
+        break;
+    }
+    return v;
   }
 
-  /// Ground's d(v) (scene/ground.h): the velocity v with d(v) v = q, and its derivative by q.
-  struct NodeDirection
+  /// Bodies side by side are plain: their grounds have no direction.
+  template <typename Pack>
+  inline Pack
+  directed_velocity(const Direction &, const Pack &q, Pack &slope)
   {
-    double ratio = 1., switching_velocity = 1.;
+    slope = 1. + Pack{};
+    return q;
+  }
 
-    /// Solved by Newton's method; d(v) v increases with v, and is between the smaller and the larger of v and ratio v.
-    double
-    velocity(const double q, double &slope) const
+  /// Velocity of a node, and its derivatives by the unknowns and the stretch rates of the cells to its left and right.
+  template <typename Number>
+  struct NodeVelocity
+  {
+    Number v{}, by_left{}, by_right{}, by_left_rate{}, by_right_rate{};
+  };
+
+  /// Nodes 0 <= i <= n of a body with n cells.
+  template <typename Number>
+  struct StretchNodes
+  {
+    NodeRule rule;
+    int n;
+    const double *h; ///< [cell]
+    Direction direction;
+    CellLaws<Number> laws{}; ///< laws at the present state
+
+    /// Mobility M_i and the force (N_i - N_{i-1})/H_i.
+    struct Force
     {
-      slope = 1.;
-      if (ratio == 1.)
-        return q;
-      const double mean = 0.5 * (1. + ratio), half = 0.5 * (1. - ratio);
-      // d is between 1 and the ratio.
-      const double one = q / ratio, other = q;
-      double low = one < other ? one : other, high = one < other ? other : one, v = q > 0. ? q : q / ratio;
-      for (int i = 0; i < 100; ++i)
-      {
-        const double th = ::tanh(v / switching_velocity), f = (mean + half * th) * v - q,
-                     df       = mean + half * (th + v / switching_velocity * (1. - th * th));
-        slope                 = 1. / df;
-        (f > 0. ? high : low) = v;
-        double next           = v - f / df;
-        if (!(next >= low && next <= high))
-          next = 0.5 * (low + high);
-        const double change = next - v;
-        v                   = next;
-        if (::fabs(change) <= 1e-15 * ::fabs(v))
-          break;
-      }
-      return v;
+      NodeMobility<Number> mobility;
+      Number slope;
+      double spacing; ///< H_i
+    };
+
+    Force
+    force(const int i) const
+    {
+      const Number none{}, one = 1. + Number{}, *const N = laws.force, *const mobility = laws.mobility;
+      if (i == 0)
+        return {{mobility[0], none, one}, N[0] * (2. / h[0]), 0.5 * h[0]};
+      if (i == n)
+        return {{mobility[n - 1], one, none}, -N[n - 1] * (2. / h[n - 1]), 0.5 * h[n - 1]};
+      const double spacing    = 0.5 * (h[i - 1] + h[i]);
+      const Number difference = N[i] - N[i - 1];
+      return {node_mobility(rule, n, h, mobility, i, difference), difference / spacing, spacing};
+    }
+
+    Number
+    velocity(const int i) const
+    {
+      const Force at = force(i);
+      Number slope;
+      return directed_velocity(direction, at.slope * at.mobility.value, slope);
+    }
+
+    NodeVelocity<Number>
+    with_derivatives(const int i) const
+    {
+      const Force at = force(i);
+      Number turn;
+      NodeVelocity<Number> result{directed_velocity(direction, at.slope * at.mobility.value, turn)};
+      const Number conductance = turn * at.mobility.value * (1. / at.spacing), force = turn * at.slope;
+      if (i > 0)
+        result.by_left =
+          force * at.mobility.by_left * laws.mobility_slope[i - 1] - conductance * laws.force_slope[i - 1];
+      if (i < n)
+        result.by_right = force * at.mobility.by_right * laws.mobility_slope[i] + conductance * laws.force_slope[i];
+      if (laws.force_by_rate != nullptr && i > 0)
+        result.by_left_rate = -conductance * laws.force_by_rate[i - 1];
+      if (laws.force_by_rate != nullptr && i < n)
+        result.by_right_rate = conductance * laws.force_by_rate[i];
+      return result;
     }
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

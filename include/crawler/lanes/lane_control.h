@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-/// Decisions for each body alone: convergence of Newton's method and step sizes (included by radau_lanes.h).
+/// Decisions for each body alone: convergence of Newton's method and step sizes (included by radau_step.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
   constexpr int max_newton = 14;

@@ -19,9 +19,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     lay_out(const std::size_t n, LaneMemory &memory)
     {
-      memory.piece(lower, n);
-      memory.piece(pivot, n);
-      memory.piece(upper, n);
+      memory.pieces(n, lower, pivot, upper);
     }
 
     /// Row @p c from the Schur complements [cell][4]; @p diagonal goes on to the next row.

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <crawler/base/step_limits.h>
+#include <crawler/equation/stretch_method.h>
+#include <crawler/scene/direction.h>
 
 #include <cstddef>
 
@@ -52,9 +54,9 @@ namespace crawler
     unsigned int laws = LaneLaws::plain; ///< LaneLaws of the bodies and grounds of a run
 
     // The stretch form (lane_stretch.h), whose points are the middles of its cells.
-    bool is_stretch = false, is_power = false;           ///< see StretchSystem
-    unsigned char node_rule = 0;                         ///< NodeRule of equation/stretch_loops.h
-    double backward_ratio = 1., switching_velocity = 1.; ///< numbers of the ground (scene/ground.h)
+    bool is_stretch = false;
+    StretchMethod stretch{};
+    Direction direction{}; ///< of the ground, for an engine with one lane
   };
 
   /// Progress of a body from step to step, besides its state.
@@ -101,7 +103,7 @@ namespace crawler
 
     // Profiles and ground of a general body in the position form.
     const double *k_profile = nullptr, *friction_profile = nullptr; ///< [points] k(s)/k and b(s)
-    double backward_ratio = 1., switching_velocity = 1.;            ///< numbers of the ground (scene/ground.h)
+    Direction direction{};                                          ///< of the ground
   };
 
   /// State of a lane at all quadrature points, and the arrays into which the host writes the values of the laws there.
@@ -158,14 +160,6 @@ namespace crawler
     double displacement; ///< int u ds at that time
   };
 
-  /// Laws of a general body in the stretch form, at all cells: the mobility 1/(g b), the force N, and their derivatives
-  /// by w and w_t. The arrays belong to the host and are valid until its next call.
-  struct LaneCellLaws
-  {
-    const double *mobility, *mobility_by_w, *force, *force_by_w, *force_by_rate;
-    double least; ///< not positive if one of them has no meaning
-  };
-
   /// Host that supplies the bodies and takes the answers. Lanes are numbered 0 to lanes - 1.
   struct LaneHost
   {
@@ -182,8 +176,10 @@ namespace crawler
     /// Evaluates the laws that the engine leaves to the host; false if one of them has no meaning for this state.
     bool (*laws)(void *context, unsigned int lane, const LanePoints &points) = nullptr;
     /// Evaluates the laws in the stretch form, for the stretch @p w and its rate at each cell, for an engine with one
-    /// lane. Null: the laws of a plain body.
-    LaneCellLaws (*cell_laws)(void *context, double t, const double *m, const double *w, const double *rate) = nullptr;
+    /// lane; the arrays belong to the host and are valid until its next call. Returns a number that is not positive if
+    /// a law has no meaning there. Null: the laws of a plain body.
+    double (*cell_laws)(
+      void *context, double t, const double *m, const double *w, const double *rate, CellLaws<double> &laws) = nullptr;
   };
 
   /// Run to traverse backwards. All arrays belong to the caller.

@@ -12,16 +12,17 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   {
     using Mask = typename PackTraits<Pack>::Mask;
 
-    Pack a;
+    Pack a{};
     static constexpr int max_bits = 4;
     Mask whole, negative, bits[max_bits]; ///< |a| is an integer, a < 0; binary digits of |a|
     bool any_whole, any_other;
     int n_bits;
 
-    /// Sorts the exponents; to be called when one has changed.
+    /// Sets the exponent of a lane, and sorts them all.
     void
-    sort()
+    set(const int lane, const double own)
     {
+      set_lane(a, lane, own);
       any_whole           = false;
       any_other           = false;
       n_bits              = 0;

@@ -80,38 +80,16 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   constexpr LaneKernelTable<double> group_kernel_table = kernels_of_groups<q>();
 
   /// Kernels for bodies with so many cells. Of one body alone the cells take the lanes if they fill half of them.
-  template <typename Pack, int q>
+  template <typename Pack, int q = 1>
   inline const LaneKernelTable<Pack> &
-  lane_kernels_for(const std::size_t n_cells)
+  lane_kernels(const unsigned int degree, const std::size_t n_cells)
   {
+    if constexpr (q < 8)
+      if (degree > q)
+        return lane_kernels<Pack, q + 1>(degree, n_cells);
     if constexpr (PackTraits<Pack>::size == 1)
       if (2 * n_cells >= std::size_t(CellGroup::width))
         return group_kernel_table<q>;
     return lane_kernel_table<Pack, q>;
-  }
-
-  template <typename Pack>
-  inline const LaneKernelTable<Pack> &
-  lane_kernels(const unsigned int degree, const std::size_t n_cells)
-  {
-    switch (degree)
-    {
-      case 1:
-        return lane_kernels_for<Pack, 1>(n_cells);
-      case 2:
-        return lane_kernels_for<Pack, 2>(n_cells);
-      case 3:
-        return lane_kernels_for<Pack, 3>(n_cells);
-      case 4:
-        return lane_kernels_for<Pack, 4>(n_cells);
-      case 5:
-        return lane_kernels_for<Pack, 5>(n_cells);
-      case 6:
-        return lane_kernels_for<Pack, 6>(n_cells);
-      case 7:
-        return lane_kernels_for<Pack, 7>(n_cells);
-      default:
-        return lane_kernels_for<Pack, 8>(n_cells);
-    }
   }
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

@@ -34,23 +34,18 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       if (!has(LaneLaws::general))
         return;
-      Pack **const always[]    = {&u, &v, &e, &rate, &w_, &k_, &b_, &g_, &w_dg_, &N_, &f_, &f_v_, &w_f_w_};
-      Pack **const of_ground[] = {&c_, &c_x_, &f_u_}, **const of_feedback[] = {&m_, &N_w_};
-      for (Pack **const array : always)
-        memory.piece(*array, n_);
+      memory.pieces(n_, u, v, e, rate, w_, k_, b_, g_, w_dg_, N_, f_, f_v_, w_f_w_);
       if (has(LaneLaws::direction))
-        memory.piece(tanh_, n_);
+        memory.pieces(n_, tanh_);
       if (has(LaneLaws::host_ground))
-        for (Pack **const array : of_ground)
-          memory.piece(*array, n_);
+        memory.pieces(n_, c_, c_x_, f_u_);
       if (has(LaneLaws::feedback))
-        for (Pack **const array : of_feedback)
-          memory.piece(*array, n_);
+        memory.pieces(n_, m_, N_w_);
       if (has(LaneLaws::rate))
-        memory.piece(N_rate_, n_);
+        memory.pieces(n_, N_rate_);
       if (lanes > 1 && asks_host())
         for (double *&array : scratch_)
-          memory.piece(array, n_);
+          memory.pieces(n_, array);
     }
 
     void
@@ -59,8 +54,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       if (!has(LaneLaws::general))
         return;
       is_busy_[l] = is_busy;
-      set_lane(ratio_, l, job.backward_ratio);
-      set_lane(switching_velocity_, l, job.switching_velocity);
+      set_lane(ratio_, l, job.direction.ratio);
+      set_lane(switching_velocity_, l, job.direction.switching_velocity);
       for (int p = 0; p < n_; ++p)
       {
         set_lane(k_[p], l, is_busy ? job.k * job.k_profile[p] : 1.);
@@ -137,19 +132,15 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     add_up(const Pack *m, const bool slopes)
     {
-      const Pack one = broadcast<Pack>(1.), none{}, mean = 0.5 * (1. + ratio_), half = 0.5 * (1. - ratio_);
+      const Pack one = broadcast<Pack>(1.), none{};
+      equation::DirectionFactor<Pack> direction{one, one};
       const bool has_ground = has(LaneLaws::host_ground), has_direction = has(LaneLaws::direction);
       for (int p = 0; p < n_; ++p)
       {
-        Pack d = one, dv_v = one;
         if (has_direction)
-        {
-          const Pack th = tanh_[p];
-          d             = mean + half * th;
-          dv_v          = mean + half * (th + v[p] / switching_velocity_ * (1. - th * th));
-        }
+          direction = equation::direction_factor<Pack>(ratio_, switching_velocity_, v[p], tanh_[p]);
         const auto here =
-          equation::sliding<Pack>(b_[p], has_ground ? c_[p] : one, has_ground ? c_x_[p] : none, d, dv_v, v[p]);
+          equation::sliding<Pack>(b_[p], has_ground ? c_[p] : one, has_ground ? c_x_[p] : none, direction, v[p]);
         f_[p] = equation::friction_force<Pack>(g_[p], here.force);
         N_[p] = equation::body_force<Pack>(e[p], m != nullptr ? m[p] : none, k_[p]);
         if (!slopes)

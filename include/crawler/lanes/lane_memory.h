@@ -28,13 +28,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
     }
 
-    /// Places an array at a multiple of 64 bytes.
-    template <typename Type>
+    /// Places arrays of @p n elements, each at a multiple of 64 bytes.
+    template <typename... Types>
     void
-    piece(Type *&pointer, const std::size_t n)
+    pieces(const std::size_t n, Types *&...pointers)
     {
-      pointer = memory_ != nullptr ? reinterpret_cast<Type *>(memory_ + size_) : nullptr;
-      size_ += (n * sizeof(Type) / sizeof(double) + 7) / 8 * 8;
+      (place(n, pointers), ...);
     }
 
     std::size_t
@@ -44,6 +43,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
   private:
+    template <typename Type>
+    void
+    place(const std::size_t n, Type *&pointer)
+    {
+      pointer = memory_ != nullptr ? reinterpret_cast<Type *>(memory_ + size_) : nullptr;
+      size_ += (n * sizeof(Type) / sizeof(double) + 7) / 8 * 8;
+    }
+
     double *memory_;
     std::size_t size_ = 0;
   };

@@ -8,7 +8,7 @@
 
 #include <cstddef>
 
-/// States in one step of a pack of bodies (included by radau_lanes.h).
+/// States in one step of a pack of bodies (included by radau_step.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
   /// Sum, or the larger of two numbers. NaN stays NaN.
@@ -53,11 +53,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     lay_out(LaneMemory &memory)
     {
-      memory.piece(y, n);
-      memory.piece(z, std::size_t(s) * n);
-      memory.piece(old_z, std::size_t(s) * n);
-      memory.piece(u, n);
-      memory.piece(v, n);
+      memory.pieces(n, y, u, v);
+      memory.pieces(std::size_t(s) * n, z, old_z);
     }
 
     /// Starts a body in lane @p l; null: at rest, and without a step before.

@@ -73,8 +73,9 @@ namespace crawler
     done(void *context, unsigned int lane, const LaneOutcome &outcome);
     static bool
     laws(void *context, unsigned int lane, const LanePoints &points);
-    static LaneCellLaws
-    cell_laws(void *context, double t, const double *m, const double *w, const double *rate);
+    static double
+    cell_laws(
+      void *context, double t, const double *m, const double *w, const double *rate, CellLaws<double> &at_cells);
     void
     show_rates();
 

@@ -35,8 +35,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       : setup_(setup)
       , host_(host)
       , n_(static_cast<int>(setup.n_cells))
-      , rule_(static_cast<NodeRule>(setup.node_rule))
-      , cells_(static_cast<int>(setup.n_cells))
+      , nodes_{setup.stretch.node_rule, n_, setup.sizes, setup.direction}
+      , cells_(n_)
     {
     }
 
@@ -60,14 +60,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     lay_out(LaneMemory &memory)
     {
-      const std::size_t n = n_;
-      memory.piece(w_, n);
-      memory.piece(slope_, n);
-      memory.piece(own_mobility_, n);
-      memory.piece(own_mobility_slope_, n);
-      memory.piece(own_force_, n);
-      memory.piece(own_force_by_w_, n);
-      memory.piece(rate_, n);
+      memory.pieces(n_, power_, slope_, mobility_, mobility_slope_, force_, force_slope_, scratch_);
       cells_.lay_out(memory);
     }
 
@@ -76,13 +69,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       set_lane(k_, l, job.k);
       set_lane(a_, l, job.a);
-      set_lane(friction_.a, l, -job.a);
-    }
-
-    void
-    sort_bodies()
-    {
-      friction_.sort();
+      friction_.set(l, -job.a);
     }
 
     /// Residual of the state @p q with the rates @p q_dot and the active stress @p m, at a time for each lane. Returns
@@ -91,12 +78,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     residual(const double *t, const Pack *q, const Pack *q_dot, const Pack *m, Pack *F)
     {
       const Pack least = evaluate(t, q, q_dot, m, /*slopes=*/false);
-      Pack left        = velocity_of_node(0);
+      Pack left        = nodes_.velocity(0);
       F[n_]            = q_dot[n_] - left;
       for (int j = 0; j < n_; ++j)
       {
-        const Pack right = velocity_of_node(j + 1), change = (right - left) * (1. / setup_.sizes[j]);
-        F[j] = setup_.is_power ? q_dot[j] - change / slope_[j] : q_dot[j] - change;
+        const Pack right = nodes_.velocity(j + 1), change = (right - left) * (1. / setup_.sizes[j]);
+        F[j] = setup_.stretch.is_power ? q_dot[j] - change / slope_[j] : q_dot[j] - change;
         left = right;
       }
       return least;
@@ -109,42 +96,21 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       evaluate(t, q, q_dot, m, /*slopes=*/true);
       for (int p = 0; p < pairs; ++p)
         shifts_[p] = {setup_.eigenvalues[2 * p] * inverse_h, setup_.eigenvalues[2 * p + 1] * inverse_h};
-      shift_                 = setup_.real_eigenvalue * inverse_h;
-      const bool sees_rate   = (setup_.laws & LaneLaws::rate) != 0;
-      const double *h        = setup_.sizes;
-      const auto derivatives = [&](const int i, Node &node) {
-        const NodeForce<Pack> f = node_force(rule_, n_, h, mobility_, force_, i);
-        Pack turn               = broadcast<Pack>(1.);
-        node.v                  = direct(f.slope * f.mobility.value, turn);
-        const Pack conductance = turn * f.mobility.value * (1. / f.spacing), force = turn * f.slope;
-        node.by_left = node.by_right = node.by_left_rate = node.by_right_rate = Pack{};
-        if (i > 0)
-        {
-          node.by_left =
-            (force * f.mobility.by_left * mobility_slope_[i - 1] - conductance * force_by_w_[i - 1]) * slope_[i - 1];
-          if (sees_rate)
-            node.by_left_rate = -conductance * force_by_rate_[i - 1];
-        }
-        if (i < n_)
-        {
-          node.by_right = (force * f.mobility.by_right * mobility_slope_[i] + conductance * force_by_w_[i]) * slope_[i];
-          if (sees_rate)
-            node.by_right_rate = conductance * force_by_rate_[i];
-        }
-      };
-      Node left, right;
-      derivatives(0, left);
-      end_by_w_    = -left.by_right;
-      end_by_rate_ = -left.by_right_rate;
+      shift_               = setup_.real_eigenvalue * inverse_h;
+      const bool sees_rate = nodes_.laws.force_by_rate != nullptr;
+      const double *h      = setup_.sizes;
+      auto left            = nodes_.with_derivatives(0);
+      end_by_w_            = -left.by_right;
+      end_by_rate_         = -left.by_right_rate;
       for (int j = 0; j < n_; ++j)
       {
-        derivatives(j + 1, right);
-        const Pack c = -1. / (h[j] * slope_[j]);
-        auto &row    = cells_.row(j);
-        row.K[0]     = -c * left.by_left;
-        row.K[1]     = c * (right.by_left - left.by_right);
-        row.K[2]     = c * right.by_right;
-        if (setup_.is_power) // derivative dc/dq = a/w
+        const auto right = nodes_.with_derivatives(j + 1);
+        const Pack c     = setup_.stretch.is_power ? -1. / (h[j] * slope_[j]) : broadcast<Pack>(-1. / h[j]);
+        auto &row        = cells_.row(j);
+        row.K[0]         = -c * left.by_left;
+        row.K[1]         = c * (right.by_left - left.by_right);
+        row.K[2]         = c * right.by_right;
+        if (setup_.stretch.is_power) // derivative dc/dq = a/w
           row.K[1] += a_ * (right.v - left.v) * (-1. / h[j]) / w_[j];
         if (sees_rate)
         {
@@ -157,15 +123,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       cells_.factorize(shift_, shifts_, sees_rate);
     }
 
-    void
-    solve(Pack *x) const
-    {
-      solve_all(x, nullptr);
-    }
-
     /// Solves the real system and those of all pairs, @p y [pair][unknown]; null: the real one alone.
     void
-    solve_all(Pack *x, Number *y) const
+    solve(Pack *x, Number *y = nullptr) const
     {
       cells_.solve(x, y, n_unknowns());
       x[n_] = (x[n_] - (end_by_w_ + shift_ * end_by_rate_) * x[0]) / shift_;
@@ -209,102 +169,60 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
   private:
-    struct Node
-    {
-      Pack v, by_left, by_right, by_left_rate, by_right_rate;
-    };
-
-    /// Velocity v from that which the ground would give without its direction, and the derivative.
-    Pack
-    direct(const Pack &v, Pack &slope) const
-    {
-      if constexpr (lanes == 1)
-        if (setup_.backward_ratio != 1.)
-          return NodeDirection{setup_.backward_ratio, setup_.switching_velocity}.velocity(v, slope);
-      return v;
-    }
-
-    Pack
-    velocity_of_node(const int i) const
-    {
-      const NodeForce<Pack> f = node_force(rule_, n_, setup_.sizes, mobility_, force_, i);
-      Pack slope{};
-      return direct(f.slope * f.mobility.value, slope);
-    }
-
-    /// Computes w and dw/dq.
+    /// Computes w, and dw/dq where that is not 1.
     void
     find_stretch(const Pack *q)
     {
-      if (!setup_.is_power)
-      {
-        for (int j = 0; j < n_; ++j)
-        {
-          w_[j]     = q[j];
-          slope_[j] = broadcast<Pack>(1.);
-        }
+      w_ = setup_.stretch.is_power ? power_ : q;
+      if (!setup_.stretch.is_power)
         return;
-      }
       const Pack b = 1. + a_, inverse = 1. / b, least = min_power * inverse;
       for (int j = 0; j < n_; ++j)
-        rate_[j] = b * (q[j] > least ? q[j] : least);
-      power_at_points(rate_, inverse, w_, n_);
+        scratch_[j] = b * (q[j] > least ? q[j] : least);
+      power_at_points(scratch_, inverse, power_, n_);
       for (int j = 0; j < n_; ++j)
-        slope_[j] = w_[j] / rate_[j];
+        slope_[j] = w_[j] / scratch_[j];
     }
 
     Pack
     evaluate(const double *t, const Pack *q, const Pack *q_dot, const Pack *m, const bool slopes)
     {
       constexpr double nothing = 1e-300;
+      if constexpr (lanes == 1)
+        if (host_.cell_laws != nullptr) // the unknowns are no powers
+          return host_.cell_laws(host_.context, *t, m, q, q_dot, nodes_.laws);
       find_stretch(q);
       Pack least = broadcast<Pack>(1.);
-      if constexpr (lanes == 1)
-        if (host_.cell_laws != nullptr)
-        {
-          for (int j = 0; j < n_; ++j)
-            rate_[j] = q_dot[j] * slope_[j];
-          const LaneCellLaws laws = host_.cell_laws(host_.context, *t, m, w_, rate_);
-          mobility_               = laws.mobility;
-          mobility_slope_         = laws.mobility_by_w;
-          force_                  = laws.force;
-          force_by_w_             = laws.force_by_w;
-          force_by_rate_          = laws.force_by_rate;
-          return laws.least;
-        }
       for (int j = 0; j < n_; ++j)
       {
-        own_force_[j] = m[j] + k_ * (w_[j] - 1.);
-        rate_[j]      = w_[j] > nothing ? w_[j] : broadcast<Pack>(nothing);
-        least         = a_ < 0. ? least : smaller(w_[j], least);
+        force_[j]   = equation::body_force<Pack>(w_[j] - 1., m[j], k_);
+        scratch_[j] = w_[j] > nothing ? w_[j] : broadcast<Pack>(nothing);
+        least       = a_ < 0. ? least : smaller(w_[j], least);
       }
-      friction_(rate_, own_mobility_, n_);
+      friction_(scratch_, mobility_, n_);
       for (int j = 0; j < n_; ++j)
-        own_mobility_[j] = w_[j] > nothing ? own_mobility_[j] : Pack{};
-      if (slopes)
-        for (int j = 0; j < n_; ++j)
-        {
-          own_mobility_slope_[j] = -a_ * own_mobility_[j] / rate_[j];
-          own_force_by_w_[j]     = k_;
-        }
-      mobility_       = own_mobility_;
-      mobility_slope_ = own_mobility_slope_;
-      force_          = own_force_;
-      force_by_w_     = own_force_by_w_;
+        mobility_[j] = w_[j] > nothing ? mobility_[j] : Pack{};
+      for (int j = 0; slopes && j < n_; ++j)
+      {
+        const Pack slope   = setup_.stretch.is_power ? slope_[j] : broadcast<Pack>(1.);
+        mobility_slope_[j] = -a_ * mobility_[j] / scratch_[j] * slope;
+        force_slope_[j]    = k_ * slope;
+      }
+      nodes_.laws = {mobility_, mobility_slope_, force_, force_slope_, nullptr};
       return least;
     }
 
     const LaneSetup &setup_;
     const LaneHost &host_;
     const int n_;
-    const NodeRule rule_;
+    StretchNodes<Pack> nodes_;
     LaneFriction<Pack> friction_; ///< friction that gives the mobility, w^-a
     Pack k_, a_, shift_, end_by_w_, end_by_rate_;
     Number shifts_[pairs];
     LaneTridiagonal<Pack, pairs> cells_;
-    Pack *w_, *slope_;                                                               ///< [cell]
-    Pack *own_mobility_, *own_mobility_slope_, *own_force_, *own_force_by_w_;        ///< [cell] of plain bodies
-    Pack *rate_;                                                                     ///< [cell] scratch
-    const Pack *mobility_, *mobility_slope_, *force_, *force_by_w_, *force_by_rate_; ///< [cell] own arrays or host's
+    const Pack *w_;                                            ///< [cell]
+    Pack *power_, *slope_;                                     ///< [cell] w and dw/dq if q is a power
+    Pack *mobility_, *mobility_slope_, *force_, *force_slope_; ///< [cell] laws of plain bodies
+    Pack *scratch_;                                            ///< [cell]
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

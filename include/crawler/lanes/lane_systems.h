@@ -58,14 +58,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     set_body(const int l, const LaneJob &job, const bool is_busy)
     {
       set_lane(mesh_.k, l, job.k);
-      set_lane(mesh_.friction.a, l, job.a);
+      mesh_.friction.set(l, job.a);
       general_.set_body(l, job, is_busy);
-    }
-
-    void
-    sort_bodies()
-    {
-      mesh_.friction.sort();
     }
 
     Pack
@@ -108,11 +102,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       general_.lay_out(memory);
       const std::size_t cells = setup_.n_cells, block = block_size(), corners = cells + 1;
-      memory.piece(blocks_, block);
-      memory.piece(schur_, 4 * cells);
+      memory.pieces(block, blocks_);
+      memory.pieces(4 * cells, schur_);
       real_.lay_out(corners, memory);
-      memory.piece(complex_blocks_, pairs * block);
-      memory.piece(complex_schur_, pairs * 4 * cells);
+      memory.pieces(pairs * block, complex_blocks_);
+      memory.pieces(pairs * 4 * cells, complex_schur_);
       for (LaneCorners<Number> &one : complex_)
         one.lay_out(corners, memory);
     }
@@ -121,13 +115,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     lay_out(LaneSlopes<Pack> &slopes, const std::size_t points, LaneMemory &memory) const
     {
-      memory.piece(slopes.f_v, points);
-      memory.piece(slopes.f_w, points);
-      memory.piece(slopes.N_w, points);
+      memory.pieces(points, slopes.f_v, slopes.f_w, slopes.N_w);
       if ((setup_.laws & LaneLaws::host_ground) != 0)
-        memory.piece(slopes.f_u, points);
+        memory.pieces(points, slopes.f_u);
       if ((setup_.laws & LaneLaws::rate) != 0)
-        memory.piece(slopes.N_rate, points);
+        memory.pieces(points, slopes.N_rate);
     }
 
     /// Slopes of the laws, for the state (@p u, @p v).
@@ -170,16 +162,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       factorize_corners(pairs);
     }
 
-    /// Solves with K + (g/h) M.
-    void
-    solve(Pack *x) const
-    {
-      solve_all(x, nullptr);
-    }
-
     /// Solves with the real system and, unless @p y is null, K + (l_j/h) M for all pairs, @p y [pair][unknown].
     void
-    solve_all(Pack *x, Number *y) const
+    solve(Pack *x, Number *y = nullptr) const
     {
       const int N = mesh_.n_cells, q = static_cast<int>(setup_.degree), n = n_unknowns();
       const int n_pairs = y != nullptr ? pairs : 0;

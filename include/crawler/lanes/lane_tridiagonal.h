@@ -33,10 +33,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     lay_out(LaneMemory &memory)
     {
       const std::size_t n = n_;
-      memory.piece(rows_, n);
-      memory.piece(real_, n);
-      for (int p = 0; p < pairs; ++p)
-        memory.piece(complex_[p], n);
+      memory.pieces(n, rows_, real_);
+      for (Factors<Number> *&factors : complex_)
+        memory.pieces(n, factors);
     }
 
     Row &

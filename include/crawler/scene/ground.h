@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/scene/body.h>
+#include <crawler/scene/direction.h>
 #include <crawler/scene/friction_law.h>
 #include <crawler/scene/profile.h>
 
@@ -27,25 +28,6 @@ namespace crawler
 
     void
     add_parameters(Declarations &declarations);
-  };
-
-  /// Direction-dependent resistance of a ground, d(v) = (1+r)/2 + (1-r)/2 tanh(v/v_s). The force d(v) v increases with
-  /// v for 0.1 <= r <= 10, so the velocity of a body is unique.
-  struct Direction
-  {
-    double ratio              = 1.; ///< r, resistance for v < 0 over that for v > 0
-    double switching_velocity = 1.; ///< v_s [length/time]
-
-    bool
-    is_uneven() const
-    {
-      return ratio != 1.;
-    }
-    double
-    factor(double v) const;
-    /// Derivative d/dv (d(v) v).
-    double
-    force_slope(double v) const;
   };
 
   /// Properties of the ground besides the friction law.

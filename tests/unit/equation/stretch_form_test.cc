@@ -15,15 +15,22 @@
 #include <functional>
 
 using namespace crawler;
+using generic::directed_velocity;
 using generic::node_mobility;
-using generic::NodeDirection;
 using generic::NodeMobility;
-using generic::NodeRule;
 using test::Feature;
 
 namespace
 {
   constexpr double t = 0.3;
+
+  /// Factor d(v) of the friction.
+  double
+  factor(const Direction &direction, const double v)
+  {
+    const double r = direction.ratio;
+    return 0.5 * (1. + r) + 0.5 * (1. - r) * std::tanh(v / direction.switching_velocity);
+  }
 
   Feature
   plain(const double a, const double k = 1.)
@@ -113,7 +120,8 @@ namespace
 TEST(StretchForm, AllRulesForTheNodesAreTested)
 {
   std::array<unsigned int, 3> n{};
-  for_all([&](Case &test, const std::string &) { ++n[stretch_method(test.scene).node_rule]; });
+  for_all(
+    [&](Case &test, const std::string &) { ++n[static_cast<std::size_t>(stretch_method(test.scene).node_rule)]; });
   for (const unsigned int found : n)
     EXPECT_GT(found, 2u);
 }
@@ -156,7 +164,7 @@ TEST(StretchForm, FrictionIsThatOfTheLaws)
                                           {"Ground/Switching velocity", "0.2"}}}})
   {
     Case test(feature);
-    ASSERT_EQ(stretch_method(test.scene).node_rule, static_cast<unsigned char>(NodeRule::friction)) << feature.name;
+    ASSERT_EQ(stretch_method(test.scene).node_rule, NodeRule::friction) << feature.name;
     ASSERT_TRUE(test.form.velocity(t, test.y, test.v));
     const std::size_t n = test.w.size();
     std::vector<double> g(n), w_dg(n), b(n, 1.);
@@ -167,7 +175,7 @@ TEST(StretchForm, FrictionIsThatOfTheLaws)
     for (std::size_t j = 0; j < n; ++j)
       for (const double v : {test.v[j], test.v[j + 1]})
       {
-        const double f = 0.5 * test.d.cell_size()[j] * g[j] * b[j] * test.scene.ground.direction.factor(v) * v;
+        const double f = 0.5 * test.d.cell_size()[j] * g[j] * b[j] * factor(test.scene.ground.direction, v) * v;
         net += f;
         size += std::abs(f);
         power += f * v;
@@ -295,23 +303,22 @@ TEST(NodeMobility, DerivativesMatchDifferences)
   EXPECT_GT(limited, 20u); // else van Leer's correction was not tested
 }
 
-TEST(NodeDirection, SolvesForTheVelocity)
+TEST(DirectedVelocity, SolvesForTheVelocity)
 {
   for (const double ratio : {0.1, 0.5, 1., 3., 10.})
     for (const double switching_velocity : {0.01, 0.2, 5.})
     {
-      const Direction ground{ratio, switching_velocity};
-      const NodeDirection direction{ratio, switching_velocity};
+      const Direction direction{ratio, switching_velocity};
       for (double size = 1e-6; size < 1e3; size *= 3.)
         for (const double q : {-size, 0., size})
         {
           double slope = 0., unused = 0.;
-          const double v = direction.velocity(q, slope);
-          EXPECT_NEAR(ground.factor(v) * v, q, 1e-14 * size) << ratio << " " << switching_velocity;
-          EXPECT_NEAR(slope, 1. / ground.force_slope(v), 1e-6 * slope) << ratio << " " << switching_velocity;
+          const double v = directed_velocity(direction, q, slope);
+          EXPECT_NEAR(factor(direction, v) * v, q, 1e-14 * size) << ratio << " " << switching_velocity;
           const double e = 1e-4 * std::min(size, switching_velocity),
                        by_differences =
-                         (direction.velocity(q + e, unused) - direction.velocity(q - e, unused)) / (2. * e);
+                         (directed_velocity(direction, q + e, unused) - directed_velocity(direction, q - e, unused)) /
+                         (2. * e);
           EXPECT_NEAR(slope, by_differences, 1e-6 * slope) << ratio << " " << switching_velocity << " " << q;
         }
     }

@@ -57,24 +57,21 @@ namespace
       , y_dot(n + 1)
       , m(n)
     {
-      const StretchMethod method = stretch_method(scene, other);
-      setup.n_cells              = static_cast<unsigned int>(n);
-      setup.sizes                = d.cell_size().data();
-      setup.real_eigenvalue      = real_shift;
-      setup.eigenvalues          = complex_shift;
-      setup.is_stretch           = true;
-      setup.is_power             = method.is_power;
-      setup.laws                 = lane_laws(scene);
-      setup.node_rule            = method.node_rule;
-      setup.backward_ratio       = scene.ground.direction.ratio;
-      setup.switching_velocity   = scene.ground.direction.switching_velocity;
-      host.context               = this;
-      host.cell_laws             = scene.is_plain() ? nullptr : evaluate;
-      const double power         = 1. + scene.friction_exponent();
+      setup.n_cells         = static_cast<unsigned int>(n);
+      setup.sizes           = d.cell_size().data();
+      setup.real_eigenvalue = real_shift;
+      setup.eigenvalues     = complex_shift;
+      setup.is_stretch      = true;
+      setup.laws            = lane_laws(scene);
+      setup.stretch         = stretch_method(scene, other);
+      setup.direction       = scene.ground.direction;
+      host.context          = this;
+      host.cell_laws        = scene.is_plain() ? nullptr : evaluate;
+      const double power    = 1. + scene.friction_exponent();
       for (int j = 0; j < n; ++j)
       {
         const double w = 1. + 0.35 * std::cos(5. * (j + 0.5) / n + 0.4);
-        y[j]           = setup.is_power ? std::pow(w, power) / power : w;
+        y[j]           = setup.stretch.is_power ? std::pow(w, power) / power : w;
       }
       scene.active_stress->at(d.points({0.5}))->values(t, m);
       // The rates of the form.
@@ -82,24 +79,24 @@ namespace
       EXPECT_TRUE(form.velocity(t, y, v));
       const auto w = form.stretch(y);
       for (int j = 0; j < n; ++j)
-        y_dot[j] = (v[j + 1] - v[j]) / d.cell_size()[j] * (setup.is_power ? std::pow(w[j], power - 1.) : 1.);
+        y_dot[j] = (v[j + 1] - v[j]) / d.cell_size()[j] * (setup.stretch.is_power ? std::pow(w[j], power - 1.) : 1.);
       y_dot[n] = v[0];
     }
     Case(const Case &) = delete;
 
-    static LaneCellLaws
-    evaluate(void *context, const double time, const double *known_m, const double *w, const double *rate)
+    static double
+    evaluate(void *context,
+             const double time,
+             const double *known_m,
+             const double *w,
+             const double *rate,
+             CellLaws<double> &at_cells)
     {
       auto &self         = *static_cast<Case *>(context);
-      StretchLaws &laws  = self.laws;
       const auto n_cells = static_cast<std::size_t>(self.n);
-      EXPECT_LT(laws.evaluate(time, {w, n_cells}, {rate, n_cells}, known_m), 0);
-      return {laws.mobility.data(),
-              laws.mobility_by_w.data(),
-              laws.force().N.data(),
-              laws.force().by_w.data(),
-              laws.force().by_rate.data(),
-              1.};
+      EXPECT_LT(self.laws.evaluate(time, {w, n_cells}, {rate, n_cells}, known_m), 0);
+      at_cells = self.laws.at_cells();
+      return 1.;
     }
 
     Scene scene;
@@ -133,7 +130,6 @@ namespace
       job.k = k;
       job.a = a;
       system.set_body(lane, job, true);
-      system.sort_bodies();
     }
 
     System<Pack> system;
@@ -215,7 +211,7 @@ TEST(LaneStretch, SolutionsInvertTheDerivative)
       for (const int n : {2, 3, 4, 7, 8})
       {
         Alone test(feature, n, other);
-        if (test.setup.node_rule == static_cast<unsigned char>(generic::NodeRule::upwind))
+        if (test.setup.stretch.node_rule == NodeRule::upwind)
           continue;
         const std::string which = feature.name + (other ? ", other rule" : "") + ", " + std::to_string(n) + " cells";
         test.system.factorize(&t, test.y.data(), test.y_dot.data(), test.m.data(), /*inverse_h=*/1.);
@@ -225,7 +221,7 @@ TEST(LaneStretch, SolutionsInvertTheDerivative)
         std::vector<generic::Complex<double>> z(size);
         for (std::size_t i = 0; i < size; ++i)
           z[i] = {re[i], im[i]};
-        test.system.solve_all(x.data(), z.data());
+        test.system.solve(x.data(), z.data());
         std::vector<double> alone = b;
         test.system.solve(alone.data());
         EXPECT_EQ(alone, x) << which;
