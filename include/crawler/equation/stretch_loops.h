@@ -159,6 +159,21 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return directed_velocity(direction, at.slope * at.mobility.value, slope);
     }
 
+    /// Computes the velocities @p v [n + 1] of all nodes, in a loop for each rule that compilers turn into one over
+    /// vectors of nodes.
+    void
+    velocities(Number *v) const
+    {
+      v[0] = velocity(0);
+      v[n] = velocity(n);
+      if (rule == NodeRule::fronts)
+        inner_velocities<NodeRule::fronts>(v);
+      else if (rule == NodeRule::upwind)
+        inner_velocities<NodeRule::upwind>(v);
+      else
+        inner_velocities<NodeRule::friction>(v);
+    }
+
     NodeVelocity<Number>
     with_derivatives(const int i) const
     {
@@ -176,6 +191,26 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       if (laws.force_by_rate != nullptr && i < n)
         result.by_right_rate = conductance * laws.force_by_rate[i];
       return result;
+    }
+
+  private:
+    template <NodeRule own>
+    void
+    inner_velocities(Number *v) const
+    {
+      const Number *const N = laws.force, *const mobility = laws.mobility;
+      const double *const size = h;
+      for (int i = 1; i < n; ++i)
+      {
+        const Number difference = N[i] - N[i - 1];
+        v[i] = difference / (0.5 * (size[i - 1] + size[i])) * node_mobility(own, n, size, mobility, i, difference).value;
+      }
+      if (direction.ratio != 1.)
+        for (int i = 1; i < n; ++i)
+        {
+          Number slope;
+          v[i] = directed_velocity(direction, v[i], slope);
+        }
     }
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

@@ -60,7 +60,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     lay_out(LaneMemory &memory)
     {
-      memory.pieces(n_, power_, slope_, mobility_, mobility_slope_, force_, force_slope_, scratch_);
+      memory.pieces(n_, power_, slope_, mobility_, mobility_slope_, force_, force_slope_);
+      memory.pieces(n_ + 1, scratch_);
       cells_.lay_out(memory);
     }
 
@@ -78,13 +79,13 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     residual(const double *t, const Pack *q, const Pack *q_dot, const Pack *m, Pack *F)
     {
       const Pack least = evaluate(t, q, q_dot, m, /*slopes=*/false);
-      Pack left        = nodes_.velocity(0);
-      F[n_]            = q_dot[n_] - left;
+      Pack *const v    = scratch_;
+      nodes_.velocities(v);
+      F[n_] = q_dot[n_] - v[0];
       for (int j = 0; j < n_; ++j)
       {
-        const Pack right = nodes_.velocity(j + 1), change = (right - left) * (1. / setup_.sizes[j]);
-        F[j] = setup_.stretch.is_power ? q_dot[j] - change / slope_[j] : q_dot[j] - change;
-        left = right;
+        const Pack change = (v[j + 1] - v[j]) * (1. / setup_.sizes[j]);
+        F[j]              = setup_.stretch.is_power ? q_dot[j] - change / slope_[j] : q_dot[j] - change;
       }
       return least;
     }
@@ -223,6 +224,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     const Pack *w_;                                            ///< [cell]
     Pack *power_, *slope_;                                     ///< [cell] w and dw/dq if q is a power
     Pack *mobility_, *mobility_slope_, *force_, *force_slope_; ///< [cell] laws of plain bodies
-    Pack *scratch_;                                            ///< [cell]
+    Pack *scratch_;                                            ///< [node]
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET
