@@ -66,10 +66,7 @@ namespace crawler
   {
     constexpr double empty = 1e-30; // its mobility is 0 if friction grows without bound
     for (std::size_t j = 0; j < w.size(); ++j)
-    {
-      w_[j]      = std::max(w[j], empty);
-      strain_[j] = w[j] - 1.;
-    }
+      w_[j] = std::max(w[j], empty);
     scene_.friction->values_and_log_derivatives(w_, friction, w_dg_);
     long bad = -1;
     for (std::size_t j = 0; j < w.size(); ++j)
@@ -79,8 +76,19 @@ namespace crawler
       mobility_[j]       = 1. / (friction[j] * profile_[j]);
       mobility_slope_[j] = mobility_[j] > 0. ? -w_dg_[j] / friction[j] * mobility_[j] / w_[j] : 0.;
     }
-    force_.evaluate(t, strain_, {w, rate, {}, {}}, known_m);
+    evaluate_force(t, w, rate, known_m);
     return bad;
+  }
+
+  void
+  StretchLaws::evaluate_force(const double t,
+                              const std::span<const double> w,
+                              const std::span<const double> rate,
+                              const double *known_m)
+  {
+    for (std::size_t j = 0; j < w.size(); ++j)
+      strain_[j] = w[j] - 1.;
+    force_.evaluate(t, strain_, {w, rate, {}, {}}, known_m);
   }
 
   CellLaws<double>
@@ -106,6 +114,7 @@ namespace crawler
     , w_(discretization.n_cells())
     , u_(discretization.n_unknowns())
     , rate_(discretization.n_cells(), 0.)
+    , node_velocities_(discretization.n_unknowns())
   {
   }
 
@@ -114,11 +123,8 @@ namespace crawler
   {
     for (std::size_t j = 0; j < w_.size(); ++j)
     {
-      const double positive = std::max(y[j], 0.);
-      w_[j]                 = std::isnan(y[j])   ? y[j]
-                              : method_.is_power ? std::pow(power_ * positive, 1. / power_)
-                              : may_be_empty_    ? positive
-                                                 : y[j];
+      const double positive = std::max(y[j], 0.); // not a number stays so
+      w_[j] = method_.is_power ? std::pow(power_ * positive, 1. / power_) : may_be_empty_ ? positive : y[j];
     }
     return w_;
   }
@@ -156,11 +162,17 @@ namespace crawler
     return slopes;
   }
 
+  void
+  StretchForm::find_rate(const ConstVector v) const
+  {
+    for (std::size_t j = 0; j < rate_.size(); ++j)
+      rate_[j] = (v[j + 1] - v[j]) / discretization_.cell_size()[j];
+  }
+
   long
   StretchForm::evaluate(const double t, const ConstVector w, const ConstVector v) const
   {
-    for (std::size_t j = 0; j < w.size(); ++j)
-      rate_[j] = (v[j + 1] - v[j]) / discretization_.cell_size()[j];
+    find_rate(v);
     const long bad = laws_.evaluate(t, w, rate_);
     nodes_.laws    = laws_.at_cells();
     return bad;
@@ -250,8 +262,9 @@ namespace crawler
         look_at_friction(w, laws_.friction);
         return false;
       }
+      nodes_.velocities(node_velocities_.data());
       for (int i = 0; i <= nodes_.n; ++i)
-        F[i] = at[i] - nodes_.velocity(i);
+        F[i] = at[i] - node_velocities_[i];
       return true;
     };
     std::fill(v.begin(), v.end(), 0.);
@@ -290,9 +303,10 @@ namespace crawler
   CellIntegrals
   StretchForm::integrals(const double t, const ConstVector y, const ConstVector v)
   {
-    evaluate(t, stretch(y), v);
-    const auto u                   = displacement(y);
-    const auto w                   = ConstVector(w_);
+    const auto u = displacement(y);
+    const auto w = ConstVector(w_);
+    find_rate(v);
+    laws_.evaluate_force(t, w, rate_);
     const auto &h                  = discretization_.cell_size();
     const BodyForceAtPoints &force = laws_.force();
     CellIntegrals sum;

@@ -26,6 +26,10 @@ namespace crawler
     long
     evaluate(double t, std::span<const double> w, std::span<const double> rate, const double *known_m = nullptr);
 
+    /// Evaluates the force in the body alone.
+    void
+    evaluate_force(double t, std::span<const double> w, std::span<const double> rate, const double *known_m = nullptr);
+
     std::vector<double> friction; ///< g(w), without the body's profile
     const BodyForceAtPoints &
     force() const
@@ -88,6 +92,10 @@ namespace crawler
     lost_places(double t, ConstVector y, double reach);
 
   private:
+    /// Finds the stretch rate for the velocity @p v at the nodes.
+    void
+    find_rate(ConstVector v) const;
+
     /// Evaluates the laws for the stretch @p w with the velocity @p v at the nodes; the result as in StretchLaws.
     long
     evaluate(double t, ConstVector w, ConstVector v) const;
@@ -99,5 +107,6 @@ namespace crawler
     mutable StretchLaws laws_;
     mutable generic::StretchNodes<double> nodes_;
     mutable std::vector<double> w_, u_, rate_;
+    std::vector<double> node_velocities_;
   };
 } // namespace crawler

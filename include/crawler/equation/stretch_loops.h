@@ -203,7 +203,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int i = 1; i < n; ++i)
       {
         const Number difference = N[i] - N[i - 1];
-        v[i] = difference / (0.5 * (size[i - 1] + size[i])) * node_mobility(own, n, size, mobility, i, difference).value;
+        v[i] =
+          difference / (0.5 * (size[i - 1] + size[i])) * node_mobility(own, n, size, mobility, i, difference).value;
       }
       if (direction.ratio != 1.)
         for (int i = 1; i < n; ++i)
