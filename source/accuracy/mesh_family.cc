@@ -152,6 +152,15 @@ namespace crawler
         return std::max(accuracy_ * size_, round_off * scene_.body.length);
       }
 
+      /// Smaller time tolerance that shows the error of this one. Cells that become empty refill according to the
+      /// little that is left in them, which only small tolerances see at all.
+      double
+      checking(const double tolerance) const
+      {
+        const double usual = finer_tolerance * tolerance;
+        return latest_.min_stretch.value < empty ? std::min(usual, check_if_empty * scene_.body.length) : usual;
+      }
+
       /// Settles the time tolerance: on the coarsest mesh a tenth of it must make little difference.
       void
       settle_time()
@@ -167,8 +176,8 @@ namespace crawler
         measure_size();
         for (unsigned int i = 0; i < max_tolerances && value(latest_); ++i)
         {
-          Numerics finer = numerics();
-          finer.tolerance *= finer_tolerance;
+          Numerics finer               = numerics();
+          finer.tolerance              = checking(finer.tolerance);
           const SimulationResult other = run(finer);
           if (!value(other))
           {
@@ -183,8 +192,8 @@ namespace crawler
             if (time_error_ <= time_part * wanted() || parameters_.time.tolerance)
               break;
           }
-          numerics().tolerance = finer.tolerance;
-          latest_              = other;
+          numerics().tolerance *= finer_tolerance;
+          latest_ = numerics().tolerance > finer.tolerance ? run(numerics()) : other;
           measure_size();
         }
       }
@@ -204,7 +213,7 @@ namespace crawler
         half.parts /= 2;
         Numerics other = is_on_last ? numerics() : half;
         // Change from looser steps, which cost less, bounds the error amply.
-        if (time_error_ / finer_tolerance <= 2. * time_part * wanted())
+        if (latest_.min_stretch.value >= empty && time_error_ / finer_tolerance <= 2. * time_part * wanted())
         {
           other.tolerance               = numerics().tolerance / finer_tolerance;
           const SimulationResult looser = run(other);
@@ -215,7 +224,7 @@ namespace crawler
             return true;
           }
         }
-        other.tolerance = half.tolerance = numerics().tolerance * finer_tolerance;
+        other.tolerance = half.tolerance = checking(numerics().tolerance);
         const SimulationResult result    = run(other);
         if (!are_alike(result, own))
           return true;

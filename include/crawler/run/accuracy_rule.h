@@ -150,8 +150,10 @@ namespace crawler::accuracy_rule
     inline constexpr double time_part            = 0.3;
     inline constexpr unsigned int max_tolerances = 5;
     inline constexpr double finer_tolerance      = 0.1;
-    inline constexpr unsigned int few_steps      = 30;  ///< steps below which errors grow fast with the cells
-    inline constexpr double min_part             = 0.5; ///< part of the wanted error that all runs have in common
+    /// Stretch below which cells are empty; largest tolerance that checks the error in time then, over the length.
+    inline constexpr double empty = 1e-9, check_if_empty = 3e-8;
+    inline constexpr unsigned int few_steps = 30;  ///< steps below which errors grow fast with the cells
+    inline constexpr double min_part        = 0.5; ///< part of the wanted error that all runs have in common
     inline constexpr double min_order = 1.5, largest_order = 2.7; ///< observed orders accepted as the second
     /// Factors by which a time tolerance, relative to the strain, may be too large or small before it is chosen anew.
     inline constexpr double too_large = 2., too_small = 0.05;
@@ -167,9 +169,8 @@ namespace crawler::accuracy_rule
     /// the rate at which such changes are believed to fall.
     inline constexpr double min_slow_exponent = -0.5, sticking_factor = 3., sticking_rate = 3.;
     /// Deviation of the order from 2 up to which that is accepted; else a first change counts unclean_factor times.
-    inline constexpr double clean = 0.25, unclean_factor = 2.;
-    /// Deviation from 2 up to which two orders in a row are no chance.
-    inline constexpr double regular = 0.1;
+    /// Two orders in a row that deviate by at most regular are no chance.
+    inline constexpr double clean = 0.25, unclean_factor = 2., regular = 0.1;
   } // namespace family
 
   // Moving jumps as the limit of fronts (moving_fronts.cc; doc/numerics.md, "Jumps that move"). Measured by
