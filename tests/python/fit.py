@@ -197,6 +197,7 @@ class Values(unittest.TestCase):
                             {"Active stress/Modes/Coefficients[1-9]": (-1, 1)}, standard_deviation=NOISE,
                             set={"Fit/Markers at": ", ".join(f"{s:.17g}" for s in S)})
         self.assertEqual((found.undetermined, len(found.variables)), ([], 9))
+        self.assertLess(found.n_runs, 15 * 9)  # of a variable: a derivative in a step of the search, two at the end, two for the bias, two for the profile
         for one, truth in zip(found.variables.values(), coefficients):
             self.assertLess(abs(one["value"] - truth), 4 * one["deviation"])
 
@@ -326,7 +327,10 @@ class NoRun(unittest.TestCase):
             def __init__(self):
                 self.low, self.high, self.names, self.problem, self.is_refused = np.zeros(1), np.full(1, 2.0), ["x"], "inversion", False
 
-            def __call__(self, x):
+            def choose_at(self, x):
+                pass
+
+            def __call__(self, x, is_similar=False):
                 return np.full(3, x[0] ** 2 if x[0] <= self.end else np.nan), None
         model = Square()
         model.end = 1
@@ -346,6 +350,21 @@ class NoRun(unittest.TestCase):
         found = crawler.fit(STRESS, tracks(STRESS), {P: (-90, 90)}, standard_deviation=NOISE, markers_at=S, starts=3)
         self.assertRegex(" ".join(found.notes), "runs needed more than 500 steps and count as failed")
         self.assertLess(abs(found.variables[P]["value"] - 2), 4 * found.variables[P]["deviation"])
+
+
+class Runs(unittest.TestCase):
+    """Runs of a fit, which are without energies, gait and errors."""
+
+    def test_are_those_of_a_run(self):
+        """Also at other values than before, and with mesh and tolerance of a run beside it."""
+        where = {"Fit/Markers at": ", ".join(map(repr, S.tolist()))}
+        for scene, names in ((STRESS, (P, K)), (STRAIN, (P,))):
+            model, _ = prepared({**scene, **where, "Fit/Variables": "; ".join(f"{name} : 0.3 to 6" for name in names)}, [], tracks(scene))
+            model.accuracy = 1e-6
+            for at, is_similar in ((2.0, False), (1.2, False), (1.2001, True), (2.0, True)):
+                values, _ = model(np.full(len(names), at), is_similar=is_similar)
+                alone = crawler.run({**scene, **{name: at for name in names}}, fields=T, places=S, accuracy=1e-6).fields.position
+                np.testing.assert_allclose(values.reshape(alone.shape), alone, rtol=0, atol=1e-6 if is_similar else 1e-7)
 
 
 class Untold(unittest.TestCase):

@@ -185,9 +185,8 @@ def _error_of_runs(problem, z, jacobian, deviation):
     displacement that is wrong by its bound at the end, and before in proportion to time. jacobian: of residuals in
     deviations."""
     model, data = problem.model, problem.data
-    problem.last = None  # the bound is then that of this run
     values, basis = problem.run(z)
-    rate = model.bound / max(one.t[-1] for one in data.series) if any(one.t[-1] > 0 for one in data.series) else 0.0
+    rate = model.bound(problem.real(z)) / max(one.t[-1] for one in data.series) if any(one.t[-1] > 0 for one in data.series) else 0.0
     drift = data.flat([{"speed": rate, "strain": 0.0}.get(one.kind, rate * one.t[:, None]) for one in data.series])
     finer, _ = model(problem.real(z), model.accuracy / 30)
     if not np.all(np.isfinite(finer)):

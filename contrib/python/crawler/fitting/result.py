@@ -129,7 +129,8 @@ def _variables(problem, best, values):
     profile = Profile(lambda z: problem.residuals(z) / best.deviation, lambda z: problem.jacobian(z) / best.deviation, best.z,
                       best.jacobian)
     at_best, basis = problem.run(best.z)
-    bias = curvature_bias(lambda z: problem.scaled(model(problem.real(z))[0] - at_best, basis) / best.deviation, best.jacobian, best.z)
+    model.choose_at(values)
+    bias = curvature_bias(lambda z: problem.scaled(model(problem.real(z), is_similar=True)[0] - at_best, basis) / best.deviation, best.jacobian, best.z)
     for j, name in enumerate(model.names):
         at, is_told = best.z[j], not best.involved[j]
         one = {"value": float(values[j]) if is_told else None, "used": float(values[j]), "deviation": None, "numerical_error": None, "bias": None,
