@@ -105,8 +105,8 @@ def resumes():
     ended = crawler(*THREE, "--output", "whole")
     check(ended.returncode == 0, f"three starts end with {ended.returncode}: {ended.stderr}")
     whole = contents("whole")
-    n_steps = 3000  # in the third start
-    for place, code, status in ((f"step:{n_steps}:TERM", 5, "stopped"), ("step:500:USR1", 5, "stopped"), (f"step:{n_steps}:KILL", 3, None),
+    n_steps = 1200  # in the third start
+    for place, code, status in ((f"step:{n_steps}:TERM", 5, "stopped"), ("step:200:USR1", 5, "stopped"), (f"step:{n_steps}:KILL", 3, None),
                                 ("step:1:TERM", 5, "stopped")):
         shutil.rmtree("part", ignore_errors=True)
         ended = crawler(*THREE, "--output", "part", stop_at=place)
@@ -126,7 +126,7 @@ def resumes():
         ended = crawler(*THREE, "--output", "part", "--resume")
         check(ended.returncode == 0 and contents("part") == whole, f"{place} and --resume: {ended.stderr}")
         check(("2 of 3 starts" in ended.stdout) == (str(n_steps) in place), f"{place}: --resume searches again: {ended.stdout}")
-    ended = crawler(*THREE, "--output", "shared", "--workers", "2", stop_at="step:1200:KILL")  # in a second start
+    ended = crawler(*THREE, "--output", "shared", "--workers", "2", stop_at="step:700:KILL")  # in a second start
     check(ended.returncode == 5 and json.loads(pathlib.Path("shared/summary.json").read_text(encoding="utf-8"))["message"] in ended.stderr
           and "--resume continues" in ended.stderr, f"a process that is killed: {ended.returncode}, {ended.stderr}")
     ended = crawler(*THREE, "--output", "shared", "--workers", "2", "--resume")
@@ -163,7 +163,7 @@ def resumes():
 def resumes_a_comparison():
     """One that is stopped in the second scene says which is finished; nothing foreign is written over."""
     words = ("fit", "three.prm", "fit_worm.prm", "--set", "Fit/Starts=1", "--output", "stopped")
-    ended = crawler(*words, stop_at="step:4500:TERM")
+    ended = crawler(*words, stop_at="step:1500:TERM")
     check(ended.returncode == 5 and "fit_worm.prm:" in ended.stdout, f"stopped in the second: {ended.stdout}{ended.stderr}")
     for command in ("report", "plot"):
         ended = crawler(command, "stopped")
