@@ -91,7 +91,7 @@ def fits_two_kinds_together():
     for more, phrase in ((("--data", "fit_worm.csv", "--data", "centre.csv"), "2 of them are expected, separated by commas"),
                          (("--data", "fit_worm.csv", "--data", "centre.csv", "--set", "Fit/Standard deviation=0.01, automatic"), 'deviation of "centre.csv" is not known'),
                          (("--data", "fit_worm.csv", "centre.csv"), '"--data" is expected before each'),
-                         (("--set", "Fit/Data=centre.csv; fit_worm.csv; centre.csv"), "both have the path of the centre of mass"),
+                         (("--set", "Fit/Data=centre.csv; fit_worm.csv; centre.csv"), "one file of each kind is expected"),
                          ((*words[2:4], "--resume"), "deviation was"), ((*words[2:5], "fewer.csv", *words[6:-2], "--resume"), "other data")):
         ended = crawler("fit", "fit_worm.prm", *more, "--output", "two" if "--resume" in more else "refused")
         check(ended.returncode == 2 and phrase in ended.stderr and ended.stderr.count("\n") == 1, f"{more}: {ended.returncode}, {ended.stderr}")

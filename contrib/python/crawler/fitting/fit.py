@@ -9,6 +9,7 @@ from ..needs import Failed, InputError
 from .result import NEAR, SHARE, Best, described, unfinished
 from .starts import best_of_starts, table_of_starts
 from .uncertainty import covariance, undetermined_directions
+from .units import require_units
 
 LARGEST_ACCURACY, LEAST_ACCURACY = 1e-4, 3e-11  # accuracies of runs whose differences are derivatives
 MOST_REFINEMENTS = 4
@@ -147,6 +148,8 @@ def find(model, progress=lambda text: None, kept=None, workers=1):
     model.accuracy = min(max(float(model.parameters["Accuracy"]), LEAST_ACCURACY), LARGEST_ACCURACY)
     try:
         model.limit_steps()
+        if not kept:
+            require_units(model)
         z, why = best_of_starts(problem, kept, workers, progress)
         for refinement in range(MOST_REFINEMENTS + 1):
             try:

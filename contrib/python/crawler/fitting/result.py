@@ -42,6 +42,8 @@ def value_in_words(one):
         return f"{one['value']:.6g} (so far)"
     if not one["determined"]:
         return "not determined by the data"
+    if one["at_limit"]:
+        return f"{one['value']:.6g} at the limit of its range, with an interval on one side and no deviation"
     numerical = "?" if one["numerical_error"] is None else f"{one['numerical_error']:.1g}"
     return f"{one['value']:.6g} +- {one['deviation']:.2g} +- {numerical} (numerical)"
 
@@ -144,7 +146,7 @@ def _variables(problem, best, values):
         if is_told and ends["interval_95"] == [None, None]:  # chi-square rises slower than its curvature
             one.update(value=None, determined=False)
         elif is_told:
-            one["deviation"] = float(spread[j] * width[j])
+            one["deviation"] = float(spread[j] * width[j]) if not one["at_limit"] else None  # chi-square is no parabola about a limit
             one["numerical_error"] = float(best.numerical[j] * width[j]) if math.isfinite(best.numerical[j]) else None
             one["bias"] = float(bias[j] * width[j]) if math.isfinite(bias[j]) else None
             one.update({level: [None if end is None else float(model.low[j] + end * width[j]) for end in ends[level]] for level in LEVELS})
@@ -206,7 +208,7 @@ def _notes(best, variables, goodness, data, model):
     """Sentences on possible mistakes."""
     parameters = model.parameters
     yield from _does_not_fit(goodness)
-    missing = [name for name, one in variables.items() if one["deviation"] is None]
+    missing = [name for name, one in variables.items() if not one["determined"]]
     if missing and _is_hopeless(goodness):
         yield (f"there is no deviation of {', '.join(missing)}: derivatives of a scene that does not fit cannot tell whether the data determine "
                f"{'it' if len(missing) == 1 else 'them'}")
@@ -220,8 +222,8 @@ def _notes(best, variables, goodness, data, model):
     yield from _of_cut_runs(model)
     for name, one in variables.items():
         if one["at_limit"] and one["determined"]:
-            yield (f"{name} is at the limit of its range, {one[one['at_limit']]:g}: the best value may lie beyond it, and its interval is one-sided, as "
-                   "it ends there")
+            yield (f"{name} is at the limit of its range, {one[one['at_limit']]:g}: the best value may lie beyond it; its interval is one-sided, to "
+                   "where chi-square has risen by 1 (68 %) and 3.84 (95 %) from its value there, and there is no deviation")
         if abs(one["bias"] or 0) > BIASED * (one["deviation"] or math.inf):
             yield (f"over many such data sets the mean of {name} would be about {abs(one['bias']):.2g} too {'large' if one['bias'] > 0 else 'small'}, as the run "
                    "is not linear in it; the interval allows for that")
