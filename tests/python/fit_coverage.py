@@ -6,7 +6,7 @@
 
 Each animal has a body, a gait, noise, gaps and markers that are not quite where they are said to be; what is fitted is known
 strain (the exponent), a wave of stress (exponent, modulus, amplitude) or its frequency and phase; with "profiles" the friction
-at three places of the body, between which it is a spline. Prints a table, and fails if a
+at three places of the body, between which it is linear. Prints a table, and fails if a
 share of intervals is outside of its binomial error (one in a thousand), or a mean error above a fifth of the deviation and
 outside of its own. Error over deviation is the root of the rise of chi-square from the best value to the truth, with the sign of
 the error: as the intervals, it does not depend on how a variable is written (modulus, its inverse, its logarithm).
@@ -60,6 +60,7 @@ def animal(number):
         scene[WAVE + "Phase"] = random.uniform(-0.2, 0.2)
         return scene, {WAVE + "Frequency": (0.5, 1.5), WAVE + "Phase": (-0.5, 0.5)}, random
     if kind == "profile":
+        scene[BODY + "Profile interpolation"] = "linear"
         scene[PROFILE] = random.uniform(0.6, 1.7, 3).tolist()
         return scene, {f"{PROFILE}[{i}]": (0.1, 6) for i in (1, 2, 3)}, random
     return scene, {BODY + "Anchoring exponent": (0.1, 6), BODY + "Elastic modulus": (0.2, 8), WAVE + "Amplitude": (0.01, 2)}, random
