@@ -420,6 +420,16 @@ class Untold(unittest.TestCase):
         found = fit({**STRESS, WAVE + "Wave number": 1.3}, tracks(STRESS), P, K)
         self.assertIn("similar", " ".join(found.notes))
 
+    def test_says_that_units_may_be_others(self):
+        """Speeds for minutes, where the ranges are so wide that an end comes near; not where the scene fits."""
+        variables, notes = {P: (0.2, 6), AMPLITUDE: (0.02, 0.9)}, []
+        for start, factor, is_said in ((0.3, 60, True), (0.06, 1, False)):
+            data = scaled(path(STRESS, 1e-3, "speed"), factor)
+            found = crawler.fit({**STRESS, AMPLITUDE: start}, data, variables, standard_deviation=1e-3 * factor)
+            notes.append(" ".join(found.notes))
+            self.assertEqual("if that is not meant" in notes[-1], is_said, notes[-1])
+        self.assertRegex(notes[0], r"its speed is 1\.\d+ in the data \(root mean square\), about [5-7]\d times the 0.02\d+ with the values of the scene")
+
     def test_says_that_data_fit_too_well(self):
         found = fit(STRESS, tracks(STRESS), P, standard_deviation=10 * NOISE)
         self.assertIn("nearer to the scene", found.notes[0])
@@ -596,9 +606,9 @@ class Refusals(unittest.TestCase):
                 ("is 0 at s = 1", {"scene": {**STRAIN, BODY + "Friction profile": "2+rate*s", BODY + "Constants": "rate=1"}, "variables": {BODY + "Constants[rate]": (-2, 2)}}),
                 ("times their distance on the body", {"data": micrometres, "markers_at": S}),
                 ("Switching velocity is automatic, but a velocity", {"scene": STRESS, "variables": {"Ground/Backward ratio": (0.5, 2)}, "markers_at": S}),
-                ("about 1000 times the", {"scene": STRESS, "data": scaled(path(STRESS), 1000), "standard_deviation": 1}),
-                ("about 60 times the", {"scene": STRESS, "data": scaled(path(STRESS, kind="speed"), 60), "variables": {K: (1, 2), AMPLITUDE: (0.2, 0.4)}}),
-                ("about 1/1000 of the", {"scene": STRESS, "data": scaled(path(STRESS, 1e-4), 1e-3), "variables": {K: (1, 2)}}),
+                ("the path of the centre of mass varies by 15", {"scene": STRESS, "data": scaled(path(STRESS), 1000), "standard_deviation": 1}),
+                ("its speed is 1.5", {"scene": STRESS, "data": scaled(path(STRESS, kind="speed"), 60), "variables": {K: (1, 2), AMPLITUDE: (0.2, 0.4)}}),
+                ("no run within the ranges of Fit/Variables comes near", {"scene": STRESS, "data": scaled(path(STRESS, 1e-4), 1e-3), "variables": {K: (1, 2)}}),
                 ("cannot be run", {"scene": inverted, "variables": {AMPLITUDE: (4, 6)}})):
             with self.subTest(sentence=sentence):
                 self.refused(sentence, **more)

@@ -148,8 +148,9 @@ def find(model, progress=lambda text: None, kept=None, workers=1):
     model.accuracy = min(max(float(model.parameters["Accuracy"]), LEAST_ACCURACY), LARGEST_ACCURACY)
     try:
         model.limit_steps()
-        if not kept:
-            require_units(model)
+        model.far_units = require_units(model)
+        for note in model.far_units:
+            progress(note)
         z, why = best_of_starts(problem, kept, workers, progress)
         for refinement in range(MOST_REFINEMENTS + 1):
             try:

@@ -40,6 +40,7 @@ class Model:
         self.low, self.high, self.start = np.array([one[1:] for one in variables]).T
         self._require_seen()
         self.accuracy, self.n_runs, self.n_cut, self.problem = None, 0, 0, ""
+        self.far_units = []  # sentences on data that may be in other units than the scene
         self.is_refused = False  # the problem is that of a wrong input
         self.n_steps, self.most_steps = 0, self.parameters[STEP_LIMIT]
         self._runs, self._chosen_at = None, None  # FieldRuns, and the values and Accuracy at which its numerics were chosen

@@ -43,7 +43,7 @@ def value_in_words(one):
     if not one["determined"]:
         return "not determined by the data"
     if one["at_limit"]:
-        return f"{one['value']:.6g} at the limit of its range, with an interval on one side and no deviation"
+        return f"{one['value']:.6g} at the limit of its range,"
     numerical = "?" if one["numerical_error"] is None else f"{one['numerical_error']:.1g}"
     return f"{one['value']:.6g} +- {one['deviation']:.2g} +- {numerical} (numerical)"
 
@@ -92,7 +92,7 @@ def unfinished(problem, starts, why=""):
                f"fewer variables are expected{units}" if why else
                f"stopped by a signal after {len(starts)} of {int(model.parameters['Fit/Starts'])} starts; --resume continues")
     found = {"status": "failed" if why else "stopped", "reason": "no_convergence" if why else "signal", "message": message,
-             "variables": variables, "undetermined": [], "notes": [*data.notes, *_of_cut_runs(model), *([message] if why else [])],
+             "variables": variables, "undetermined": [], "notes": [*data.notes, *model.far_units, *_of_cut_runs(model), *([message] if why else [])],
              "goodness": goodness, "residuals": math.sqrt(squares / goodness["n_data"]) * problem.scale, "accuracy": model.accuracy,
              "n_runs": model.n_runs, "starts": starts}
     return Fit(found, data, -residual * problem.scales, dict(one.split("=", 1) for one in model.overrides(values)), None)
@@ -208,6 +208,8 @@ def _notes(best, variables, goodness, data, model):
     """Sentences on possible mistakes."""
     parameters = model.parameters
     yield from _does_not_fit(goodness)
+    if (goodness["probability"] or 0) < UNLIKELY:
+        yield from model.far_units
     missing = [name for name, one in variables.items() if not one["determined"]]
     if missing and _is_hopeless(goodness):
         yield (f"there is no deviation of {', '.join(missing)}: derivatives of a scene that does not fit cannot tell whether the data determine "

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Units of a path or speed: data that are far from all runs within the ranges of the variables are in other ones."""
-import itertools
-
 import numpy as np
 
 from ..needs import InputError
@@ -9,15 +7,14 @@ from .data import WORDS
 
 FAR = 8.0  # ratio of data and runs beyond which the units differ, as no values that were tried come near
 CORNERS = 8  # random corners of the ranges that are tried besides the ends of each variable
-FACTORS = (10, 60, 100, 1000, 3600, 6e4, 1e6)
 
 
 def require_units(model):
     """Raises InputError if a path or speed is much larger, or much smaller, than in a run at the start, at either end of
-    each range, and in corners of them."""
-    paths = [i for i, one in enumerate(model.data.series) if one.kind in ("centre", "speed")]
+    each range, and in corners of them. Returns sentences on those that are far from the one at the start only."""
+    notes, paths = [], [i for i, one in enumerate(model.data.series) if one.kind in ("centre", "speed")]
     if not paths:
-        return
+        return notes
     random = np.random.default_rng(1)
     points = [model.start, *(np.where(np.arange(len(model.names)) == j, end, model.start) for end in (model.low, model.high) for j in range(len(model.names))),
               *(np.where(random.random(len(model.names)) < 0.5, model.low, model.high) for _ in range(CORNERS if len(model.names) > 1 else 0))]
@@ -35,6 +32,12 @@ def require_units(model):
                 raise InputError(f"{WORDS[one.kind]} {_verb(one.kind)} {size:.3g} in the data (root mean square), {_times(size / sizes[0])} {sizes[0]:.3g} with the "
                                  f"values of the scene, and no run within the ranges of Fit/Variables comes near (nearest: {near:.3g}); the same units of "
                                  f'length and time are expected in data and scene, see "--unit-of-s" and "--unit-of-t"{short}')
+        size = _size(one.kind, one.values, 0)
+        if not noise * FAR < size or not sizes[0] > 0 or 1 / FAR < size / sizes[0] < FAR:
+            continue
+        notes.append(f"{WORDS[one.kind]} {_verb(one.kind)} {size:.3g} in the data (root mean square), {_times(size / sizes[0])} {sizes[0]:.3g} with the values of the "
+                     'scene: see "--unit-of-s" and "--unit-of-t" if that is not meant')
+    return notes
 
 
 def _verb(kind):
@@ -57,6 +60,4 @@ def _noise(one):
 
 
 def _times(ratio):
-    """Ratio as the nearest of those of units."""
-    near = min(itertools.chain(FACTORS, (1 / factor for factor in FACTORS)), key=lambda one: abs(np.log(ratio / one)))
-    return f"about {near:g} times the" if near > 1 else f"about 1/{1 / near:g} of the"
+    return f"about {ratio:.2g} times the" if ratio > 1 else f"about 1/{1 / ratio:.2g} of the"
