@@ -219,7 +219,7 @@ def _notes(best, variables, goodness, data, model):
                f"{goodness['degrees_of_freedom']} degrees of freedom; the deviations are too large, or the scene has the noise of the data")
     if (parameters["Active stress/Generator"], parameters["Active stress/Prescribed strain/Given by"]) == ("prescribed strain", "table") and data.places.size:
         yield ("the strain of the table is taken as exact: if it was made of these tracks its noise counts as motion, and the deviations of the "
-               "variables are too small by a factor of two or more")
+               "variables are too small by a factor of two or more; fits of copies of the tracks with noise added, each with its table, show the scatter")
     yield from data.notes
     yield from _of_cut_runs(model)
     for name, one in variables.items():
