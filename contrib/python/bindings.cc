@@ -21,6 +21,7 @@
 #include <crawler/studies/core/entry_rules.h>
 #include <crawler/studies/core/sensitivities.h>
 #include <crawler/studies/core/variables.h>
+#include <crawler/studies/run/field_runs.h>
 #include <crawler/studies/run/run_in_memory.h>
 #include <crawler/studies/run/sensitivity_files.h>
 #include <crawler/studies/sweep/point_table.h>
@@ -185,6 +186,33 @@ namespace crawler
                         last));
     }
 
+    /// Those at these places [length], or equidistant ones.
+    WantedFields
+    wanted_fields(const Scene &scene,
+                  const std::vector<double> &times,
+                  const std::optional<std::vector<double>> &places)
+    {
+      require_increasing(times, scene.end_time, "times", "end time");
+      if (!places)
+        return {times, Kymograph::equidistant()};
+      require_increasing(*places, scene.body.length, "places", "length");
+      std::vector<double> points;
+      for (const double place : *places)
+        points.push_back(place / scene.body.length);
+      return {times, std::move(points)};
+    }
+
+    py::dict
+    dict_of_fields(const Kymograph &kymograph)
+    {
+      py::dict fields;
+      for (const FieldName &field : field_names)
+        if (field.in_kymograph)
+          fields[field.name] =
+            array_of(kymograph.rows().*field.values, {kymograph.times().size(), kymograph.points().size()});
+      return fields;
+    }
+
     py::dict
     run_source(const Source &source,
                const std::optional<std::vector<double>> &times,
@@ -199,18 +227,7 @@ namespace crawler
         notes       = input.notes;
         std::optional<WantedFields> wanted;
         if (times)
-        {
-          const double length = input.scene.body.length;
-          require_increasing(*times, input.scene.end_time, "times", "end time");
-          wanted = {*times, Kymograph::equidistant()};
-          if (places)
-          {
-            require_increasing(*places, length, "places", "length");
-            wanted->points.clear();
-            for (const double place : *places)
-              wanted->points.push_back(place / length);
-          }
-        }
+          wanted = wanted_fields(input.scene, *times, places);
         const ModelChoice model = choose_model(input);
         if (model.needs_mesh())
           Libraries::start();
@@ -219,7 +236,7 @@ namespace crawler
           sensitivities = [&](const Input &computed, const NumericsChoice &choice, SimulationResult &result) {
             local = add_sensitivities(computed, choice, result, [&]() { return !interrupted(); });
           };
-        return run_in_memory(std::move(input), model, wanted, interrupted, sensitivities);
+        return run_in_memory(input, model, wanted, interrupted, sensitivities);
       });
       py::dict answer;
       answer["summary"]    = summary_text(run.result);
@@ -229,14 +246,8 @@ namespace crawler
       answer["lines"] = summary_lines(run.result);
       if (run.kymograph)
       {
-        const Kymograph &k    = *run.kymograph;
-        const std::size_t n_t = k.times().size();
-        answer["times"]       = array_of(k.times(), {n_t});
-        py::dict fields;
-        for (const FieldName &field : field_names)
-          if (field.in_kymograph)
-            fields[field.name] = array_of(k.rows().*field.values, {n_t, k.points().size()});
-        answer["fields"] = fields;
+        answer["times"]  = array_of(run.kymograph->times(), {run.kymograph->times().size()});
+        answer["fields"] = dict_of_fields(*run.kymograph);
       }
       if (run.statistics)
       {
@@ -254,6 +265,36 @@ namespace crawler
                                    py::arg("t")               = array_of(local.times, {n_t}),
                                    py::arg("active_stress")   = array_of(local.stress, {n_t, n_t > 0 ? n : 0}));
       }
+      return answer;
+    }
+
+    std::unique_ptr<FieldRuns>
+    field_runs(const Source &source, const std::vector<std::string> &paths)
+    {
+      return without_lock(
+        [&](const std::function<bool()> &) { return std::make_unique<FieldRuns>(source.file(), paths); });
+    }
+
+    /// End of a run, and its fields if it finished.
+    py::dict
+    run_for_fields(FieldRuns &runs,
+                   const std::vector<double> &numbers,
+                   const bool is_similar,
+                   const std::vector<double> &times,
+                   const std::vector<double> &places)
+    {
+      const RunInMemory run  = without_lock([&](const std::function<bool()> &interrupted) {
+        return runs.run(
+          numbers,
+          is_similar,
+          [&](const Scene &scene) { return wanted_fields(scene, times, places); },
+          Libraries::start,
+          interrupted);
+      });
+      const TimeOutcome &end = run.result.time;
+      py::dict answer(py::arg("reason") = end.reason, py::arg("message") = end.message, py::arg("steps") = end.steps);
+      if (end.status == Status::finished && run.kymograph)
+        answer["fields"] = dict_of_fields(*run.kymograph);
       return answer;
     }
 
@@ -409,6 +450,7 @@ PYBIND11_MODULE(_core, module)
     .def(py::init([](std::string name, std::optional<std::string> text, std::vector<std::string> overrides) {
       return Source{std::move(name), std::move(text), std::move(overrides)};
     }));
+  py::class_<FieldRuns>(module, "FieldRuns").def(py::init(&field_runs)).def("run", run_for_fields);
   module.def("check", check);
   module.def("run", run_source);
   module.def("variables_of_fit", variables_of_fit);

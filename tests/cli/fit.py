@@ -87,7 +87,7 @@ def fits_two_kinds_together():
     for more, phrase in ((("--data", "fit_worm.csv", "--data", "centre.csv"), "2 of them are expected, separated by commas"),
                          (("--data", "fit_worm.csv", "--data", "centre.csv", "--set", "Fit/Standard deviation=0.01, automatic"), 'deviation of "centre.csv" is not known'),
                          (("--data", "fit_worm.csv", "centre.csv"), '"--data" is expected before each'),
-                         (("--set", "Fit/Data=centre.csv; fit_worm.csv; centre.csv"), "both have the path of the centre of mass"),
+                         (("--set", "Fit/Data=centre.csv; fit_worm.csv; centre.csv"), "one file of each kind is expected"),
                          ((*words[2:4], "--resume"), "deviation was"), ((*words[2:5], "fewer.csv", *words[6:-2], "--resume"), "other data")):
         ended = crawler("fit", "fit_worm.prm", *more, "--output", "two" if "--resume" in more else "refused")
         check(ended.returncode == 2 and phrase in ended.stderr and ended.stderr.count("\n") == 1, f"{more}: {ended.returncode}, {ended.stderr}")
@@ -101,8 +101,8 @@ def resumes():
     ended = crawler(*THREE, "--output", "whole")
     check(ended.returncode == 0, f"three starts end with {ended.returncode}: {ended.stderr}")
     whole = contents("whole")
-    n_steps = 3000  # in the third start
-    for place, code, status in ((f"step:{n_steps}:TERM", 5, "stopped"), ("step:500:USR1", 5, "stopped"), (f"step:{n_steps}:KILL", 3, None),
+    n_steps = 1200  # in the third start
+    for place, code, status in ((f"step:{n_steps}:TERM", 5, "stopped"), ("step:200:USR1", 5, "stopped"), (f"step:{n_steps}:KILL", 3, None),
                                 ("step:1:TERM", 5, "stopped")):
         shutil.rmtree("part", ignore_errors=True)
         ended = crawler(*THREE, "--output", "part", stop_at=place)
@@ -122,7 +122,7 @@ def resumes():
         ended = crawler(*THREE, "--output", "part", "--resume")
         check(ended.returncode == 0 and contents("part") == whole, f"{place} and --resume: {ended.stderr}")
         check(("2 of 3 starts" in ended.stdout) == (str(n_steps) in place), f"{place}: --resume searches again: {ended.stdout}")
-    ended = crawler(*THREE, "--output", "shared", "--workers", "2", stop_at="step:1200:KILL")  # in a second start
+    ended = crawler(*THREE, "--output", "shared", "--workers", "2", stop_at="step:700:KILL")  # in a second start
     check(ended.returncode == 5 and json_of("shared/summary.json")["message"] in ended.stderr
           and "--resume continues" in ended.stderr, f"a process that is killed: {ended.returncode}, {ended.stderr}")
     ended = crawler(*THREE, "--output", "shared", "--workers", "2", "--resume")
@@ -159,7 +159,7 @@ def resumes():
 def resumes_a_comparison():
     """One that is stopped in the second scene says which is finished; nothing foreign is written over."""
     words = ("fit", "three.prm", "fit_worm.prm", "--set", "Fit/Starts=1", "--output", "stopped")
-    ended = crawler(*words, stop_at="step:4500:TERM")
+    ended = crawler(*words, stop_at="step:1500:TERM")
     check(ended.returncode == 5 and "fit_worm.prm:" in ended.stdout, f"stopped in the second: {ended.stdout}{ended.stderr}")
     for command in ("report", "plot"):
         ended = crawler(command, "stopped")

@@ -6,6 +6,8 @@ cannot tell, and refusals.
     fit.py FOLDER_OF_THE_PYTHON_PACKAGE
 """
 import pathlib
+import pickle
+import re
 import sys
 import tempfile
 import unittest
@@ -49,6 +51,12 @@ def path(scene, noise=NOISE, kind="centre"):
     values = crawler.run(scene, fields=T, accuracy=1e-9, check=True).fields
     values = np.trapz(values.position if kind == "centre" else values.velocity, dx=1 / 200, axis=1)[:, None]
     return Samples(kind, np.zeros(1), T, values + noise * np.random.default_rng(1).standard_normal(values.shape))
+
+
+def scaled(samples, factor):
+    """Samples in another unit."""
+    samples.values = samples.values * factor
+    return samples
 
 
 def fit(scene, data, *names, **settings):
@@ -95,7 +103,7 @@ class Values(unittest.TestCase):
 
     def test_deviation_is_that_of_least_squares(self):
         """For one number it is noise over the norm of the derivatives; here those of runs beside the best one."""
-        found = fit(STRAIN, tracks(STRAIN), P, standard_deviation=NOISE, set={"Fit/Origin": "tail"} | {"Fit/First time": 0})
+        found = fit(STRAIN, tracks(STRAIN, origin=0), P, standard_deviation=NOISE, set={"Fit/Origin": "tail"} | {"Fit/First time": 0})
         step, at = 1e-3, found.variables[P]["used"]
         sides = [fields({**STRAIN, P: at + d}).position for d in (-step, step)]
         self.assertAlmostEqual(found.variables[P]["deviation"] / (NOISE / np.linalg.norm((sides[1] - sides[0]) / (2 * step))), 1, delta=1e-3)
@@ -197,6 +205,7 @@ class Values(unittest.TestCase):
                             {"Active stress/Modes/Coefficients[1-9]": (-1, 1)}, standard_deviation=NOISE,
                             set={"Fit/Markers at": ", ".join(f"{s:.17g}" for s in S)})
         self.assertEqual((found.undetermined, len(found.variables)), ([], 9))
+        self.assertLess(found.n_runs, 15 * 9)  # of a variable: a derivative in a step of the search, two at the end, two for the bias, two for the profile
         for one, truth in zip(found.variables.values(), coefficients):
             self.assertLess(abs(one["value"] - truth), 4 * one["deviation"])
 
@@ -326,7 +335,10 @@ class NoRun(unittest.TestCase):
             def __init__(self):
                 self.low, self.high, self.names, self.problem, self.is_refused = np.zeros(1), np.full(1, 2.0), ["x"], "inversion", False
 
-            def __call__(self, x):
+            def choose_at(self, x):
+                pass
+
+            def __call__(self, x, is_similar=False):
                 return np.full(3, x[0] ** 2 if x[0] <= self.end else np.nan), None
         model = Square()
         model.end = 1
@@ -346,6 +358,21 @@ class NoRun(unittest.TestCase):
         found = crawler.fit(STRESS, tracks(STRESS), {P: (-90, 90)}, standard_deviation=NOISE, markers_at=S, starts=3)
         self.assertRegex(" ".join(found.notes), "runs needed more than 500 steps and count as failed")
         self.assertLess(abs(found.variables[P]["value"] - 2), 4 * found.variables[P]["deviation"])
+
+
+class Runs(unittest.TestCase):
+    """Runs of a fit, which are without energies, gait and errors."""
+
+    def test_are_those_of_a_run(self):
+        """Also at other values than before, and with mesh and tolerance of a run beside it."""
+        where = {"Fit/Markers at": ", ".join(map(repr, S.tolist()))}
+        for scene, names in ((STRESS, (P, K)), (STRAIN, (P,))):
+            model, _ = prepared({**scene, **where, "Fit/Variables": "; ".join(f"{name} : 0.3 to 6" for name in names)}, [], tracks(scene))
+            model.accuracy = 1e-6
+            for at, is_similar in ((2.0, False), (1.2, False), (1.2001, True), (2.0, True)):
+                values, _ = model(np.full(len(names), at), is_similar=is_similar)
+                alone = crawler.run({**scene, **{name: at for name in names}}, fields=T, places=S, accuracy=1e-6).fields.position
+                np.testing.assert_allclose(values.reshape(alone.shape), alone, rtol=0, atol=1e-6 if is_similar else 1e-7)
 
 
 class Untold(unittest.TestCase):
@@ -393,6 +420,16 @@ class Untold(unittest.TestCase):
         found = fit({**STRESS, WAVE + "Wave number": 1.3}, tracks(STRESS), P, K)
         self.assertIn("similar", " ".join(found.notes))
 
+    def test_says_that_units_may_be_others(self):
+        """Speeds for minutes, where the ranges are so wide that an end comes near; not where the scene fits."""
+        variables, notes = {P: (0.2, 6), AMPLITUDE: (0.02, 0.9)}, []
+        for start, factor, is_said in ((0.3, 60, True), (0.06, 1, False)):
+            data = scaled(path(STRESS, 1e-3, "speed"), factor)
+            found = crawler.fit({**STRESS, AMPLITUDE: start}, data, variables, standard_deviation=1e-3 * factor)
+            notes.append(" ".join(found.notes))
+            self.assertEqual("if that is not meant" in notes[-1], is_said, notes[-1])
+        self.assertRegex(notes[0], r"its speed is 1\.\d+ in the data \(root mean square\), about [5-7]\d times the 0.02\d+ with the values of the scene")
+
     def test_says_that_data_fit_too_well(self):
         found = fit(STRESS, tracks(STRESS), P, standard_deviation=10 * NOISE)
         self.assertIn("nearer to the scene", found.notes[0])
@@ -414,14 +451,23 @@ class Untold(unittest.TestCase):
         self.assertIn("no effect", prepared({**scene, "Fit/Variables": f"{P} : 1 to 3"}, [ratio], path(STRESS))[1][0])
 
     def test_data_that_are_short_beside_the_run(self):
-        data = path(STRESS)
+        data, sentence = path(STRESS), 'last 0.002, 1/1000 of the run (Time/End time is 2): see "--unit-of-t"'
         data.t = data.t / 1000
-        self.assertIn('last 0.002, 1/1000 of the run (Time/End time is 2): see "--unit-of-t"', fit(STRESS, data, P).notes[0])
+        with self.assertRaisesRegex(crawler.InputError, re.escape(sentence)):  # the body does not come so far
+            fit(STRESS, data, P)
+        data.values = 1e-6 * data.values
+        self.assertIn(sentence, fit(STRESS, data, P).notes[0])
 
     def test_says_that_a_value_is_at_its_limit(self):
         found = crawler.fit({**STRAIN, P: 1.5}, tracks(STRAIN), {P: (0.5, 1.8)}, standard_deviation=NOISE)
         self.assertEqual((found.variables[P]["at_limit"], found.variables[P]["interval_95"][1]), ("to", None))
-        self.assertRegex(" ".join(found.notes), "at the limit of its range, 1.8:.*one-sided")
+        self.assertRegex(" ".join(found.notes), "at the limit of its range, 1.8:.*one-sided.*no deviation")
+        self.assertIsNone(found.variables[P]["deviation"])
+        self.assertIn("at the limit of its range", repr(found))
+        for level, rise in (("interval_68", 1), ("interval_95", 3.8415)):  # from the limit to where chi-square says
+            end = found.variables[P][level][0]
+            held = crawler.fit({**STRAIN, P: end}, tracks(STRAIN), {P: (end, end + 1e-6)}, standard_deviation=NOISE)
+            self.assertAlmostEqual(held.goodness.chi_square - found.goodness.chi_square, rise, delta=0.1 * rise)
         near = crawler.fit(STRAIN, tracks(STRAIN), {P: (1.92, 100)}, standard_deviation=NOISE, markers_at=S)  # in a wide range
         self.assertTrue(all(near.variables[P]["interval_95"]))
         self.assertEqual((near.variables[P]["at_limit"], near.notes), ("", []))
@@ -481,6 +527,44 @@ class Files(unittest.TestCase):
             self.assertEqual("do not increase" in " ".join(notes), len(words) == 2)
 
 
+    def test_tracks_in_hdf5(self):
+        """A plain file, one of SLEAP and one of DeepLabCut fit as the same numbers in a table."""
+        try:
+            import h5py
+        except ImportError:
+            self.skipTest("no h5py")
+        data = tracks(STRAIN, seed=4)
+        said = {"standard_deviation": NOISE, "markers_at": S}
+        wanted = crawler.fit({**STRAIN, P: 1.8}, data, {P: RANGES[P]}, **said)
+        names = [f"m{i}" for i in range(7)]
+        heads = [("someone", name, part) for name in names for part in ("x", "y", "likelihood")]
+        numbers = np.stack([data.values, np.zeros((41, 7)), np.ones((41, 7))], axis=2).reshape(41, 21)
+        rows = np.zeros(41, dtype=[("index", "<i8"), ("values_block_0", "<f8", (21,))])
+        rows["index"], rows["values_block_0"] = np.arange(41), numbers
+        with tempfile.TemporaryDirectory() as folder:
+            plain, sleap, deeplabcut, other = (pathlib.Path(folder, f"{name}.h5") for name in ("plain", "sleap", "deeplabcut", "other"))
+            with h5py.File(plain, "w") as file:
+                file["t"], file["x"] = data.t, data.values
+            with h5py.File(sleap, "w") as file:
+                file["tracks"], file["node_names"] = np.stack([data.values.T, np.zeros((7, 41))])[None], [name.encode() for name in names]
+            with h5py.File(deeplabcut, "w") as file:
+                file["df_with_missing/table"] = rows
+                file["df_with_missing"].attrs["non_index_axes"] = np.bytes_(pickle.dumps([(1, heads)], 0))
+            for path in (plain, sleap, deeplabcut):
+                found = crawler.fit({**STRAIN, P: 1.8}, read_samples(path, unit_of_t="" if path is plain else "1/20"), {P: RANGES[P]}, **said)
+                self.assertAlmostEqual(found.variables[P]["value"], wanted.variables[P]["value"], delta=1e-6, msg=path.name)
+            for axes, word in ((pickle.dumps(print, 0), "names of columns"), (pickle.dumps([(1, heads[1:])], 0), "20 names of columns")):
+                with h5py.File(other, "w") as file:
+                    file["df_with_missing/table"] = rows
+                    file["df_with_missing"].attrs["non_index_axes"] = np.bytes_(axes)
+                with self.assertRaisesRegex(crawler.InputError, word):
+                    read_samples(other)
+            with h5py.File(other, "w") as file:
+                file["t"], file["x"] = data.t, data.values.T
+            with self.assertRaisesRegex(crawler.InputError, "41 times x markers are expected.*reversed"):
+                read_samples(other)
+
+
 class Refusals(unittest.TestCase):
     """One sentence each."""
 
@@ -514,7 +598,7 @@ class Refusals(unittest.TestCase):
                 ("2 of them are expected", {"data": [tracks(STRAIN), path(STRESS)], "standard_deviation": NOISE}),
                 ('has "-1" for number 2', {"data": [tracks(STRAIN), path(STRESS)], "standard_deviation": [NOISE, -1]}),
                 ("number 2 of the data has no numbers", {"data": [tracks(STRAIN), Samples("centre", np.zeros(1), T, np.full((41, 1), np.nan))], "standard_deviation": [1, 1]}),
-                ("Fit/Data is empty", {"data": []}), ("both have tracks of markers", {"data": [tracks(STRAIN), tracks(STRAIN)]}),
+                ("Fit/Data is empty", {"data": []}), ("one file of each kind is expected", {"data": [tracks(STRAIN), tracks(STRAIN)]}),
                 ("shape (41,)", {"data": Samples("centre", np.zeros(1), T, np.zeros(41))}),
                 ("[1] to [4] are", {"scene": {**STRAIN, BODY + "Friction profile": "1, 1, 1, 1"}, "variables": {BODY + "Friction profile[5]": (0.1, 2)}}),
                 ("numbers at equally spaced places", {"variables": {BODY + "Friction profile[1]": (0.1, 2)}}),
@@ -522,6 +606,9 @@ class Refusals(unittest.TestCase):
                 ("is 0 at s = 1", {"scene": {**STRAIN, BODY + "Friction profile": "2+rate*s", BODY + "Constants": "rate=1"}, "variables": {BODY + "Constants[rate]": (-2, 2)}}),
                 ("times their distance on the body", {"data": micrometres, "markers_at": S}),
                 ("Switching velocity is automatic, but a velocity", {"scene": STRESS, "variables": {"Ground/Backward ratio": (0.5, 2)}, "markers_at": S}),
+                ("the path of the centre of mass varies by 15", {"scene": STRESS, "data": scaled(path(STRESS), 1000), "standard_deviation": 1}),
+                ("its speed is 1.5", {"scene": STRESS, "data": scaled(path(STRESS, kind="speed"), 60), "variables": {K: (1, 2), AMPLITUDE: (0.2, 0.4)}}),
+                ("no run within the ranges of Fit/Variables comes near", {"scene": STRESS, "data": scaled(path(STRESS, 1e-4), 1e-3), "variables": {K: (1, 2)}}),
                 ("cannot be run", {"scene": inverted, "variables": {AMPLITUDE: (4, 6)}})):
             with self.subTest(sentence=sentence):
                 self.refused(sentence, **more)

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Fits of random animals whose truth is known: do the intervals hold it as often as they say, and is there a bias?
 
-    fit_coverage.py FOLDER_OF_THE_PYTHON_PACKAGE [ANIMALS [FIRST]]
+    fit_coverage.py FOLDER_OF_THE_PYTHON_PACKAGE [ANIMALS [FIRST [profiles]]]
 
 Each animal has a body, a gait, noise, gaps and markers that are not quite where they are said to be; what is fitted is known
-strain (the exponent), a wave of stress (exponent, modulus, amplitude) or its frequency and phase. Prints a table, and fails if a
+strain (the exponent), a wave of stress (exponent, modulus, amplitude) or its frequency and phase; with "profiles" the friction
+at three places of the body, between which it is linear. Prints a table, and fails if a
 share of intervals is outside of its binomial error (one in a thousand), or a mean error above a fifth of the deviation and
 outside of its own. Error over deviation is the root of the rise of chi-square from the best value to the truth, with the sign of
 the error: as the intervals, it does not depend on how a variable is written (modulus, its inverse, its logarithm).
@@ -21,9 +22,23 @@ import crawler  # noqa: E402
 from crawler.measured import Samples  # noqa: E402
 
 ALL, FIRST = (int(sys.argv[i]) if len(sys.argv) > i else default for i, default in ((2, 10), (3, 1)))
+OF_PROFILES = sys.argv[4:] == ["profiles"]
 CHANCE = 1e-3  # of a failure of a right program
 WAVE, STRAIN = "Active stress/Travelling wave/", "Active stress/Prescribed strain/"
 BODY = "Body/"
+PROFILE = BODY + "Friction profile"
+
+
+def truth_of(scene, name):
+    """Number of a scene; that of a list by NAME[1], NAME[2], ..."""
+    return scene[PROFILE][int(name[-2]) - 1] if name.startswith(PROFILE) else scene[name]
+
+
+def with_number(scene, name, value):
+    """Scene with another number."""
+    if not name.startswith(PROFILE):
+        return {**scene, name: value}
+    return {**scene, PROFILE: [value if i == int(name[-2]) else one for i, one in enumerate(scene[PROFILE], 1)]}
 
 
 def animal(number):
@@ -31,7 +46,7 @@ def animal(number):
     random = np.random.default_rng(number)
     length, duration = random.uniform(0.5, 5), random.uniform(1.5, 3)
     scene = {BODY + "Length": length, BODY + "Anchoring exponent": random.uniform(1, 3.5), "Time/End time": duration}
-    kind = ("strain", "wave", "clock")[number % 3]
+    kind = "profile" if OF_PROFILES else ("strain", "wave", "clock")[number % 3]
     if kind == "strain":
         scene |= {"Model": "kinematic", "Active stress/Generator": "prescribed strain", STRAIN + "Given by": "wave",
                   STRAIN + "Amplitude": random.uniform(0.1, 0.4), STRAIN + "Wave number": random.uniform(0.7, 1.5),
@@ -44,6 +59,10 @@ def animal(number):
     if kind == "clock":
         scene[WAVE + "Phase"] = random.uniform(-0.2, 0.2)
         return scene, {WAVE + "Frequency": (0.5, 1.5), WAVE + "Phase": (-0.5, 0.5)}, random
+    if kind == "profile":
+        scene[BODY + "Profile interpolation"] = "linear"
+        scene[PROFILE] = random.uniform(0.6, 1.7, 3).tolist()
+        return scene, {f"{PROFILE}[{i}]": (0.1, 6) for i in (1, 2, 3)}, random
     return scene, {BODY + "Anchoring exponent": (0.1, 6), BODY + "Elastic modulus": (0.2, 8), WAVE + "Amplitude": (0.01, 2)}, random
 
 
@@ -65,22 +84,25 @@ def errors_of(number):
     """For each variable: error over deviation, and whether the intervals have the truth."""
     truth, variables, random = animal(number)
     data, said = measured(truth, random)
-    scene = {name: value for name, value in truth.items()}
+    scene = dict(truth)
     for name, (low, high) in variables.items():  # a start beside the truth
-        scene[name] = float(np.clip(truth[name] * random.uniform(0.8, 1.25) + (0.05 if "Phase" in name else 0), low, high))
+        scene = with_number(scene, name, float(np.clip(truth_of(truth, name) * random.uniform(0.8, 1.25) + (0.05 if "Phase" in name else 0), low, high)))
     settings = {"set": {"Fit/Markers at": ", ".join(map(repr, said.pop("markers_at").tolist()))}, **said}
     found = crawler.fit(scene, data, variables, **settings)
     rows = []
     for name, one in found.variables.items():
+        true = truth_of(truth, name)
         if one["determined"]:
-            within = [(ends[0] is None or ends[0] <= truth[name]) and (ends[1] is None or truth[name] <= ends[1])
+            within = [(ends[0] is None or ends[0] <= true) and (ends[1] is None or true <= ends[1])
                       for ends in (one["interval_68"], one["interval_95"])]
-            rise, share = rise_at(truth[name], one), one["numerical_error"] / one["deviation"]
+            rise, share = rise_at(true, one), one["numerical_error"] / (one["deviation"] or np.inf)
         else:  # those with large values are often not told: without them there would be a bias
-            best = {other: its["used"] for other, its in found.variables.items()}
-            held = crawler.fit({**scene, **best, name: truth[name]}, data, {other: variables[other] for other in best if other != name}, **settings)
+            held = scene
+            for other, its in found.variables.items():
+                held = with_number(held, other, true if other == name else its["used"])
+            held = crawler.fit(held, data, {other: variables[other] for other in variables if other != name}, **settings)
             rise, share, within = held.goodness.chi_square - found.goodness.chi_square, 0, [None, None]
-        rows.append((name.split("/")[-1], np.sign(one["used"] - truth[name]) * np.sqrt(max(rise, 0)), *within, share))
+        rows.append((name.split("/")[-1], np.sign(one["used"] - true) * np.sqrt(max(rise, 0)), *within, share))
     return rows, found.goodness.probability
 
 

@@ -44,6 +44,8 @@ namespace crawler
     {
       std::optional<PictureTimes> times; ///< set if they differ from those of the input
       std::vector<double> points;        ///< points of the kymograph; empty: there is none
+      bool has_gait                          = true;
+      std::optional<NumericsChoice> numerics = {}; ///< set if they need not be chosen
     };
 
     /// Makes new tables for a run, or for the next attempt.
@@ -67,7 +69,8 @@ namespace crawler
       run.notes                      = notes_on_choice(input, input.parameters.model);
       ReducedModel level(input.scene, input.parameters.model);
       run.result = level.compute(input.parameters.accuracy, output.energy_balance, keep_going);
-      level.describe_gait(run.result);
+      if (kept.has_gait)
+        level.describe_gait(run.result);
       check_identities(run.result, input.parameters);
       if (afterwards && run.result.time.status == Status::finished)
         afterwards(input, {}, run.result);
@@ -89,18 +92,23 @@ namespace crawler
     {
       const Parameters &parameters = input.parameters;
       const PictureTimes pictures  = kept.times ? *kept.times : picture_times(parameters.output, input.scene);
-      auto chosen                  = choose_numerics(MPI_COMM_SELF, parameters, input.scene, keep_going);
+      auto &chosen = run.numerics = kept.numerics;
+      if (!chosen)
+      {
+        chosen = choose_numerics(MPI_COMM_SELF, parameters, input.scene, keep_going);
+        if (chosen && !pictures.is_empty())
+          prepare_for_pictures(*chosen, parameters);
+      }
       if (!chosen)
       {
         run.result.time.status = Status::stopped;
         return;
       }
-      if (!pictures.is_empty())
-        prepare_for_pictures(*chosen, parameters);
       run.notes                         = notes_on_choice(input, parameters.model, &chosen->numerics);
       const Simulation::Options options = {.energy_balance = parameters.output.energy_balance,
                                            .cycles         = cycle_wish(parameters, input.scene, !pictures.is_empty()),
-                                           .gait           = Simulation::GaitWish::any};
+                                           .gait =
+                                             kept.has_gait ? Simulation::GaitWish::any : Simulation::GaitWish::none};
       const auto simulate               = [&](const NumericsChoice &choice) {
         begin_tables(parameters.output, input.scene, kept, run);
         std::vector<std::unique_ptr<Observer>> observers;
@@ -124,7 +132,7 @@ namespace crawler
   } // namespace
 
   RunInMemory
-  run_in_memory(Input input,
+  run_in_memory(Input &input,
                 const ModelChoice &model,
                 const std::optional<WantedFields> &wanted,
                 const std::function<bool()> &interrupted,
@@ -144,7 +152,9 @@ namespace crawler
     if (wanted)
     {
       kept.times.emplace(std::vector<double>(), wanted->times, input.scene.end_time);
-      kept.points = wanted->points;
+      kept.points   = wanted->points;
+      kept.has_gait = !wanted->is_all;
+      kept.numerics = wanted->numerics;
     }
     else if (output.has_snapshots() && output.kymograph)
       kept.points = Kymograph::equidistant();

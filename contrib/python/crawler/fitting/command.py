@@ -25,7 +25,7 @@ def command_line():
     """Parses the options."""
     parser = Parser(prog="crawler fit", description=DESCRIPTION, allow_abbrev=False)
     parser.add_argument("files", metavar="FILE", nargs="+", help="parameter file with a section Fit")
-    parser.add_argument("--data", action="append", metavar="FILE", help="measured data (repeatable, for data of several kinds; default: Fit/Data)")
+    parser.add_argument("--data", action="append", metavar="FILE", help="measured data (repeatable, one file of each kind; default: Fit/Data)")
     parser.add_argument("--set", action="append", default=[], metavar="ENTRY=VALUE", help="sets an entry (repeatable)")
     parser.add_argument("--output", metavar="DIR", help="output folder (default: output-NAME for NAME.prm; of several "
                         "files output-comparison, with a folder NAME for each)")

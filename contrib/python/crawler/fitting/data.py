@@ -128,7 +128,8 @@ def read_data(data, parameters, **reading):
         if kind is None:
             raise InputError(f"{name} has samples of {samples.quantity}, but markers, strain, or columns t and centre or speed are expected")
         if (other := kinds.setdefault(kind, name)) is not name:
-            raise InputError(f"{other} and {name} both have {WORDS[kind]}, but data of different kinds are expected")
+            raise InputError(f"{other} and {name} both have {WORDS[kind]}, but one file of each kind is expected; several recordings are fitted one "
+                             "by one")
         read.append((samples, kind, name))
     shift, deviations = _shift_of(read, parameters["Fit/First time"]), _deviations_of(read, str(parameters["Fit/Standard deviation"]))
     free, series = 0.0, []

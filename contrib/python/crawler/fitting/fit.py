@@ -9,6 +9,7 @@ from ..needs import Failed, InputError
 from .result import NEAR, SHARE, Best, described, unfinished
 from .starts import best_of_starts, table_of_starts
 from .uncertainty import covariance, undetermined_directions
+from .units import require_units
 
 LARGEST_ACCURACY, LEAST_ACCURACY = 1e-4, 3e-11  # accuracies of runs whose differences are derivatives
 MOST_REFINEMENTS = 4
@@ -147,6 +148,9 @@ def find(model, progress=lambda text: None, kept=None, workers=1):
     model.accuracy = min(max(float(model.parameters["Accuracy"]), LEAST_ACCURACY), LARGEST_ACCURACY)
     try:
         model.limit_steps()
+        model.far_units = require_units(model)
+        for note in model.far_units:
+            progress(note)
         z, why = best_of_starts(problem, kept, workers, progress)
         for refinement in range(MOST_REFINEMENTS + 1):
             try:
@@ -185,9 +189,8 @@ def _error_of_runs(problem, z, jacobian, deviation):
     displacement that is wrong by its bound at the end, and before in proportion to time. jacobian: of residuals in
     deviations."""
     model, data = problem.model, problem.data
-    problem.last = None  # the bound is then that of this run
     values, basis = problem.run(z)
-    rate = model.bound / max(one.t[-1] for one in data.series) if any(one.t[-1] > 0 for one in data.series) else 0.0
+    rate = model.bound(problem.real(z)) / max(one.t[-1] for one in data.series) if any(one.t[-1] > 0 for one in data.series) else 0.0
     drift = data.flat([{"speed": rate, "strain": 0.0}.get(one.kind, rate * one.t[:, None]) for one in data.series])
     finer, _ = model(problem.real(z), model.accuracy / 30)
     if not np.all(np.isfinite(finer)):

@@ -2,6 +2,7 @@
 """Values of a run at the data, and their derivatives."""
 import dataclasses
 import json
+import math
 
 import numpy as np
 
@@ -38,9 +39,14 @@ class Model:
         require_enough(data, self.names)
         self.low, self.high, self.start = np.array([one[1:] for one in variables]).T
         self._require_seen()
-        self.accuracy, self.n_runs, self.n_cut, self.problem, self.bound = None, 0, 0, "", 0.0
+        self.accuracy, self.n_runs, self.n_cut, self.problem = None, 0, 0, ""
+        self.far_units = []  # sentences on data that may be in other units than the scene
         self.is_refused = False  # the problem is that of a wrong input
         self.n_steps, self.most_steps = 0, self.parameters[STEP_LIMIT]
+        self._runs, self._chosen_at = None, None  # FieldRuns, and the values and Accuracy at which its numerics were chosen
+
+    def __getstate__(self):
+        return {**vars(self), "_runs": None, "_chosen_at": None}
 
     def _require_seen(self):
         """Raises InputError for variables that do not affect the data, or with which a body ends before its data do."""
@@ -60,35 +66,37 @@ class Model:
         """Settings of the entries with these values."""
         return [f"{name}={float(value)!r}" for name, value in zip(self.names, x)]
 
-    def _answer(self, x, accuracy, times, places):
+    def _answer(self, x, accuracy, times, places, is_similar):
+        if self._runs is None:
+            settings = ["Output/Number of snapshots=0", "Output/Statistics=false", "Output/Sensitivities="]
+            self._runs = _compiled().FieldRuns(self.scene([*self.overrides(self.start), *settings]), [*self.names, "Accuracy", STEP_LIMIT])
         self.n_runs += 1
-        settings = [*self.overrides(x), "Output/Number of snapshots=0", "Output/Statistics=false", "Output/Sensitivities=",
-                    f"Accuracy={accuracy!r}", f"{STEP_LIMIT}={self.most_steps}"]
         self.is_refused = False
+        if not is_similar:
+            self._chosen_at = (tuple(x), accuracy)
         try:
-            return _compiled().run(self.scene(settings), times.tolist(), places.tolist())
+            return self._runs.run([*x, accuracy, self.most_steps], is_similar, times.tolist(), places.tolist())
         except InputError as error:  # e.g. a formula that is no friction with these constants
             self.problem, self.is_refused = str(error), True
             return None
 
-    def __call__(self, x, accuracy=None):
+    def __call__(self, x, accuracy=None, is_similar=False):
         """Returns the values [datum], and the stretch [time, marker] if there are markers; NaN if the run does not
-        finish, in which case problem has the reason."""
+        finish, in which case problem has the reason. is_similar: with mesh and tolerance of the last run that had its
+        own."""
         x, series = np.clip(x, self.low, self.high), self.data.series
         length = x[self.names.index(LENGTH)] if LENGTH in self.names else self.parameters[LENGTH]
         whole = np.linspace(0, length, POINTS) if any(one.kind in ("centre", "speed") for one in series) else []
         times, places = np.unique(np.concatenate([one.t for one in series])), np.unique(np.concatenate([whole, *(one.places for one in series)]))
-        answer = self._answer(x, accuracy or self.accuracy, times, places)
+        answer = self._answer(x, accuracy or self.accuracy, times, places, is_similar)
         if answer is None:
             return np.full(self.data.n, np.nan), None
-        summary = json.loads(answer["summary"])
-        if summary["status"] != "finished" or "fields" not in answer:
-            is_cut = summary["reason"] == "step_limit"
+        if "fields" not in answer:
+            is_cut = answer["reason"] == "step_limit"
             self.n_cut += is_cut
-            self.problem = f"{summary['reason']}: " + (f"it needs more than {self.most_steps} steps" if is_cut else summary["message"])
+            self.problem = f"{answer['reason']}: " + (f"it needs more than {self.most_steps} steps" if is_cut else answer["message"])
             return np.full(self.data.n, np.nan), None
-        self.n_steps = summary["steps"]
-        self.bound = (summary.get("displacement_error") or {}).get("total") or 0.0
+        self.n_steps = answer["steps"]
         values, stretch = [], None
         for one in series:
             where = np.ix_(np.searchsorted(times, one.t), np.searchsorted(places, one.places if len(one.places) else whole))
@@ -102,6 +110,19 @@ class Model:
                 values.append(_mean(field["velocity"]) if one.kind == "speed" else _mean(field["displacement"]) + length / 2)
         return self.data.flat(values), stretch
 
+    def choose_at(self, x):
+        """Sees to it that similar runs have the mesh and tolerance of a run with these values."""
+        if self._chosen_at != (tuple(np.clip(x, self.low, self.high)), self.accuracy):
+            self(x)
+
+    def bound(self, x):
+        """Bound of the error of the displacement at the end of a run: 0 if the scene wants none, NaN if it is not known."""
+        self.n_runs += 1
+        settings = [*self.overrides(x), "Output/Number of snapshots=0", "Output/Statistics=false", "Output/Sensitivities=", f"Accuracy={self.accuracy!r}"]
+        summary = json.loads(_compiled().run(self.scene(settings), None, None)["summary"])
+        error = (summary.get("displacement_error") or {}).get("total")
+        return error if error is not None else math.nan if self.parameters["Error estimate"] else 0.0
+
     def limit_steps(self):
         """Limits the steps of all runs by those of the run at the start, unless the scene limits them: at absurd values
         runs would not end."""
@@ -112,6 +133,7 @@ class Model:
         """Derivatives [datum, variable]: central differences, or, if value is the model at x, one-sided ones. Raises
         Failed where a variable has no run on either side, InputError if both are refused."""
         columns = []
+        self.choose_at(x)
         for j, at in enumerate(x):
             step = min(STEP * max(abs(at), 1e-2 * (self.high[j] - self.low[j])), 0.25 * (self.high[j] - self.low[j]))
             sides = [] if value is None else [(at, value)]
@@ -119,11 +141,11 @@ class Model:
                 if len(sides) < 2 and self.low[j] <= end <= self.high[j]:
                     side = np.array(x, dtype=float)
                     side[j] = end
-                    sides.append((end, self(side)[0]))
+                    sides.append((end, self(side, is_similar=True)[0]))
                     if not np.all(np.isfinite(sides[-1][1])):
                         sides.pop()
             if value is None and len(sides) == 1:  # at a limit, or inversion of the body on the other side
-                sides.append((at, self(x)[0]))
+                sides.append((at, self(x, is_similar=True)[0]))
             if len(sides) < 2:
                 raise (InputError if self.is_refused else Failed)(f"beside {self.names[j]} = {at:.6g} there is no run: {self.problem}")
             columns.append((sides[0][1] - sides[1][1]) / (sides[0][0] - sides[1][0]))

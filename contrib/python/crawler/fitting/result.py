@@ -42,6 +42,8 @@ def value_in_words(one):
         return f"{one['value']:.6g} (so far)"
     if not one["determined"]:
         return "not determined by the data"
+    if one["at_limit"]:
+        return f"{one['value']:.6g} at the limit of its range,"
     numerical = "?" if one["numerical_error"] is None else f"{one['numerical_error']:.1g}"
     return f"{one['value']:.6g} +- {one['deviation']:.2g} +- {numerical} (numerical)"
 
@@ -90,7 +92,7 @@ def unfinished(problem, starts, why=""):
                f"fewer variables are expected{units}" if why else
                f"stopped by a signal after {len(starts)} of {int(model.parameters['Fit/Starts'])} starts; --resume continues")
     found = {"status": "failed" if why else "stopped", "reason": "no_convergence" if why else "signal", "message": message,
-             "variables": variables, "undetermined": [], "notes": [*data.notes, *_of_cut_runs(model), *([message] if why else [])],
+             "variables": variables, "undetermined": [], "notes": [*data.notes, *model.far_units, *_of_cut_runs(model), *([message] if why else [])],
              "goodness": goodness, "residuals": math.sqrt(squares / goodness["n_data"]) * problem.scale, "accuracy": model.accuracy,
              "n_runs": model.n_runs, "starts": starts}
     return Fit(found, data, -residual * problem.scales, dict(one.split("=", 1) for one in model.overrides(values)), None)
@@ -129,7 +131,8 @@ def _variables(problem, best, values):
     profile = Profile(lambda z: problem.residuals(z) / best.deviation, lambda z: problem.jacobian(z) / best.deviation, best.z,
                       best.jacobian)
     at_best, basis = problem.run(best.z)
-    bias = curvature_bias(lambda z: problem.scaled(model(problem.real(z))[0] - at_best, basis) / best.deviation, best.jacobian, best.z)
+    model.choose_at(values)
+    bias = curvature_bias(lambda z: problem.scaled(model(problem.real(z), is_similar=True)[0] - at_best, basis) / best.deviation, best.jacobian, best.z)
     for j, name in enumerate(model.names):
         at, is_told = best.z[j], not best.involved[j]
         one = {"value": float(values[j]) if is_told else None, "used": float(values[j]), "deviation": None, "numerical_error": None, "bias": None,
@@ -143,7 +146,7 @@ def _variables(problem, best, values):
         if is_told and ends["interval_95"] == [None, None]:  # chi-square rises slower than its curvature
             one.update(value=None, determined=False)
         elif is_told:
-            one["deviation"] = float(spread[j] * width[j])
+            one["deviation"] = float(spread[j] * width[j]) if not one["at_limit"] else None  # chi-square is no parabola about a limit
             one["numerical_error"] = float(best.numerical[j] * width[j]) if math.isfinite(best.numerical[j]) else None
             one["bias"] = float(bias[j] * width[j]) if math.isfinite(bias[j]) else None
             one.update({level: [None if end is None else float(model.low[j] + end * width[j]) for end in ends[level]] for level in LEVELS})
@@ -205,7 +208,9 @@ def _notes(best, variables, goodness, data, model):
     """Sentences on possible mistakes."""
     parameters = model.parameters
     yield from _does_not_fit(goodness)
-    missing = [name for name, one in variables.items() if one["deviation"] is None]
+    if (goodness["probability"] or 0) < UNLIKELY:
+        yield from model.far_units
+    missing = [name for name, one in variables.items() if not one["determined"]]
     if missing and _is_hopeless(goodness):
         yield (f"there is no deviation of {', '.join(missing)}: derivatives of a scene that does not fit cannot tell whether the data determine "
                f"{'it' if len(missing) == 1 else 'them'}")
@@ -214,13 +219,13 @@ def _notes(best, variables, goodness, data, model):
                f"{goodness['degrees_of_freedom']} degrees of freedom; the deviations are too large, or the scene has the noise of the data")
     if (parameters["Active stress/Generator"], parameters["Active stress/Prescribed strain/Given by"]) == ("prescribed strain", "table") and data.places.size:
         yield ("the strain of the table is taken as exact: if it was made of these tracks its noise counts as motion, and the deviations of the "
-               "variables are too small by a factor of two or more")
+               "variables are too small by a factor of two or more; fits of copies of the tracks with noise added, each with its table, show the scatter")
     yield from data.notes
     yield from _of_cut_runs(model)
     for name, one in variables.items():
         if one["at_limit"] and one["determined"]:
-            yield (f"{name} is at the limit of its range, {one[one['at_limit']]:g}: the best value may lie beyond it, and its interval is one-sided, as "
-                   "it ends there")
+            yield (f"{name} is at the limit of its range, {one[one['at_limit']]:g}: the best value may lie beyond it; its interval is one-sided, to "
+                   "where chi-square has risen by 1 (68 %) and 3.84 (95 %) from its value there, and there is no deviation")
         if abs(one["bias"] or 0) > BIASED * (one["deviation"] or math.inf):
             yield (f"over many such data sets the mean of {name} would be about {abs(one['bias']):.2g} too {'large' if one['bias'] > 0 else 'small'}, as the run "
                    "is not linear in it; the interval allows for that")

@@ -137,10 +137,16 @@ class Profile:
             if not np.all(np.isfinite(residual)):
                 break
             before, best = best, min(best, float(residual @ residual))
-            if not others.any() or before - best < 0.02 * max(best - self.least, 0.1):
+            small = 0.02 * max(best - self.least, 0.1)
+            if not others.any() or before - best < small:
                 break
-            x[others] = np.clip(x[others] - np.linalg.lstsq(self.slopes[:, others], residual, rcond=1e-9)[0], 0, 1)
-            residual = self.residuals(x)
+            after = x.copy()
+            after[others] = np.clip(x[others] - np.linalg.lstsq(self.slopes[:, others], residual, rcond=1e-9)[0], 0, 1)
+            linear = residual + self.slopes @ (after - x)
+            if best - linear @ linear < small:  # so near that a run would say the same
+                best = float(min(best, linear @ linear))
+                break
+            x, residual = after, self.residuals(after)
         return math.sqrt(max(best - self.least, 0.0))
 
     def _look(self, points, j, unit, z):

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tracks of markers in the files of trackers: DeepLabCut, SLEAP (csv, h5), Tracker, FIMTrack, the Multi-Worm Tracker
+"""Tracks of markers in the files of trackers: DeepLabCut and SLEAP (csv, h5), Tracker, FIMTrack, the Multi-Worm Tracker
 (.spine), Tierpsy (hdf5). Files with a column for each quantity (TrackMate, ImageJ, Tierpsy's csv) are read by samples.py.
 """
 import dataclasses
+import io
 import itertools
+import pickle
 import re
 
 import numpy as np
@@ -150,8 +152,9 @@ def _pairs(sheet, _animal):
 
 
 def read_hdf5(path, animal):
-    """Tracks of an HDF5 file of SLEAP (tracks, node_names) or Tierpsy (coordinates/skeletons, timeseries_data), or
-    (s, t, values, name) of one with datasets s, t and m or strain. Raises InputError if it has none of these."""
+    """Tracks of an HDF5 file of SLEAP (tracks, node_names), DeepLabCut (a group with table) or Tierpsy
+    (coordinates/skeletons, timeseries_data), or of one with datasets t and x [time, marker]; or (s, t, values, name) of
+    one with datasets s, t and m or strain. Raises InputError if it has none of these."""
     try:
         import h5py
     except ImportError:
@@ -167,6 +170,11 @@ def read_hdf5(path, animal):
                 keep = np.array(animals) == chosen_animal(animals, animal, path)
                 return Tracks([str(i) for i in range(points.shape[1])], rows["timestamp"][keep].astype(float), points[keep, :, 0],
                               points[keep, :, 1], None, "Tierpsy")
+            for group in file.values():
+                if "non_index_axes" in group.attrs and "table" in group:
+                    return _deeplabcut_hdf5(group, animal, path)
+            if {"t", "x"} <= set(file):
+                return _plain_hdf5(file, path)
             for name in ("m", "strain", "stretch"):
                 if {"s", "t", name} <= set(file):
                     s, t, values = (np.asarray(file[key], dtype=float) for key in ("s", "t", name))
@@ -180,8 +188,8 @@ def read_hdf5(path, animal):
         if isinstance(error, InputError):
             raise
         raise InputError(f'"{path}" cannot be read as HDF5: {error}') from None
-    raise InputError(f'"{path}" is HDF5 with {found or "nothing in it"}, but "tracks" of SLEAP, "coordinates/skeletons" and '
-                     '"timeseries_data" of Tierpsy, or s, t and m or strain are expected')
+    raise InputError(f'"{path}" is HDF5 with {found or "nothing in it"}, but "tracks" of SLEAP, the table of DeepLabCut, '
+                     '"coordinates/skeletons" and "timeseries_data" of Tierpsy, t and x of markers, or s, t and m or strain are expected')
 
 
 def _sleap_hdf5(file, animal, path):
@@ -192,3 +200,45 @@ def _sleap_hdf5(file, animal, path):
     one = animals.index(chosen_animal(animals, animal, path))
     scores = np.asarray(file["point_scores"], dtype=float)[one].T if "point_scores" in file else None
     return Tracks(names, np.arange(tracks.shape[3], dtype=float), tracks[one, 0].T, tracks[one, 1].T, scores, "SLEAP")
+
+
+class _PlainUnpickler(pickle.Unpickler):
+    """Reader of pickled lists of texts, which refuses everything else: it could run a program."""
+
+    def find_class(self, module, name):
+        raise pickle.UnpicklingError(f"{module}.{name}")
+
+
+def _deeplabcut_hdf5(group, animal, path):
+    """Tracks of a table of pandas, whose names of columns are a pickled list in an attribute."""
+    try:
+        columns = _PlainUnpickler(io.BytesIO(bytes(group.attrs["non_index_axes"]))).load()[0][1]
+        columns = [tuple(map(str, column)) for column in columns]
+    except (pickle.UnpicklingError, LookupError, TypeError, EOFError, ValueError):
+        raise InputError(f'"{path}" is not of DeepLabCut: the names of columns of its table cannot be read') from None
+    rows = group["table"][()]
+    if "values_block_0" not in (rows.dtype.names or ()) or rows["values_block_0"].shape[1:] != (len(columns),) or len({*map(len, columns)} | {3, 4}) > 2:
+        raise InputError(f'"{path}" has {len(columns)} names of columns (scorer, perhaps animal, body part, x, y or likelihood), but one for each column of '
+                         "the table is expected")
+    if len(columns[0]) == 4:
+        one = chosen_animal([column[1] for column in columns if column[1] != "single"], animal, path)
+    elif animal:
+        raise InputError(f'"--animal" is "{animal}", but "{path}" has no animals with names')
+    keep = [i for i, column in enumerate(columns) if len(column) == 3 or column[1] == one]
+    names = list(dict.fromkeys(columns[i][-2] for i in keep))
+    arrays = {quantity: np.full((len(rows), len(names)), np.nan) for quantity in ("x", "y", "likelihood")}
+    for i in keep:
+        if columns[i][-1] in arrays:
+            arrays[columns[i][-1]][:, names.index(columns[i][-2])] = rows["values_block_0"][:, i]
+    return Tracks(names, rows["index"].astype(float), *arrays.values(), "DeepLabCut")
+
+
+def _plain_hdf5(file, path):
+    """Tracks of datasets t, x [time, marker], and perhaps y, whose markers have numbers."""
+    t, x = (np.asarray(file[name], dtype=float) for name in ("t", "x"))
+    y = np.asarray(file["y"], dtype=float) if "y" in file else None
+    for name, values in (("x", x), ("y", x if y is None else y)):
+        if t.ndim != 1 or x.ndim != 2 or len(x) != len(t) or values.shape != x.shape:
+            turned = " (the order is reversed)" if values.shape[-1:] == t.shape else ""
+            raise InputError(f'"{name}" of "{path}" has {" x ".join(map(str, values.shape))} numbers, but {np.size(t)} times x markers are expected{turned}')
+    return Tracks([str(i + 1) for i in range(x.shape[1])], t, x, y, None, "datasets t and x", counts_frames=False)

@@ -49,7 +49,7 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
                  animal="", head="", confidence=0.0, decimal="", words=None):
     """Reads the Samples of a file, in the wanted units.
 
-    path: a table as text, or HDF5 of SLEAP, Tierpsy or with s, t and m or strain. quantity: "m", "strain", "stretch" or
+    path: a table as text, or HDF5 of SLEAP, DeepLabCut, Tierpsy or with t and x, or s, t and m or strain. quantity: "m", "strain", "stretch" or
     "markers" (default: by the names). columns: other names, "t=Frame time, x=X". unit_of_s, unit_of_t, unit_of_m: a
     factor (1/30), as a number or text, or a unit. shift_s, shift_t: a number, or "first". animal: name of the one that
     is read. head: the marker at the head. confidence: markers with less are gaps. decimal: "comma" or "point", where a

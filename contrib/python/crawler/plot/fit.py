@@ -67,7 +67,7 @@ def draw_variables(axes, variables):
             for level, thickness in (("interval_95", 1.5), ("interval_68", 4)):
                 ends = [edge if end is None else (end - low) / width for end, edge in zip(one[level], (0, 1))]
                 axes.plot(ends, [row, row], color=COLOURS[0], linewidth=thickness, solid_capstyle="butt")
-            text = f"{one['value']:.5g} $\\pm$ {one['deviation']:.2g}"
+            text = f"{one['value']:.5g}" + (" at the limit" if one["deviation"] is None else f" $\\pm$ {one['deviation']:.2g}")
         if one["value"] is not None:
             axes.plot((one["value"] - low) / width, row, "|", color=COLOURS[1], markersize=14, markeredgewidth=1.5)
         axes.text(0.5, row + 0.22, f"{name.split('/')[-1]}: {text}", ha="center", fontsize=9)

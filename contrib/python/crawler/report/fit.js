@@ -11,7 +11,7 @@ function showValues() {
   const unit = entry => unitText(page.parameters.entries.find(one => one.entry === entry.replace(/\[[^\]]*\]$/, ''))?.unit), between = (ends, one) => !ends ? '–'
     : [0, 1].flatMap(i => [i ? ' to ' : '', ends[i] === null ? 'the limit' : exactly(ends[i], showWith(ends[i], one.deviation))]);
   const box = section('Values'), rows = Object.entries(summary.variables ?? {}).map(([entry, one]) => [[...brokenAtSlashes(entry)],
-    one.determined === false ? 'not determined by the data' : [exactly(one.value, showWith(one.value, one.deviation)), known(one.deviation) ? ` ± ${show(one.deviation, 2)}` : '', el('span', {class: 'unit'}, ' ' + unit(entry))],
+    one.determined === false ? 'not determined by the data' : [exactly(one.value, showWith(one.value, one.deviation)), known(one.deviation) ? ` ± ${show(one.deviation, 2)}` : one.at_limit ? ' at the limit' : '', el('span', {class: 'unit'}, ' ' + unit(entry))],
     show(one.numerical_error, 2), show(one.bias, 2), between(one.interval_68, one), between(one.interval_95, one), `${show(one.from)} to ${show(one.to)}`]);
   box.append(tableOf(['entry', 'value ± deviation', 'numerical error', 'bias', '68 %', '95 %', 'range'], rows));
   const {goodness: fit = {}} = summary;
@@ -26,7 +26,7 @@ function showValues() {
 
 /** The rise of chi-square with each variable held off its best value and the others free. */
 function showProfiles() {
-  const lines = told().map(([entry, one]) => [entry, one.profile.map(([x]) => (x - one.value) / one.deviation), one.profile.map(([, rise]) => rise)]).filter(([, x]) => x.length > 1);
+  const lines = told().filter(([, one]) => known(one.deviation)).map(([entry, one]) => [entry, one.profile.map(([x]) => (x - one.value) / one.deviation), one.profile.map(([, rise]) => rise)]).filter(([, x]) => x.length > 1);
   if (!lines.length) return;
   const box = figure('Profiles.', 'Chi-square with a variable held there and the others free; where it has risen by 1 and 3.84 (grey) the intervals of 68 % and 95 % end. Dashed: the parabola of a linear model.');
   section('How well the data tell them', box);
