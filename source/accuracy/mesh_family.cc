@@ -270,7 +270,10 @@ namespace crawler
           const bool inverts_elsewhere =
             latest_.inversion && std::abs(before.change) > largest_change_of_inversion * latest_.inversion->t;
           if (levels_.size() > 1 && !inverts_elsewhere)
-            space_error_ = std::max((end_is_nearly_lost() ? 2. : 1.) * error_of(before, now), unseen(now));
+          {
+            const double error = (end_is_nearly_lost() ? 2. : 1.) * error_of(before, now);
+            space_error_       = std::max(error, unseen(now));
+          }
         }
         levels_.push_back(now);
       }
@@ -286,7 +289,8 @@ namespace crawler
       };
 
       /// Error by thin features: diffusion smooths the stretch over `length` in a stride, and the displacements of
-      /// meshes with larger cells seem to converge without features as thin.
+      /// meshes with larger cells seem to converge without features as thin. Where they do not even seem to, nothing is
+      /// known.
       double
       unseen(const Level &now) const
       {
@@ -294,7 +298,10 @@ namespace crawler
         const double stride = scene_.active_stress->period().value_or(scene_.end_time),
                      length = std::sqrt(body.elastic_modulus * stride / body.friction_coefficient) / body.length;
         const bool is_seen  = now.result.mesh->n_cells * length >= 1.;
-        return finished(now.result) && !is_seen ? unseen_part * length * std::abs(now.value) : 0.;
+        if (is_seen || !finished(now.result))
+          return 0.;
+        const double size = std::max(std::abs(now.value), part_of_largest * now.result.largest_u);
+        return now.order < min_order ? HUGE_VAL : unseen_part * length * size;
       }
 
       /// True if an end is nearly lost: the last half of a cell then has friction unlike that of its middle, and order

@@ -163,8 +163,8 @@ namespace crawler::accuracy_rule
     /// Round-off of the displacement, in lengths of the body.
     inline constexpr double round_off = 4e-15;
     /// Rates at which extrapolations settle: the fastest that is believed, and at a turning point. Regions thinner than
-    /// cells count unseen_part of their length.
-    inline constexpr double fastest = 8., turned = 4., unseen_part = 0.15;
+    /// cells count unseen_part of their length, for a displacement of at least part_of_largest displacement of a point.
+    inline constexpr double fastest = 8., turned = 4., unseen_part = 0.15, part_of_largest = 0.25;
     /// Factor on the last change of the time of an inversion for its error, for a between min_slow_exponent and 0, and
     /// the rate at which such changes are believed to fall.
     inline constexpr double min_slow_exponent = -0.5, sticking_factor = 3., sticking_rate = 3.;

@@ -97,6 +97,47 @@ TEST(MeshFamily, NumbersOfTheTable)
     }
 }
 
+/// Displacements whose order is 2 twice in a row settle on few cells, whatever the works do.
+TEST(MeshFamily, RegularOrdersNeedNoFinerMesh)
+{
+  const auto result = test::run_with(test::with(test::wave(-1., 0.6), {{"Accuracy", "1e-6"}})).result;
+  expect_true(result, 0.2349598822, 1e-10, 1e-6);
+  EXPECT_LE(result.mesh->n_cells, 800u);
+}
+
+/// Soft bodies whose layers are thin are answered by as many cells as they need, where the steps are few.
+TEST(MeshFamily, SoftBodiesGetManyCells)
+{
+  const Settings soft =
+    test::set("p = 2.5; travelling wave; Amplitude = 4.7e-6; Wave number = 1.4; Ramp duration = 0.5; k = 1.5e-5");
+  const auto found = test::run_with(test::with(soft, {{"Accuracy", "1e-4"}})).result,
+             finer = test::run_with(test::with(soft, {{"Accuracy", "1e-5"}})).result;
+  ASSERT_EQ(found.time.status, Status::finished) << found.time.message;
+  ASSERT_EQ(finer.time.status, Status::finished) << finer.time.message;
+  EXPECT_GT(found.mesh->n_cells, 3200u);
+  EXPECT_LE(std::abs(found.displacement - finer.displacement), found.error->total + finer.error->total);
+}
+
+/// Meshes that do not see a layer agree on a displacement without it: that tells nothing.
+TEST(MeshFamily, UnseenLayersLeaveTheErrorUnknown)
+{
+  const Settings soft =
+    test::set("p = 0.77; travelling wave; Amplitude = 9.4e-9; Wave number = 1.14; Frequency = 1.16; "
+              "Ramp duration = 0.3; k = 1.4e-7");
+  const auto found = test::run_with(test::with(soft, {{"Accuracy", "1e-2"}})).result,
+             finer = test::run_with(test::with(soft, {{"Accuracy", "1e-3"}})).result;
+  ASSERT_EQ(found.time.status, Status::finished) << found.time.message;
+  ASSERT_EQ(finer.time.status, Status::finished) << finer.time.message;
+  EXPECT_LE(std::abs(found.displacement - finer.displacement), found.error->total + finer.error->total);
+}
+
+/// The little that is left in an empty cell decides when it refills: small tolerances alone see it.
+TEST(MeshFamily, EmptyCellsRefillOnTime)
+{
+  const auto result = test::run_with(test::with(test::wave(-1., 0.999), {{"Accuracy", "1e-3"}})).result;
+  expect_true(result, 0.3991780907, 2e-5, 1e-3);
+}
+
 /// For -1 < a < 0 a body may lose its stretch inside: when is known as well as is said, and all places that are lost
 /// are named.
 TEST(MeshFamily, TimeOfAnInversion)
