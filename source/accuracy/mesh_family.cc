@@ -88,7 +88,7 @@ namespace crawler
       {
         if (latest_.inversion && space_error_ <= believed * latest_.inversion->t)
           return max_cells_if_inverted;
-        return max_cells;
+        return accuracy_ < accurate ? max_cells_if_accurate : max_cells; // the position form may need fewer
       }
 
       Numerics &

@@ -40,7 +40,7 @@ end
 
 OTHER_FORM = """
 set Model    = nonlinear
-set Accuracy = 1e-7
+set Accuracy = 2e-8
 subsection Body
   set Elastic modulus     = 1e-3
   set Anchoring exponent  = 4.5

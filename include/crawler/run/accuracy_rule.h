@@ -140,8 +140,8 @@ namespace crawler::accuracy_rule
   // tests/verification/random_extremes.cc and tests/benchmark/stretch_table.cc.
   namespace family
   {
-    /// Cells of the finest mesh, and of that of bodies that invert; an Accuracy that may take more work.
-    inline constexpr unsigned int max_cells = 51200, max_cells_if_inverted = 1600;
+    /// Cells of the finest mesh: in general, for an Accuracy below accurate, and of bodies that invert.
+    inline constexpr unsigned int max_cells = 51200, max_cells_if_accurate = 6400, max_cells_if_inverted = 1600;
     inline constexpr double accurate = 2e-6;
     /// Limits on cells times steps of the next mesh, about a second for each 2e6, and the factor by which it takes more
     /// of them than the last one.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/output/kymograph_writer.h>
+#include <crawler/output/statistics_writer.h>
 #include <crawler/parameters/plain_text.h>
 #include <crawler/studies/run/field_runs.h>
 
