@@ -174,11 +174,15 @@ namespace crawler
           latest_              = run(numerics());
         }
         measure_size();
+        SimulationResult other;
+        double checked = 0.; ///< tolerance of that run
         for (unsigned int i = 0; i < max_tolerances && value(latest_); ++i)
         {
-          Numerics finer               = numerics();
-          finer.tolerance              = checking(finer.tolerance);
-          const SimulationResult other = run(finer);
+          if (Numerics finer = numerics(); checking(finer.tolerance) != checked)
+          {
+            finer.tolerance = checked = checking(finer.tolerance);
+            other                     = run(finer);
+          }
           if (!value(other))
           {
             if (is_final(other))
@@ -193,7 +197,7 @@ namespace crawler
               break;
           }
           numerics().tolerance *= finer_tolerance;
-          latest_ = numerics().tolerance > finer.tolerance ? run(numerics()) : other;
+          latest_ = numerics().tolerance > checked ? run(numerics()) : other;
           measure_size();
         }
       }
