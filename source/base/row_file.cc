@@ -352,7 +352,6 @@ namespace crawler
   {
     on_first_rank(communicator, [&]() {
       require_harmless(path, "table", [&]() { RowReader(path).open(H5P_DEFAULT, group_name); });
-      return "";
     });
     H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);

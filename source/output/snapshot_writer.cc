@@ -63,7 +63,6 @@ namespace crawler
       frame.fields.*field.values = gather(own.*field.values, communicator_);
     on_first_rank(communicator_, [&]() {
       write(frame);
-      return "";
     });
   }
 
@@ -73,7 +72,6 @@ namespace crawler
     on_first_rank(communicator_, [&]() {
       scenery_.finish();
       files_->end(scenery_);
-      return "";
     });
   }
 

@@ -94,7 +94,6 @@ namespace
       const double start = MPI_Wtime();
       RowFile::create(path, "results", columns, n_blocks * block * n_ranks, {});
       print("making the file, each row", (MPI_Wtime() - start) / (n_blocks * block * n_ranks), 1);
-      return "";
     });
     const std::vector<RowFile::Row> rows(block, row);
     {
@@ -106,7 +105,6 @@ namespace
     }
     on_first_rank(MPI_COMM_WORLD, [&]() {
       std::filesystem::remove(path);
-      return "";
     });
   }
 } // namespace

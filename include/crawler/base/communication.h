@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace crawler
@@ -39,6 +40,18 @@ namespace crawler
    */
   std::string
   on_first_rank(MPI_Comm communicator, const std::function<std::string()> &action);
+
+  /// Version for an action that returns nothing.
+  template <typename Action>
+  requires std::is_void_v<std::invoke_result_t<Action>>
+  void
+  on_first_rank(MPI_Comm communicator, const Action &action)
+  {
+    on_first_rank(communicator, [&]() {
+      action();
+      return std::string();
+    });
+  }
 
   /// Version for an exit code: rank 0 decides how all ranks end.
   ExitCode

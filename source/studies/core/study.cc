@@ -167,7 +167,6 @@ namespace crawler
       for (const std::string &one : problems)
         if (!one.empty())
           throw FileError(one + "; the rows written so far are kept, and --resume computes the rest");
-      return "";
     });
   }
 

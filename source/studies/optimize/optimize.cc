@@ -334,7 +334,6 @@ namespace crawler
       memory = std::make_unique<OptimizeMemory>(cases, folder, file, options.command_line);
       if (memory->starts().empty())
         remove_optima(path);
-      return "";
     });
     clock.set_limit(cases.parameters().optimize.time_limit);
     OptimizeSearches searches(

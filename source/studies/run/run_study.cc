@@ -166,7 +166,6 @@ namespace crawler
         lock_.emplace(folder_, /*overwrite=*/true);
         resumption = resumption_of(folder_, checkpoint_);
       }
-      return "";
     });
     if (!options_.resume)
       return true;
@@ -224,7 +223,6 @@ namespace crawler
         lock_.emplace(folder_, options_.overwrite);
       begin_files(log_, input_, folder_, goes_on_);
       has_files_ = true;
-      return "";
     });
     if (model_)
       report_plan(log_, input_, *model_, choice_ ? &*choice_ : nullptr);
@@ -315,7 +313,6 @@ namespace crawler
             journal_.write();
           }
           remove_fields(folder_);
-          return "";
         });
     }
     if (is_again || choice.is_of_several_runs() || is_of_other_form)
@@ -358,7 +355,6 @@ namespace crawler
     warn_of_unused_petsc_options(communicator_, options_, log_);
     on_first_rank(communicator_, [&]() {
       leave_folder();
-      return "";
     });
     // Signals may have stopped some ranks only.
     return exit_code_of_first_rank(communicator_, [&]() {

@@ -237,7 +237,6 @@ namespace crawler
     }
     on_first_rank(communicator, [&]() {
       folder.require_in_place();
-      return "";
     });
     SweepEnd end{is_whole ? "finished" : "stopped", reason, 0., n_ranks, n_done, options.command_line};
     try

@@ -128,7 +128,6 @@ namespace crawler
         else
           its.apply(common.declarations);
       }
-      return "";
     });
   }
 

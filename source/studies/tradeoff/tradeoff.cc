@@ -240,7 +240,6 @@ namespace crawler
       on_first_rank(study.communicator, [&]() {
         plan.more["reference"] = text;
         create_table(study.folder.path(), study.table, plan, study.command_line);
-        return "";
       });
       return nlohmann::json::parse(text);
     }
@@ -307,14 +306,12 @@ namespace crawler
     }
     on_first_rank(communicator, [&]() {
       folder.require_in_place();
-      return "";
     });
     const SweepCounts counts = write_results_csv(communicator, path, table.file, table.group);
     end.seconds              = clock.seconds();
     on_first_rank(communicator, [&]() {
       conclude(study, reference, counts, end);
       folder.leave();
-      return "";
     });
     return code;
   }

@@ -38,7 +38,6 @@ namespace
     const unsigned long n = 4ul * n_ranks;
     on_first_rank(MPI_COMM_WORLD, [&]() {
       RowFile::create(path, "results", columns, n, {{"made by", "a test"}});
-      return "";
     });
     {
       RowFile file(MPI_COMM_WORLD, path, "results", columns);
