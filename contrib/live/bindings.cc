@@ -32,7 +32,7 @@ namespace crawler
       const ModelChoice model = choose_model(input);
       const double length = input.scene.body.length, end_time = input.scene.end_time;
       Json notes      = input.notes;
-      RunInMemory run = run_in_memory(input, model, std::nullopt, []() { return false; });
+      RunInMemory run = run_in_memory(input, model, {}, []() { return false; });
       kymograph       = std::move(run.kymograph);
       Json shown      = Json::object();
       for (const FieldName &field : field_names)

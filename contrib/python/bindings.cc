@@ -225,7 +225,7 @@ namespace crawler
         Input input = read_input(source.file(), run_in_memory_command);
         effective   = input.effective;
         notes       = input.notes;
-        std::optional<WantedFields> wanted;
+        WantedFields wanted;
         if (times)
           wanted = wanted_fields(input.scene, *times, places);
         const ModelChoice model = choose_model(input);

@@ -16,9 +16,9 @@ namespace crawler
     const auto notes    = name == "run"     ? read_input(file).notes
                           : name == "sweep" ? SweepPoints(MPI_COMM_SELF, file).notes()
                                             : OptimizeCases(MPI_COMM_SELF, file).notes(file);
-    const ExitCode code = name == "sweep"      ? sweep_input(MPI_COMM_SELF, options, file)
-                          : name == "optimize" ? optimize_input(MPI_COMM_SELF, options, file)
-                                               : run_input(MPI_COMM_SELF, options, file);
+    const ExitCode code = name == "sweep"      ? sweep(MPI_COMM_SELF, options, file)
+                          : name == "optimize" ? optimize(MPI_COMM_SELF, options, file)
+                                               : run(MPI_COMM_SELF, options, file);
     return {static_cast<int>(code), notes};
   }
 } // namespace crawler

@@ -17,13 +17,12 @@
 namespace crawler
 {
   ExitCode
-  check(MPI_Comm communicator, const CommandOptions &options)
+  check(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
   {
     Log log(rank_of(communicator) == 0, /*quiet=*/false);
-    ParameterFile file = read_file(communicator, options.file, options.overrides);
     if (check_optimize(communicator, file, log) || check_sweep(communicator, file, log))
       return ExitCode::finished;
-    const Input input = read_input(std::move(file), /*command=*/"check");
+    const Input input = read_input(file, /*command=*/"check");
     if (const FitParameters &fit = input.parameters.fit; !trimmed(fit.variables).empty())
       log.line(fmt::format("Fit: {} unknown, from {}.",
                            read_variables(input.file, "Fit/Variables").size(),

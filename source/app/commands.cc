@@ -11,6 +11,7 @@
 #include <crawler/base/communication.h>
 #include <crawler/base/process.h>
 #include <crawler/base/versions.h>
+#include <crawler/studies/core/input.h>
 #include <crawler/studies/core/python.h>
 #include <crawler/studies/optimize/optimize.h>
 #include <crawler/studies/run/run.h>
@@ -46,7 +47,7 @@ namespace crawler
     struct Command
     {
       const char *name, *description;
-      ExitCode (*function)(MPI_Comm, const CommandOptions &);
+      ExitCode (*function)(MPI_Comm, const CommandOptions &, const ParameterFile &);
       bool writes, resumes, takes_petsc_options; ///< --overwrite and --quiet; --resume
     };
     constexpr Command commands[] = {
@@ -313,6 +314,7 @@ namespace crawler
   ExitCode
   Commands::run(MPI_Comm communicator) const
   {
-    return find_command(chosen())->function(communicator, options_);
+    const ParameterFile file = read_file(communicator, options_.file, options_.overrides);
+    return find_command(chosen())->function(communicator, options_, file);
   }
 } // namespace crawler

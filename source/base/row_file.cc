@@ -350,9 +350,8 @@ namespace crawler
   RowReader::RowReader(MPI_Comm communicator, const std::filesystem::path &path, const std::string &group_name)
     : path_(path)
   {
-    on_first_rank(communicator, [&]() {
-      require_harmless(path, "table", [&]() { RowReader(path).open(H5P_DEFAULT, group_name); });
-    });
+    on_first_rank(communicator,
+                  [&]() { require_harmless(path, "table", [&]() { RowReader(path).open(H5P_DEFAULT, group_name); }); });
     H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     hdf5::checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");

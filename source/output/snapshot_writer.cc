@@ -61,9 +61,7 @@ namespace crawler
       snapshot.step.time, snapshot.step.number, d.element().n, gather(sampler_->coordinates(), communicator_), {}};
     for (const FieldName &field : field_names)
       frame.fields.*field.values = gather(own.*field.values, communicator_);
-    on_first_rank(communicator_, [&]() {
-      write(frame);
-    });
+    on_first_rank(communicator_, [&]() { write(frame); });
   }
 
   void

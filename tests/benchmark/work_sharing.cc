@@ -103,9 +103,7 @@ namespace
         seconds_each(n_blocks, true, [&](const unsigned int i) { file.write((i * n_ranks + rank) * block, rows); });
       print(fmt::format("writing {} rows of {} columns", block, columns.size()), each, n_ranks);
     }
-    on_first_rank(MPI_COMM_WORLD, [&]() {
-      std::filesystem::remove(path);
-    });
+    on_first_rank(MPI_COMM_WORLD, [&]() { std::filesystem::remove(path); });
   }
 } // namespace
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/base/exceptions.h>
+#include <crawler/parameters/parameter_file.h>
 #include <crawler/studies/core/command_options.h>
 
 #include <mpi.h>
@@ -10,5 +11,5 @@ namespace crawler
 {
   /// crawler check: reports what run would do; computes only the pilot runs that choose the mesh, and writes nothing.
   ExitCode
-  check(MPI_Comm communicator, const CommandOptions &options);
+  check(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file);
 } // namespace crawler

@@ -4,7 +4,6 @@
 #include <crawler/studies/core/answer_differences.h>
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/differentiated_numbers.h>
-#include <crawler/time/failure.h>
 
 #include <algorithm>
 #include <array>
@@ -85,7 +84,7 @@ namespace crawler
     {
       const SimulationResult &other = task.computed.result;
       if (task.error)
-        sensitivity.reason = "a run with another value failed: " + failure_of(task.error).message;
+        sensitivity.reason = "a run with another value failed: " + problem_of(task);
       else if (other.time.status == Status::stopped)
         sensitivity.reason = "stopped before the sensitivity was known";
       else if (other.time.status != Status::finished)

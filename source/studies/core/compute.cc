@@ -251,6 +251,24 @@ namespace crawler
     }
   } // namespace
 
+  std::string
+  problem_of(const Task &task)
+  {
+    if (task.error)
+      try
+      {
+        std::rethrow_exception(task.error);
+      }
+      catch (const std::exception &error)
+      {
+        return error.what();
+      }
+    const TimeOutcome &end = task.computed.result.time;
+    if (end.status == Status::finished)
+      return "";
+    return end.reason.empty() ? word_of(end.status) : end.reason + ": " + end.message;
+  }
+
   void
   compute_all(const std::span<Task> tasks, const double time_limit, const std::function<bool()> &interrupted)
   {

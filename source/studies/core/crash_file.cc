@@ -4,7 +4,6 @@
 #include <crawler/studies/core/crash_file.h>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -52,6 +51,12 @@ namespace crawler
 
   CrashNote::CrashNote(const std::filesystem::path &folder)
   {
+    if (std::filesystem::exists(folder / crash_file))
+    {
+      std::istringstream text(read_whole_file(folder / crash_file));
+      for (std::string point; text >> point;)
+        crashes_.insert(point);
+    }
     const std::string path = std::filesystem::absolute(folder / crash_file).string();
     prepared.size          = 0;
     if (path.size() >= prepared.path.size())
@@ -75,46 +80,12 @@ namespace crawler
   }
 
   void
-  CrashNote::at_work_on(const std::span<const unsigned long> points)
+  CrashNote::at_work_on(const std::string &points)
   {
-    const std::string line = fmt::format("{}\n", fmt::join(points, " "));
-    prepared.size          = 0;
-    if (points.empty() || line.size() > prepared.line.size())
+    prepared.size = 0;
+    if (points.empty() || points.size() >= prepared.line.size())
       return;
-    std::ranges::copy(line, prepared.line.begin());
-    prepared.size = line.size();
-  }
-
-  Crashes
-  crashes_in(const std::filesystem::path &folder)
-  {
-    std::map<unsigned long, unsigned int> times;
-    if (!std::filesystem::exists(folder / crash_file))
-      return times;
-    std::istringstream text(read_whole_file(folder / crash_file));
-    for (unsigned long point = 0; text >> point;)
-      ++times[point];
-    return times;
-  }
-
-  bool
-  is_given_up(const unsigned long point, const Crashes &crashes)
-  {
-    const auto died = crashes.find(point);
-    return died != crashes.end() && died->second >= 2;
-  }
-
-  PointsByCrashes
-  by_crashes(const std::span<const unsigned long> points, const Crashes &crashes)
-  {
-    PointsByCrashes sorted;
-    for (const unsigned long point : points)
-    {
-      (is_given_up(point, crashes) ? sorted.given_up
-       : crashes.contains(point)   ? sorted.alone
-                                   : sorted.usual)
-        .push_back(point);
-    }
-    return sorted;
+    *std::ranges::copy(points, prepared.line.begin()).out = '\n';
+    prepared.size                                         = points.size() + 1;
   }
 } // namespace crawler

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 
 namespace crawler
 {
@@ -65,6 +66,14 @@ namespace crawler
     for (const Assignment &assignment : file.assignments())
       if (assignment.is_override) // stronger than all files
         declarations.set(assignment.path, assignment.value, assignment.folder);
+  }
+
+  std::string
+  Form::effective() const
+  {
+    std::ostringstream text;
+    declarations.print_prm(text);
+    return text.str();
   }
 
   Parameters

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <sstream>
 
 namespace crawler
 {
@@ -50,8 +49,6 @@ namespace crawler
   {
     Form form(file);
     const Parameters &parameters = form.parameters;
-    std::ostringstream effective;
-    form.declarations.print_prm(effective);
     try
     {
       parameters.units.require_plain();
@@ -72,7 +69,7 @@ namespace crawler
                         one.path),
             "Output/Uncertainty");
       return {
-        std::move(file), parameters, effective.str(), std::move(scene), std::move(sensitivities), std::move(notes)};
+        std::move(file), parameters, form.effective(), std::move(scene), std::move(sensitivities), std::move(notes)};
     }
     catch (const InputError &error)
     {

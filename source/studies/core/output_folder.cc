@@ -6,15 +6,14 @@
 #include <crawler/studies/core/output_folder.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <string>
 #include <unistd.h>
-#include <vector>
 
 namespace crawler
 {
@@ -161,12 +160,48 @@ namespace crawler
                      "\" is not empty; give another one with --output, or --overwrite to replace the results in it");
   }
 
-  FolderLock::FolderLock(const fs::path &folder, const bool overwrite)
+  void
+  make_folder(const fs::path &folder)
   {
     std::error_code error;
     fs::create_directories(folder, error);
     if (error)
       throw FileError("cannot make the output folder \"" + folder.string() + "\": " + error.message());
+  }
+
+  bool
+  has_just_begun(const fs::path &folder, std::set<std::string> others)
+  {
+    others.insert({study_lock_name,
+                   report_name,
+                   "original.prm",
+                   "original.prm.part",
+                   "parameters.prm",
+                   "parameters.prm.part",
+                   "log.txt"});
+    return std::ranges::all_of(fs::directory_iterator(folder), [&](const fs::directory_entry &file) {
+      return others.contains(file.path().filename().string());
+    });
+  }
+
+  void
+  require_unchanged(const std::string &kind,
+                    const fs::path &folder,
+                    const std::vector<std::string> &changes,
+                    const std::vector<std::string> &free_entries)
+  {
+    if (!changes.empty())
+      throw InputError(fmt::format("the {} in \"{}\" was made with other parameters: {}; it can only be resumed with "
+                                   "the same ones (except for {})",
+                                   kind,
+                                   folder.string(),
+                                   fmt::join(changes, ", "),
+                                   fmt::join(free_entries, " and ")));
+  }
+
+  FolderLock::FolderLock(const fs::path &folder, const bool overwrite)
+  {
+    make_folder(folder);
     lock_.emplace(folder / study_lock_name);
     if (lock_->lock() == FileLock::State::of_another_process)
       throw InputError("a run or study is writing to \"" + folder.string() +
@@ -190,10 +225,8 @@ namespace crawler
   void
   prepare(const fs::path &folder)
   {
+    make_folder(folder);
     std::error_code error;
-    fs::create_directories(folder, error);
-    if (error)
-      throw FileError("cannot make the output folder \"" + folder.string() + "\": " + error.message());
     for (const std::string &name : own_names)
       fs::remove(folder / name, error);
     remove_fields(folder);

@@ -4,9 +4,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/versions.h>
 #include <crawler/base/work_queue.h>
-#include <crawler/parameters/declarations.h>
-#include <crawler/parameters/parameter_file.h>
-#include <crawler/studies/core/parameters.h>
+#include <crawler/studies/core/form.h>
 #include <crawler/studies/core/progress.h>
 #include <crawler/studies/core/study.h>
 
@@ -43,15 +41,10 @@ namespace crawler
   differences(const std::string &before, const std::string &after, const std::vector<std::string> &others)
   {
     const auto values = [](const std::string &text) {
-      Parameters parameters;
-      Declarations declarations;
-      const ParameterFile file = ParameterFile::from_text(text, "parameters.prm");
-      parameters.count_terms(file);
-      parameters.add_parameters(declarations);
-      file.apply(declarations);
+      const Form form(ParameterFile::from_text(text, "parameters.prm"));
       std::map<std::string, std::string> list;
-      for (unsigned int i = 0; i < declarations.entries().size(); ++i)
-        list.emplace(declarations.entries()[i].path, declarations.value(i));
+      for (unsigned int i = 0; i < form.declarations.entries().size(); ++i)
+        list.emplace(form.declarations.entries()[i].path, form.declarations.value(i));
       return list;
     };
     const auto are_same_number = [](const std::string &a, const std::string &b) {
@@ -156,7 +149,7 @@ namespace crawler
         queue.close();
     }
     throw_on_all_ranks(communicator, problem);
-    return on_all_ranks(communicator, is_whole);
+    return !is_true_anywhere(!is_whole, communicator);
   }
 
   void
@@ -168,13 +161,5 @@ namespace crawler
         if (!one.empty())
           throw FileError(one + "; the rows written so far are kept, and --resume computes the rest");
     });
-  }
-
-  bool
-  on_all_ranks(MPI_Comm communicator, const bool here)
-  {
-    int all = here;
-    MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_MIN, communicator);
-    return all != 0;
   }
 } // namespace crawler

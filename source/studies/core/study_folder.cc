@@ -5,7 +5,6 @@
 #include <crawler/studies/core/study_folder.h>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -26,28 +25,25 @@ namespace crawler
       throw InputError("--resume and --overwrite contradict each other; one of them is expected");
   }
 
-  StudyFolder::State
-  StudyFolder::state() const
+  bool
+  StudyFolder::has_results() const
   {
-    std::set<std::string> early = {study_lock_name,
-                                   report_name,
-                                   "original.prm",
-                                   "original.prm.part",
-                                   "parameters.prm",
-                                   "parameters.prm.part",
-                                   "log.txt"};
-    for (const std::string &name : kind_.results)
-      early.insert(name + ".part");
+    return std::ranges::any_of(kind_.results, [&](const std::string &name) {
+      std::error_code error;
+      return fs::exists(path_ / name, error);
+    });
+  }
+
+  bool
+  StudyFolder::is_foreign() const
+  {
     std::error_code error;
-    if (!fs::is_directory(path_, error) || fs::is_empty(path_, error))
-      return State::empty;
-    const auto is_there = [&](const std::string &name) { return fs::exists(path_ / name, error); };
-    if (std::any_of(kind_.results.begin(), kind_.results.end(), is_there))
-      return State::computed;
-    bool is_begun = is_there(study_lock_name);
-    for (const auto &file : fs::directory_iterator(path_))
-      is_begun = is_begun && early.contains(file.path().filename().string());
-    return is_begun ? State::begun : State::foreign;
+    if (!fs::is_directory(path_, error) || fs::is_empty(path_, error) || has_results())
+      return false;
+    std::set<std::string> unfinished;
+    for (const std::string &name : kind_.results)
+      unfinished.insert(name + ".part");
+    return !fs::exists(path_ / study_lock_name, error) || !has_just_begun(path_, unfinished);
   }
 
   void
@@ -108,7 +104,7 @@ namespace crawler
   StudyFolder::begin(const std::string &original, const std::string &effective)
   {
     const auto require_own = [&]() {
-      if (options_.resume && state() == State::foreign)
+      if (options_.resume && is_foreign())
         throw InputError(
           fmt::format("\"{}\" has no {} that can be resumed; another folder is expected for --output, or --overwrite",
                       path_.string(),
@@ -116,14 +112,11 @@ namespace crawler
     };
     require_own();
     require_usable(path_, options_.resume || options_.overwrite);
-    std::error_code error;
-    fs::create_directories(path_, error);
-    if (error)
-      throw FileError("cannot make the output folder \"" + path_.string() + "\": " + error.message());
+    make_folder(path_);
     lock();
     remove_locks_of_mpi();
     leaving_if_refused(require_own); // the previous owner of the lock may have changed it
-    if (options_.resume && state() == State::computed)
+    if (options_.resume && has_results())
       return true;
     prepare(path_);
     write_file(path_ / "original.prm", original);
@@ -135,17 +128,7 @@ namespace crawler
   void
   StudyFolder::resume(const std::function<std::vector<std::string>()> &find_changes)
   {
-    leaving_if_refused([&]() {
-      const std::vector<std::string> changes = find_changes();
-      if (changes.empty())
-        return;
-      throw InputError(fmt::format("the {} in \"{}\" was made with other parameters: {}; it can only be resumed with "
-                                   "the same ones (except for {})",
-                                   kind_.name,
-                                   path_.string(),
-                                   fmt::join(changes, ", "),
-                                   fmt::join(kind_.free_entries, " and ")));
-    });
+    leaving_if_refused([&]() { require_unchanged(kind_.name, path_, find_changes(), kind_.free_entries); });
     log_.open(path_ / "log.txt", /*append=*/true);
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/studies/optimize/gait_problem.h>
+#include <crawler/studies/optimize/scene_family.h>
 
 #include <fmt/format.h>
 
@@ -27,11 +28,12 @@ namespace crawler
     const auto want = [&](const GaitNumber number, const bool is_wanted) { wishes.numbers[number] |= is_wanted; };
     want(GaitNumber::displacement, p.objective != "speed");
     want(GaitNumber::speed, p.objective == "speed");
-    want(GaitNumber::work, p.work || p.objective == "merit" || p.objective == "cost of transport");
+    want(GaitNumber::work, p.objective == "merit" || p.objective == "cost of transport");
     want(GaitNumber::friction_time, p.objective.ends_with("merit"));
-    want(GaitNumber::dissipation, p.dissipation || p.objective == "periodic merit");
-    want(GaitNumber::positive_work, p.positive_work.has_value());
-    want(GaitNumber::mean_square, p.mean_square_strain.has_value());
+    want(GaitNumber::dissipation, p.objective == "periodic merit");
+    for (const LimitEntry &limit : limit_entries)
+      if (limit.number)
+        want(*limit.number, (p.*limit.value).has_value());
     wishes.strain      = p.smallest_strain || p.largest_strain;
     wishes.stress      = p.largest_stress.has_value();
     wishes.stress_rate = p.largest_stress_rate.has_value();
@@ -50,14 +52,9 @@ namespace crawler
     , stops_(std::move(stops))
   {
     const OptimizeParameters &p = parameters;
-    if (p.work)
-      number_limits_.push_back({GaitNumber::work, "Work", *p.work});
-    if (p.positive_work)
-      number_limits_.push_back({GaitNumber::positive_work, "Positive work", *p.positive_work});
-    if (p.dissipation)
-      number_limits_.push_back({GaitNumber::dissipation, "Dissipation", *p.dissipation});
-    if (p.mean_square_strain)
-      number_limits_.push_back({GaitNumber::mean_square, "Mean-square strain", *p.mean_square_strain});
+    for (const LimitEntry &limit : limit_entries)
+      if (limit.number && p.*limit.value)
+        number_limits_.push_back({*limit.number, limit.name, *(p.*limit.value)});
     const OptimizeParameters &own = closer != nullptr ? *closer : p;
     if (p.smallest_strain || p.largest_strain)
     {

@@ -113,7 +113,8 @@ namespace crawler
       if (parameters.create_scene().active_stress->feedback() == nullptr)
         one.overrides.emplace_back("Output/Active stress table=129, 513");
       fs::create_directories(place);
-      const bool is_good = run(MPI_COMM_SELF, one) == ExitCode::finished;
+      const bool is_good =
+        run(MPI_COMM_SELF, one, read_file(MPI_COMM_SELF, one.file, one.overrides)) == ExitCode::finished;
       return {fs::exists(place / "summary.json") ? read_whole_file(place / "summary.json") : "{}", is_good};
     }
 
@@ -301,13 +302,7 @@ namespace crawler
   } // namespace
 
   ExitCode
-  optimize(MPI_Comm communicator, const CommandOptions &options)
-  {
-    return optimize_input(communicator, options, read_file(communicator, options.file, options.overrides));
-  }
-
-  ExitCode
-  optimize_input(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
+  optimize(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
   {
     StudyClock clock("Optimize");
     Log log(rank_of(communicator) == 0, options);

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <sstream>
 
 namespace crawler
 {
@@ -63,8 +62,8 @@ namespace crawler
     {
       throw file.with_place(error);
     }
-    std::ranges::sort(names_.limits, {}, [all = limits_of(parameters().optimize)](const std::string &name) {
-      return std::ranges::find(all, name, &LimitEntry::name) - all.begin();
+    std::ranges::sort(names_.limits, {}, [](const std::string &name) {
+      return std::ranges::find(limit_entries, name, &LimitEntry::name) - limit_entries.begin();
     });
   }
 
@@ -91,9 +90,9 @@ namespace crawler
       if (add(names_.paths, variable.path))
         names_.units.push_back(entries.info(variable.path).unit);
     }
-    for (const auto &[limit, value] : limits_of(problem))
-      if (value)
-        add(names_.limits, limit);
+    for (const LimitEntry &limit : limit_entries)
+      if (problem.*limit.value)
+        add(names_.limits, limit.name);
   }
 
   std::unique_ptr<SceneFamily>
@@ -134,13 +133,5 @@ namespace crawler
     SweepInputs inputs = points_ ? sweep_inputs(*points_) : SweepInputs();
     inputs.effective   = without_comments(effective());
     return inputs;
-  }
-
-  std::string
-  OptimizeCases::effective() const
-  {
-    std::ostringstream text;
-    declarations().print_prm(text);
-    return text.str();
   }
 } // namespace crawler

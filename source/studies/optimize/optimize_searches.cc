@@ -9,17 +9,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 namespace crawler
 {
   namespace
   {
-    /// Number of a start in the notes on crashes, different for each start.
-    unsigned long
+    /// Start in the notes on crashes.
+    std::string
     mark(const StartName &start)
     {
-      return start.number_of_case << 40 | start.start << 20 | start.neighbour;
+      return fmt::format("{}/{}/{}", start.number_of_case, start.start, start.neighbour);
     }
 
     /// Gait @p x in a case, if it is within all limits and is better than @p own by more than the optimiser's
@@ -65,7 +64,6 @@ namespace crawler
     , memory_(std::move(memory))
     , interrupted_(std::move(interrupted))
     , log_(log)
-    , crashes_(crashes_in(folder))
     , note_(folder)
   {
     for (unsigned long number = 0; number < cases.size(); ++number)
@@ -108,13 +106,13 @@ namespace crawler
     const auto compute           = [&](const unsigned long number, const auto &stops, const auto &see) {
       if (done[number])
         return true;
-      const Part &part               = some[number];
-      const auto family              = cases_.family(part.number_of_case);
-      const auto x                   = part.neighbour > 0 ? part.x : family->start(part.start);
-      const unsigned long crash_mark = mark(part);
-      note_.at_work_on(std::span(&crash_mark, 1));
-      StartResult result = is_given_up(crash_mark, crashes_) ? without_gait(part, x, crash_message)
-                                                                       : search(*family, part, x, state_, stops);
+      const Part &part             = some[number];
+      const auto family            = cases_.family(part.number_of_case);
+      const auto x                 = part.neighbour > 0 ? part.x : family->start(part.start);
+      const std::string crash_mark = mark(part);
+      note_.at_work_on(crash_mark);
+      StartResult result =
+        note_.is_given_up(crash_mark) ? without_gait(part, x, crash_message) : search(*family, part, x, state_, stops);
       if (rank_of(communicator_) == 0)
         keep(result);
       else

@@ -39,18 +39,20 @@ namespace crawler
                      const std::vector<double> &x)
     {
       std::vector<LimitedExtreme> list;
+      const auto add = [&](std::optional<double> OptimizeParameters::*limit, const double value) {
+        if (wanted.*limit)
+          list.push_back({limit, value});
+      };
       if (wanted.smallest_strain || wanted.largest_strain)
       {
         const auto [smallest, largest] = model.extreme_strains(x);
-        if (wanted.smallest_strain)
-          list.push_back({&OptimizeParameters::smallest_strain, smallest});
-        if (wanted.largest_strain)
-          list.push_back({&OptimizeParameters::largest_strain, largest});
+        add(&OptimizeParameters::smallest_strain, smallest);
+        add(&OptimizeParameters::largest_strain, largest);
       }
       if (wanted.largest_stress)
-        list.push_back({&OptimizeParameters::largest_stress, family.largest_stress(x, /*rate=*/false)});
+        add(&OptimizeParameters::largest_stress, family.largest_stress(x, /*rate=*/false));
       if (wanted.largest_stress_rate)
-        list.push_back({&OptimizeParameters::largest_stress_rate, family.largest_stress(x, /*rate=*/true)});
+        add(&OptimizeParameters::largest_stress_rate, family.largest_stress(x, /*rate=*/true));
       return list;
     }
 
@@ -309,9 +311,9 @@ namespace crawler
             limit.multiplier = NAN;
           if (is_cost) // the multiplier is that of D/W
             limit.multiplier *= -result_.best.objective * result_.best.objective;
-          for (const LimitEntry &entry : limits_of(wanted_)) // wanted value, not the tightened one
+          for (const LimitEntry &entry : limit_entries) // wanted value, not the tightened one
             if (entry.name == limit.name)
-              limit.value = *entry.value;
+              limit.value = *(wanted_.*entry.value);
         }
       }
 

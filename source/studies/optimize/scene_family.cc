@@ -20,8 +20,10 @@ namespace crawler
     void
     require_limit(const OptimizeParameters &p, const std::vector<Variable> &variables)
     {
-      const auto holds = [](const LimitEntry &limit) { return limit.value && limit.name != "Largest stress rate"; };
-      if (p.objective == "cost of transport" || std::ranges::any_of(limits_of(p), holds))
+      const auto holds = [&](const LimitEntry &limit) {
+        return p.*limit.value && limit.value != &OptimizeParameters::largest_stress_rate;
+      };
+      if (p.objective == "cost of transport" || std::ranges::any_of(limit_entries, holds))
         return;
       for (const Variable &variable : variables) // ranges are not meant as limits
         if (variable.path.starts_with("Active stress/Modes/Coefficients"))
@@ -82,19 +84,6 @@ namespace crawler
       return m;
     }
   } // namespace
-
-  std::vector<LimitEntry>
-  limits_of(const OptimizeParameters &p)
-  {
-    return {{"Work", p.work},
-            {"Positive work", p.positive_work},
-            {"Dissipation", p.dissipation},
-            {"Mean-square strain", p.mean_square_strain},
-            {"Smallest strain", p.smallest_strain},
-            {"Largest strain", p.largest_strain},
-            {"Largest stress", p.largest_stress},
-            {"Largest stress rate", p.largest_stress_rate}};
-  }
 
   SceneFamily::SceneFamily(Form &form)
     : form_(form)

@@ -24,24 +24,6 @@ namespace crawler
                                                                                  Quantity::dissipation,
                                                                                  std::nullopt}};
 
-    std::string
-    problem_of(const Task &task)
-    {
-      if (task.error)
-        try
-        {
-          std::rethrow_exception(task.error);
-        }
-        catch (const std::exception &error)
-        {
-          return error.what();
-        }
-      const TimeOutcome &end = task.computed.result.time;
-      if (end.status == Status::finished)
-        return "";
-      return end.reason.empty() ? word_of(end.status) : end.reason + ": " + end.message;
-    }
-
     double
     strides_of(const Scene &scene)
     {

@@ -9,12 +9,9 @@
 
 #include <boost/crc.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <optional>
-#include <set>
 
 namespace crawler
 {
@@ -87,21 +84,9 @@ namespace crawler
     require_run(const fs::path &folder)
     {
       std::error_code error;
-      const auto has = [&](const char *name) { return fs::exists(folder / name, error); };
-      // Files left by a run that was killed while it began.
-      const std::set<std::string> early = {study_lock_name,
-                                           report_name,
-                                           "original.prm",
-                                           "original.prm.part",
-                                           "parameters.prm",
-                                           "parameters.prm.part",
-                                           "solution",
-                                           "log.txt"};
-      bool is_begun                     = true;
-      for (const auto &file : fs::directory_iterator(folder))
-        is_begun = is_begun && early.contains(file.path().filename().string());
+      const auto has      = [&](const char *name) { return fs::exists(folder / name, error); };
       const bool is_study = has("results.h5") || has("tradeoff.h5");
-      if (!is_begun && (is_study || !has("parameters.prm") || !has("log.txt")))
+      if (!has_just_begun(folder, {"solution"}) && (is_study || !has("parameters.prm") || !has("log.txt")))
         throw InputError(
           fmt::format("\"{}\" has no run that can be resumed; another folder is expected for --output, or --overwrite",
                       folder.string()));
@@ -174,12 +159,7 @@ namespace crawler
       if (checkpoint->files != own.files)
         changes.emplace_back("a file that the parameters name has changed");
     }
-    if (!changes.empty())
-      throw InputError(fmt::format("the run in \"{}\" was made with other parameters: {}; it can only be resumed with "
-                                   "the same ones (except for {})",
-                                   folder.string(),
-                                   fmt::join(changes, ", "),
-                                   fmt::join(free_entries, " and ")));
+    require_unchanged("run", folder, changes, free_entries);
     if (has_finished(folder))
       result.kind = Resumption::is_whole;
     else if (checkpoint)

@@ -39,28 +39,19 @@ namespace crawler
       Observer &to_;
     };
 
-    /// Times and points of the data that a run keeps besides its result.
-    struct Kept
-    {
-      std::optional<PictureTimes> times; ///< set if they differ from those of the input
-      std::vector<double> points;        ///< points of the kymograph; empty: there is none
-      bool has_gait                          = true;
-      std::optional<NumericsChoice> numerics = {}; ///< set if they need not be chosen
-    };
-
     /// Makes new tables for a run, or for the next attempt.
     void
-    begin_tables(const OutputParameters &output, const Scene &scene, const Kept &kept, RunInMemory &run)
+    begin_tables(const OutputParameters &output, const Scene &scene, const WantedFields &wanted, RunInMemory &run)
     {
-      if (!kept.points.empty())
-        run.kymograph = std::make_unique<Kymograph>(kept.points);
+      if (!wanted.points.empty())
+        run.kymograph = std::make_unique<Kymograph>(wanted.points);
       if (output.statistics)
         run.statistics = std::make_unique<Statistics>(scene.body.length, output.energy_balance);
     }
 
     void
     compute_without_mesh(const Input &input,
-                         const Kept &kept,
+                         const WantedFields &wanted,
                          const std::function<bool()> &keep_going,
                          const Afterwards &afterwards,
                          RunInMemory &run)
@@ -69,30 +60,31 @@ namespace crawler
       run.notes                      = notes_on_choice(input, input.parameters.model);
       ReducedModel level(input.scene, input.parameters.model);
       run.result = level.compute(input.parameters.accuracy, output.energy_balance, keep_going);
-      if (kept.has_gait)
+      if (!wanted.is_all)
         level.describe_gait(run.result);
       check_identities(run.result, input.parameters);
       if (afterwards && run.result.time.status == Status::finished)
         afterwards(input, {}, run.result);
-      if (!run.result.error || !(!kept.points.empty() || output.statistics))
+      if (!run.result.error || (wanted.points.empty() && !output.statistics))
         return;
-      begin_tables(output, input.scene, kept, run);
+      begin_tables(output, input.scene, wanted, run);
       show_pictures(level,
-                    kept.times ? *kept.times : times_without_mesh(input),
+                    wanted.times ? PictureTimes({}, *wanted.times, input.scene.end_time) : times_without_mesh(input),
                     {nullptr, run.kymograph.get(), run.statistics.get()},
                     keep_going);
     }
 
     void
     compute_on_mesh(const Input &input,
-                    const Kept &kept,
+                    const WantedFields &wanted,
                     const std::function<bool()> &keep_going,
                     const Afterwards &afterwards,
                     RunInMemory &run)
     {
       const Parameters &parameters = input.parameters;
-      const PictureTimes pictures  = kept.times ? *kept.times : picture_times(parameters.output, input.scene);
-      auto &chosen = run.numerics = kept.numerics;
+      const PictureTimes pictures  = wanted.times ? PictureTimes({}, *wanted.times, input.scene.end_time)
+                                                  : picture_times(parameters.output, input.scene);
+      auto &chosen = run.numerics = wanted.numerics;
       if (!chosen)
       {
         chosen = choose_numerics(MPI_COMM_SELF, parameters, input.scene, keep_going);
@@ -108,9 +100,9 @@ namespace crawler
       const Simulation::Options options = {.energy_balance = parameters.output.energy_balance,
                                            .cycles         = cycle_wish(parameters, input.scene, !pictures.is_empty()),
                                            .gait =
-                                             kept.has_gait ? Simulation::GaitWish::any : Simulation::GaitWish::none};
+                                             wanted.is_all ? Simulation::GaitWish::none : Simulation::GaitWish::any};
       const auto simulate               = [&](const NumericsChoice &choice) {
-        begin_tables(parameters.output, input.scene, kept, run);
+        begin_tables(parameters.output, input.scene, wanted, run);
         std::vector<std::unique_ptr<Observer>> observers;
         if (run.kymograph)
           observers.push_back(std::make_unique<Forward>(*run.kymograph));
@@ -134,7 +126,7 @@ namespace crawler
   RunInMemory
   run_in_memory(Input &input,
                 const ModelChoice &model,
-                const std::optional<WantedFields> &wanted,
+                WantedFields wanted,
                 const std::function<bool()> &interrupted,
                 const Afterwards &afterwards)
   {
@@ -148,22 +140,14 @@ namespace crawler
       is_out_of_time = is_out_of_time || (limit && now() - begin >= *limit);
       return !is_out_of_time && !interrupted();
     };
-    Kept kept;
-    if (wanted)
-    {
-      kept.times.emplace(std::vector<double>(), wanted->times, input.scene.end_time);
-      kept.points   = wanted->points;
-      kept.has_gait = !wanted->is_all;
-      kept.numerics = wanted->numerics;
-    }
-    else if (output.has_snapshots() && output.kymograph)
-      kept.points = Kymograph::equidistant();
+    if (!wanted.times && output.has_snapshots() && output.kymograph)
+      wanted.points = Kymograph::equidistant();
     try
     {
       if (model.needs_mesh())
-        compute_on_mesh(input, kept, keep_going, afterwards, run);
+        compute_on_mesh(input, wanted, keep_going, afterwards, run);
       else
-        compute_without_mesh(input, kept, keep_going, afterwards, run);
+        compute_without_mesh(input, wanted, keep_going, afterwards, run);
     }
     catch (...)
     {

@@ -12,7 +12,6 @@
 #include <crawler/run/self_check.h>
 #include <crawler/run/summary.h>
 #include <crawler/scene/moving_jumps.h>
-#include <crawler/studies/core/petsc_options.h>
 #include <crawler/studies/core/run_files.h>
 #include <crawler/studies/run/reduced_pictures.h>
 #include <crawler/studies/run/run.h>
@@ -353,9 +352,7 @@ namespace crawler
     check_identities(result_, input_.parameters);
     add_what_follows();
     warn_of_unused_petsc_options(communicator_, options_, log_);
-    on_first_rank(communicator_, [&]() {
-      leave_folder();
-    });
+    on_first_rank(communicator_, [&]() { leave_folder(); });
     // Signals may have stopped some ranks only.
     return exit_code_of_first_rank(communicator_, [&]() {
       const OutputParameters &output = input_.parameters.output;
@@ -475,14 +472,8 @@ namespace crawler
   }
 
   ExitCode
-  run(MPI_Comm communicator, const CommandOptions &options)
+  run(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
   {
-    return run_input(communicator, options, read_file(communicator, options.file, options.overrides));
-  }
-
-  ExitCode
-  run_input(MPI_Comm communicator, const CommandOptions &options, ParameterFile file)
-  {
-    return RunStudy(communicator, options, std::move(file)).run();
+    return RunStudy(communicator, options, file).run();
   }
 } // namespace crawler

@@ -3,7 +3,7 @@
 #include <crawler/base/short_text.h>
 #include <crawler/studies/sweep/checked_runs.h>
 #include <crawler/studies/sweep/cross_check.h>
-#include <crawler/studies/sweep/run_values.h>
+#include <crawler/studies/sweep/point_table.h>
 
 #include <algorithm>
 #include <array>

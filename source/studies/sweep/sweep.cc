@@ -7,10 +7,8 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/crash_file.h>
-#include <crawler/studies/core/golden_stride.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/output_folder.h>
-#include <crawler/studies/core/petsc_options.h>
 #include <crawler/studies/core/progress.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/run/run.h>
@@ -32,6 +30,17 @@ namespace crawler
   namespace
   {
     namespace fs = std::filesystem;
+
+    /// "6 points, grid over Body/Length (2 values), ..."
+    std::string
+    in_words(const SweepDesign &design, const std::string &design_name)
+    {
+      std::vector<std::string> axes;
+      for (const SweepAxis &axis : design.axes())
+        axes.push_back(axis.entry +
+                       (design_name == "grid" ? fmt::format(" ({})", counted(axis.values.size(), "value")) : ""));
+      return fmt::format("{}, {} over {}", counted(design.n_points(), "point"), design_name, fmt::join(axes, ", "));
+    }
 
     /// Removes the folders of points, but not files that are not the program's.
     void
@@ -83,7 +92,7 @@ namespace crawler
         try
         {
           fs::create_directories(place);
-          all = run(MPI_COMM_SELF, one) != ExitCode::stopped && all;
+          all = run(MPI_COMM_SELF, one, read_file(MPI_COMM_SELF, one.file, one.overrides)) != ExitCode::stopped && all;
         }
         catch (const InputError &) // inconsistent values: the row says so, and there are no fields
         {
@@ -96,7 +105,7 @@ namespace crawler
         }
       }
       throw_on_all_ranks(communicator, problem);
-      return on_all_ranks(communicator, all);
+      return !is_true_anywhere(!all, communicator);
     }
 
     PointTable
@@ -127,10 +136,9 @@ namespace crawler
                  const std::function<bool()> &interrupted,
                  Log &log)
     {
-      SweepWork own(points, size_of(communicator));
-      RowFile results(communicator, folder / table.file, table.group, table.written_columns());
       CrashNote note(folder);
-      own.beware_of(crashes_in(folder), note);
+      SweepWork own(points, size_of(communicator), &note);
+      RowFile results(communicator, folder / table.file, table.group, table.written_columns());
       return share_work(
         communicator,
         {own.n_parts(),
@@ -187,13 +195,7 @@ namespace crawler
   } // namespace
 
   ExitCode
-  sweep(MPI_Comm communicator, const CommandOptions &options)
-  {
-    return sweep_input(communicator, options, read_file(communicator, options.file, options.overrides));
-  }
-
-  ExitCode
-  sweep_input(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
+  sweep(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
   {
     StudyClock clock("Sweep");
     const unsigned int n_ranks = size_of(communicator);
@@ -235,9 +237,7 @@ namespace crawler
       is_whole = false;
       reason   = "signal";
     }
-    on_first_rank(communicator, [&]() {
-      folder.require_in_place();
-    });
+    on_first_rank(communicator, [&]() { folder.require_in_place(); });
     SweepEnd end{is_whole ? "finished" : "stopped", reason, 0., n_ranks, n_done, options.command_line};
     try
     {
@@ -271,16 +271,6 @@ namespace crawler
                            : fmt::format("{:.3g} GB", bytes / 1e9);
     }
   } // namespace
-
-  std::string
-  in_words(const SweepDesign &design, const std::string &design_name)
-  {
-    std::vector<std::string> axes;
-    for (const SweepAxis &axis : design.axes())
-      axes.push_back(axis.entry +
-                     (design_name == "grid" ? fmt::format(" ({})", counted(axis.values.size(), "value")) : ""));
-    return fmt::format("{}, {} over {}", counted(design.n_points(), "point"), design_name, fmt::join(axes, ", "));
-  }
 
   bool
   check_sweep(MPI_Comm communicator, const ParameterFile &file, Log &log)

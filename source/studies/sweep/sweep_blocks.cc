@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/clock.h>
 #include <crawler/parameters/declarations.h>
-#include <crawler/studies/core/golden_stride.h>
 #include <crawler/studies/core/sensitivities.h>
 #include <crawler/studies/sweep/checked_runs.h>
 #include <crawler/studies/sweep/sweep_blocks.h>
 #include <crawler/studies/sweep/sweep_rows.h>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace crawler
@@ -23,6 +26,16 @@ namespace crawler
              std::ranges::all_of(axis.values, [](const std::string &value) { return to_number(value).has_value(); });
     }
   } // namespace
+
+
+  unsigned long
+  golden_stride(const unsigned long n)
+  {
+    auto stride = static_cast<unsigned long>(std::ceil(0.618034 * n));
+    while (std::gcd(stride, n) != 1)
+      ++stride;
+    return stride;
+  }
 
   SweepBlocks::SweepBlocks(const SweepDesign &design)
     : rows_(design.run_length() > 1 ? design.run_length() : design.n_points())
@@ -59,30 +72,25 @@ namespace crawler
     return {start + from * row_, (to - from) * row_};
   }
 
-  SweepOrder::SweepOrder(const SweepBlocks &blocks, SweepPoints &points)
-    : size_(blocks.size())
-    , stride_(golden_stride(size_))
+  std::vector<unsigned long>
+  order_of(const SweepBlocks &blocks, SweepPoints &points)
   {
+    const unsigned long stride = golden_stride(blocks.size());
+    std::vector<unsigned long> order;
+    for (unsigned long i = 0; i < blocks.size(); ++i)
+      order.push_back(i * stride % blocks.size());
     const SweepDesign &design = points.design();
     if (!design.varies("Time/End time") && !design.varies("Accuracy") && !design.varies(SweepAxis::file))
-      return;
-    std::vector<std::pair<double, unsigned long>> list;
-    for (unsigned long i = 0; i < size_; ++i)
+      return order;
+    std::vector<double> expected;
+    for (unsigned long number = 0; number < blocks.size(); ++number)
     {
-      const unsigned long number = i * stride_ % size_;
-      const SweepBlock block     = blocks[number];
-      const Parameters &p        = points.parameters(block.first);
-      list.emplace_back(p.time.end_time * std::log10(1. / p.accuracy) * static_cast<double>(block.size), number);
+      const SweepBlock block = blocks[number];
+      const Parameters &p    = points.parameters(block.first);
+      expected.push_back(p.time.end_time * std::log10(1. / p.accuracy) * static_cast<double>(block.size));
     }
-    std::stable_sort(list.begin(), list.end(), [](const auto &a, const auto &b) { return a.first > b.first; });
-    for (const auto &[expected, number] : list)
-      sorted_.push_back(number);
-  }
-
-  unsigned long
-  SweepOrder::operator[](const unsigned long i) const
-  {
-    return sorted_.empty() ? i * stride_ % size_ : sorted_[i];
+    std::ranges::stable_sort(order, std::greater(), [&](const unsigned long number) { return expected[number]; });
+    return order;
   }
 
   /// Point with its answer.
@@ -141,10 +149,10 @@ namespace crawler
     }
   } // namespace
 
-  SweepWork::SweepWork(SweepPoints &points, const unsigned int n_ranks)
+  SweepWork::SweepWork(SweepPoints &points, const unsigned int n_ranks, CrashNote *const note)
     : points_(points)
     , blocks_(points.design())
-    , order_(blocks_, points)
+    , order_(order_of(blocks_, points))
     , parts_of_block_([&]() {
       // Each rank that takes a part must measure the numerics its block shares. Points of a cross-check take long.
       constexpr unsigned long most = 64, max_if_alone = 8;
@@ -156,6 +164,7 @@ namespace crawler
     }())
     , time_limit_(points.sweep().point_time_limit.value_or(HUGE_VAL))
     , numerics_(points)
+    , note_(note)
   {
   }
 
@@ -270,13 +279,6 @@ namespace crawler
     return n;
   }
 
-  void
-  SweepWork::beware_of(Crashes crashes, CrashNote &note)
-  {
-    crashes_ = std::move(crashes);
-    note_    = &note;
-  }
-
   bool
   SweepWork::compute(const unsigned long number,
                      const std::vector<bool> &done,
@@ -284,17 +286,19 @@ namespace crawler
                      const std::function<bool()> &interrupted,
                      const std::function<void(unsigned long n, unsigned long failed)> &see)
   {
-    std::vector<unsigned long> missing = part(number);
-    std::erase_if(missing, [&](const unsigned long point) { return done[point]; });
-    const PointsByCrashes sorted = by_crashes(missing, crashes_);
-    missing                      = sorted.usual;
+    std::vector<unsigned long> missing, last; // last: points at which a process died once
     std::vector<Point> given_up;
-    for (const unsigned long point : sorted.given_up)
-      given_up.push_back({point, crashed_task()});
+    for (const unsigned long point : part(number))
+      if (const std::string name = fmt::format("{}", point); done[point])
+        continue;
+      else if (note_ != nullptr && note_->is_given_up(name))
+        given_up.push_back({point, crashed_task()});
+      else
+        (note_ != nullptr && note_->crashes_at(name) > 0 ? last : missing).push_back(point);
     check(given_up, interrupted);
     const auto at_work_on = [this](const std::span<const unsigned long> points) {
       if (note_ != nullptr)
-        note_->at_work_on(points);
+        note_->at_work_on(fmt::format("{}", fmt::join(points, " ")));
     };
     write_rows(given_up, points_.sensitivities(), write, see);
     at_work_on(missing);
@@ -312,7 +316,7 @@ namespace crawler
     constexpr double much          = 1e6; // unknowns times steps
     std::size_t together           = max_together;
     const std::size_t alone        = missing.size(); // number of the first point to compute alone
-    missing.insert(missing.end(), sorted.alone.begin(), sorted.alone.end());
+    missing.insert(missing.end(), last.begin(), last.end());
     for (std::size_t from = 0, to = 0; from < missing.size(); from = to)
     {
       to = from < alone ? std::min(from + together, alone) : from + 1;

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <optional>
 #include <set>
-#include <sstream>
 
 namespace crawler
 {
@@ -36,11 +35,9 @@ namespace crawler
   SweepPoints::SweepPoints(MPI_Comm communicator, const ParameterFile &file)
     : file_(file)
   {
-    auto base = std::make_unique<Form>(file);
-    sweep_    = base->parameters.sweep;
-    std::ostringstream text;
-    base->declarations.print_prm(text);
-    effective_ = text.str();
+    auto base  = std::make_unique<Form>(file);
+    sweep_     = base->parameters.sweep;
+    effective_ = base->effective();
     try
     {
       const Assignment *const axes = file_.assignment_of(axes_entry);

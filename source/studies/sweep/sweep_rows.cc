@@ -7,7 +7,6 @@
 #include <crawler/studies/core/differentiated_numbers.h>
 #include <crawler/studies/core/table_csv.h>
 #include <crawler/studies/sweep/checked_runs.h>
-#include <crawler/studies/sweep/point_table.h>
 #include <crawler/studies/sweep/sweep_rows.h>
 
 #include <fmt/format.h>

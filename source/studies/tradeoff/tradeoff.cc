@@ -7,12 +7,12 @@
 #include <crawler/base/short_text.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/crash_file.h>
-#include <crawler/studies/core/golden_stride.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/python.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/sweep/point_table.h>
+#include <crawler/studies/sweep/sweep_blocks.h>
 #include <crawler/studies/sweep/sweep_rows.h>
 #include <crawler/studies/tradeoff/tradeoff.h>
 #include <crawler/studies/tradeoff/tradeoff_measurement.h>
@@ -24,7 +24,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 
 namespace crawler
 {
@@ -136,7 +135,6 @@ namespace crawler
       const auto meshes  = meshes_to_do(study);
       RowFile rows(study.communicator, path / study.table.file, study.table.group, columns);
       CrashNote note(path);
-      const Crashes crashes   = crashes_in(path);
       const auto measure_mesh = [&](const unsigned long number, const auto &stops, const auto &see) {
         const char *const not_tried = "not tried: a looser tolerance on this mesh took too long";
         bool took_too_long          = false;
@@ -146,9 +144,10 @@ namespace crawler
             continue;
           const TradeoffSetting &setting = study.settings[i];
           const auto entries             = overrides(setting, study.input.parameters, reference.size);
-          note.at_work_on(std::span(&i, 1));
-          auto row = stops()                   ? std::nullopt
-                     : is_given_up(i, crashes) ? std::optional(gap("failed", "crashed", crash_message))
+          const std::string name         = fmt::format("{}", i);
+          note.at_work_on(name);
+          auto row = stops()                  ? std::nullopt
+                     : note.is_given_up(name) ? std::optional(gap("failed", "crashed", crash_message))
                      : took_too_long
                        ? std::optional(gap("stopped", time_limit_reason, not_tried, study.table.time_limit))
                        : measure(study.input, setting, entries, stops);
@@ -279,11 +278,11 @@ namespace crawler
   } // namespace
 
   ExitCode
-  tradeoff(MPI_Comm communicator, const CommandOptions &options)
+  tradeoff(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
   {
     StudyClock clock("Tradeoff");
     Log log(rank_of(communicator) == 0, options);
-    const Input input = read_input(read_file(communicator, options.file, options.overrides), /*command=*/"tradeoff");
+    const Input input             = read_input(file, /*command=*/"tradeoff");
     const TradeoffParameters &own = input.parameters.tradeoff;
     const auto settings           = settings_to_try(input);
     const auto path               = output_folder(options.output, options.file);
@@ -304,9 +303,7 @@ namespace crawler
       end.status = "stopped";
       end.reason = clock.reason(communicator, /*is_whole=*/false);
     }
-    on_first_rank(communicator, [&]() {
-      folder.require_in_place();
-    });
+    on_first_rank(communicator, [&]() { folder.require_in_place(); });
     const SweepCounts counts = write_results_csv(communicator, path, table.file, table.group);
     end.seconds              = clock.seconds();
     on_first_rank(communicator, [&]() {

@@ -36,9 +36,7 @@ namespace
     const auto path            = a_file();
     const unsigned int n_ranks = size_of(MPI_COMM_WORLD), rank = rank_of(MPI_COMM_WORLD);
     const unsigned long n = 4ul * n_ranks;
-    on_first_rank(MPI_COMM_WORLD, [&]() {
-      RowFile::create(path, "results", columns, n, {{"made by", "a test"}});
-    });
+    on_first_rank(MPI_COMM_WORLD, [&]() { RowFile::create(path, "results", columns, n, {{"made by", "a test"}}); });
     {
       RowFile file(MPI_COMM_WORLD, path, "results", columns);
       const std::vector<RowFile::Row> rows = {{4. * rank, 0.5 * rank, "first"},

@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace crawler
@@ -33,6 +34,10 @@ namespace crawler
     double seconds      = 0.;    ///< wall time [s]; runs of a batch share its time
     bool is_out_of_time = false; ///< stopped by the time limit
   };
+
+  /// Reason in words why a task has no answer; empty if it has one.
+  std::string
+  problem_of(const Task &task);
 
   /**
    * Computes for each of @p tasks, of which only the parameters are given, what `crawler run` computes, on this rank

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
-#include <span>
+#include <set>
 #include <string>
-#include <vector>
 
 namespace crawler
 {
@@ -20,34 +18,34 @@ namespace crawler
   class CrashNote
   {
   public:
+    /// Reads the notes of earlier processes. Throws FileError.
     explicit CrashNote(const std::filesystem::path &folder);
     ~CrashNote();
     CrashNote(const CrashNote &) = delete;
     CrashNote &
     operator=(const CrashNote &) = delete;
 
-    /// Sets the points that are computed from now on; may be empty.
+    /// Sets the points that are computed from now on: their names, which are words, separated by blanks; may be empty.
     void
-    at_work_on(std::span<const unsigned long> points);
+    at_work_on(const std::string &points);
+
+    /// Number of times a process died while it computed this point.
+    unsigned int
+    crashes_at(const std::string &point) const
+    {
+      return static_cast<unsigned int>(crashes_.count(point));
+    }
+
+    /// Returns true if processes died at this point so often that it is not tried again.
+    bool
+    is_given_up(const std::string &point) const
+    {
+      return crashes_at(point) >= 2;
+    }
+
+  private:
+    std::multiset<std::string> crashes_; ///< points at which a process died, once for each time
   };
-
-  /// Number of times a process died while computing each point; other points are absent. Throws FileError.
-  using Crashes = std::map<unsigned long, unsigned int>;
-  Crashes
-  crashes_in(const std::filesystem::path &folder);
-
-  /// Returns true if processes died at this point so often that it is not tried again.
-  bool
-  is_given_up(unsigned long point, const Crashes &crashes);
-
-  /// Points to compute: those where no process died; those where one did, which are tried once more, each alone; and
-  /// those where two did, which are given up.
-  struct PointsByCrashes
-  {
-    std::vector<unsigned long> usual, alone, given_up;
-  };
-  PointsByCrashes
-  by_crashes(std::span<const unsigned long> points, const Crashes &crashes);
 
   /// Message of a point that is given up, whose reason is "crashed".
   extern const std::string crash_message;

@@ -25,6 +25,10 @@ namespace crawler
     Parameters
     parameters_with(const std::string &path, double value);
 
+    /// Returns all entries as used, as a .prm file.
+    std::string
+    effective() const;
+
     Parameters parameters;
     Declarations declarations; ///< entries bound to the members of parameters
   };

@@ -5,7 +5,9 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
+#include <vector>
 
 namespace crawler
 {
@@ -23,6 +25,22 @@ namespace crawler
 
   /// Page that `crawler report` makes.
   extern const std::string report_name;
+
+  /// Makes a folder. Throws FileError.
+  void
+  make_folder(const std::filesystem::path &folder);
+
+  /// Returns true if the folder has nothing but what a run or study leaves that is killed while it begins, and files of
+  /// these names too.
+  bool
+  has_just_begun(const std::filesystem::path &folder, std::set<std::string> others);
+
+  /// Throws InputError if there are @p changes, in words, of what a run or study (@p kind) was made with.
+  void
+  require_unchanged(const std::string &kind,
+                    const std::filesystem::path &folder,
+                    const std::vector<std::string> &changes,
+                    const std::vector<std::string> &free_entries);
 
   /// Keeps other processes from writing to a folder during its lifetime.
   class FolderLock

@@ -91,8 +91,4 @@ namespace crawler
   /// Throws FileError on all ranks for a problem with the files of any rank (empty: none) (collective).
   void
   throw_on_all_ranks(MPI_Comm communicator, const std::string &problem);
-
-  /// Returns true if @p here is true on all ranks (collective).
-  bool
-  on_all_ranks(MPI_Comm communicator, bool here);
 } // namespace crawler

@@ -69,15 +69,11 @@ namespace crawler
     }
 
   private:
-    enum class State
-    {
-      empty,    ///< or missing
-      begun,    ///< study killed before it had results
-      computed, ///< with results
-      foreign   ///< anything else
-    };
-    State
-    state() const;
+    bool
+    has_results() const;
+    /// True for anything else than a study, or what one leaves that is killed before it has results.
+    bool
+    is_foreign() const;
 
     void
     lock();

@@ -21,10 +21,7 @@ namespace crawler
    * optimize_searches.h, the searches of all ranks; optimize_results.h, tables and summary.
    */
   ExitCode
-  optimize(MPI_Comm communicator, const CommandOptions &options);
-  /// Optimises with a parameter file that has been read already.
-  ExitCode
-  optimize_input(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file);
+  optimize(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file);
 
   /// Computes the start of each case and reports its numbers, for `crawler check`. Returns false if the file varies
   /// nothing. Throws InputError.

@@ -89,7 +89,10 @@ namespace crawler
 
     /// Entries as used, except for the axes, as a .prm file.
     std::string
-    effective() const;
+    effective() const
+    {
+      return file_form_.effective();
+    }
 
   private:
     void

@@ -73,7 +73,6 @@ namespace crawler
     Log &log_;
     std::vector<Part> parts_;
     SearchState state_;
-    const Crashes crashes_;
     CrashNote note_;
     std::string problem_; ///< problem with the files
   };

@@ -4,6 +4,7 @@
 #include <crawler/studies/core/variables.h>
 #include <crawler/studies/optimize/gait_model.h>
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -11,16 +12,24 @@
 
 namespace crawler
 {
-  /// Entry that limits gaits, and its value if it is set.
+  /// Entry that limits gaits.
   struct LimitEntry
   {
-    std::string name;
-    std::optional<double> value;
+    const char *name;
+    std::optional<double> OptimizeParameters::*value;
+    std::optional<GaitNumber> number = {}; ///< unset: a limit of values at many places
   };
 
   /// Limits in the order in which results name them.
-  std::vector<LimitEntry>
-  limits_of(const OptimizeParameters &parameters);
+  inline constexpr std::array<LimitEntry, 8> limit_entries = {
+    {{"Work", &OptimizeParameters::work, GaitNumber::work},
+     {"Positive work", &OptimizeParameters::positive_work, GaitNumber::positive_work},
+     {"Dissipation", &OptimizeParameters::dissipation, GaitNumber::dissipation},
+     {"Mean-square strain", &OptimizeParameters::mean_square_strain, GaitNumber::mean_square},
+     {"Smallest strain", &OptimizeParameters::smallest_strain},
+     {"Largest strain", &OptimizeParameters::largest_strain},
+     {"Largest stress", &OptimizeParameters::largest_stress},
+     {"Largest stress rate", &OptimizeParameters::largest_stress_rate}}};
 
   /// Scenes that the variables of an optimisation make (Optimize/Variables).
   class SceneFamily

@@ -11,8 +11,5 @@ namespace crawler
 {
   /// crawler run: one simulation with all its files (collective).
   ExitCode
-  run(MPI_Comm communicator, const CommandOptions &options);
-  /// Runs a parameter file that has been read already.
-  ExitCode
-  run_input(MPI_Comm communicator, const CommandOptions &options, ParameterFile file);
+  run(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file);
 } // namespace crawler

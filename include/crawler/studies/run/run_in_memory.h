@@ -28,10 +28,10 @@ namespace crawler
   /// Fields of a kymograph in place of those that the input asks for.
   struct WantedFields
   {
-    std::vector<double> times;                      ///< [time]
-    std::vector<double> points;                     ///< positions, as parts of the length, increasing
-    bool is_all                            = false; ///< nothing else is wanted: no gait
-    std::optional<NumericsChoice> numerics = {};    ///< numerics that were chosen for a similar scene
+    std::optional<std::vector<double>> times = {};    ///< [time]; unset: those of the input
+    std::vector<double> points               = {};    ///< positions, as parts of the length, increasing
+    bool is_all                              = false; ///< nothing else is wanted: no gait
+    std::optional<NumericsChoice> numerics   = {};    ///< numerics that were chosen for a similar scene
   };
 
   /// Further computations on a finished run on a mesh.
@@ -46,7 +46,7 @@ namespace crawler
   RunInMemory
   run_in_memory(Input &input,
                 const ModelChoice &model,
-                const std::optional<WantedFields> &wanted,
+                WantedFields wanted,
                 const std::function<bool()> &interrupted,
                 const Afterwards &afterwards = {});
 } // namespace crawler

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <crawler/base/row_file.h>
+#include <crawler/run/result_table.h>
+#include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/study_folder.h>
 #include <crawler/studies/sweep/sweep_inputs.h>
 #include <crawler/studies/sweep/sweep_points.h>
@@ -37,6 +39,20 @@ namespace crawler
 
   /// Reason of a point that took longer than the time limit.
   extern const std::string time_limit_reason;
+
+  /// Number or word of a run under this key, and its value in a row; not a number or empty where it is unknown.
+  const ResultEntry &
+  entry_of(const std::string &key);
+  RowFile::Value
+  value_in_row(const Task &task, const ResultEntry &entry);
+
+  /// Outcome of a point, in a word, and why.
+  struct PointStatus
+  {
+    std::string status, reason, message;
+  };
+  PointStatus
+  status_of(const Task &task);
 
   /// Columns of index and axes.
   std::vector<RowFile::Column>

@@ -20,19 +20,10 @@ namespace crawler
    * the table; sweep_inputs.h, inputs of the answers; point_table.h, to begin or to resume.
    */
   ExitCode
-  sweep(MPI_Comm communicator, const CommandOptions &options);
-  /// Sweeps with a parameter file that has been read already.
-  ExitCode
-  sweep_input(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file);
-
-  class SweepDesign;
+  sweep(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file);
 
   /// Reports the size and the expected duration of the sweep in the parameter file (`crawler check`). Returns false if
   /// there is none.
   bool
   check_sweep(MPI_Comm communicator, const ParameterFile &file, Log &log);
-
-  /// "6 points, grid over Body/Length (2 values), ..."
-  std::string
-  in_words(const SweepDesign &design, const std::string &design_name);
 } // namespace crawler

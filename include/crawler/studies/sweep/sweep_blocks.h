@@ -12,11 +12,17 @@
 
 namespace crawler
 {
+  /// Returns a number coprime to @p n near its golden section: its multiples modulo n visit all of n parts, spread out
+  /// from the beginning. So the time left is known early, and a study that is stopped is a coarse picture of
+  /// everything.
+  unsigned long
+  golden_stride(unsigned long n);
+
   /**
    * Points of a sweep in blocks of at most 256 neighbours, which share the numerics if they can. Blocks do not depend
    * on the number of ranks or on rows that exist already, so neither do the answers. A block does not go beyond the end
    * of the last axis of a grid, or of the last two where the rows are short and the axis before it is of numbers:
-   * beyond, its points would no longer be similar. Nothing is stored for a block.
+   * beyond, its points would no longer be similar.
    */
   class SweepBlocks
   {
@@ -39,24 +45,10 @@ namespace crawler
     unsigned long row_ = 1, rows_, n_runs_, parts_of_run_; ///< points in a row, rows in a run, which is cut into parts
   };
 
-  /**
-   * Order in which the blocks are computed: longest first, as far as that is known, by the duration and the number of
-   * digits wanted. Otherwise spread over the whole sweep from the beginning (golden_stride.h), so the time
-   * left is known early.
-   */
-  class SweepOrder
-  {
-  public:
-    SweepOrder(const SweepBlocks &blocks, SweepPoints &points);
-
-    /// Number of the block that is computed as number @p i.
-    unsigned long
-    operator[](unsigned long i) const;
-
-  private:
-    const unsigned long size_, stride_;
-    std::vector<unsigned long> sorted_; ///< empty if all take equally long, as far as is known
-  };
+  /// Numbers of the blocks in the order in which they are computed: longest first, as far as that is known, by the
+  /// duration and the number of digits wanted; otherwise spread over the whole sweep (golden_stride()).
+  std::vector<unsigned long>
+  order_of(const SweepBlocks &blocks, SweepPoints &points);
 
   /**
    * Work of one rank in a sweep. The work is handed out in parts of blocks, small enough that each of @p n_ranks gets
@@ -65,18 +57,15 @@ namespace crawler
   class SweepWork
   {
   public:
-    SweepWork(SweepPoints &points, unsigned int n_ranks);
+    /// @p note is told which points are computed. Points at which a process died come last and alone; those at which it
+    /// died twice are not computed, and their rows say so.
+    SweepWork(SweepPoints &points, unsigned int n_ranks, CrashNote *note = nullptr);
 
     unsigned long
     n_parts() const;
 
     /// Receives the rows of consecutive points, the first of which is number @p first.
     using WriteRows = std::function<void(unsigned long first, std::span<const RowFile::Row> rows)>;
-
-    /// Puts points at which a process died before last and alone; those at which it died twice are not computed, and
-    /// their rows say so. @p note is told which points are computed, and must outlive this object.
-    void
-    beware_of(Crashes crashes, CrashNote &note);
 
     /// Computes the points of the part @p number that have no row yet (@p done), and passes their rows to @p write.
     /// Calls @p see when rows have been written, with their number and the number of these that did not finish. Returns
@@ -116,11 +105,10 @@ namespace crawler
 
     SweepPoints &points_;
     const SweepBlocks blocks_;
-    const SweepOrder order_;
+    const std::vector<unsigned long> order_; ///< order_of()
     const unsigned long parts_of_block_;
     const double time_limit_; ///< time limit of each point [s]
     SweepNumerics numerics_;
-    Crashes crashes_; ///< number of times a process died at each point
-    CrashNote *note_ = nullptr;
+    CrashNote *const note_;
   };
 } // namespace crawler

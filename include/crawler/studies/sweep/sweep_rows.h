@@ -3,8 +3,7 @@
 
 #include <crawler/base/row_file.h>
 #include <crawler/studies/sweep/cross_check.h>
-#include <crawler/studies/sweep/run_values.h>
-#include <crawler/studies/sweep/sweep_points.h>
+#include <crawler/studies/sweep/point_table.h>
 
 #include <mpi.h>
 

@@ -11,5 +11,5 @@ namespace crawler
    * can be resumed.
    */
   ExitCode
-  tradeoff(MPI_Comm communicator, const CommandOptions &options);
+  tradeoff(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file);
 } // namespace crawler

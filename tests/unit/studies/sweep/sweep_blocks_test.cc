@@ -63,7 +63,7 @@ namespace
                                             "Body/Anchoring exponent : linspace(1.5, 4, 500)");
       SweepPoints points(MPI_COMM_SELF, file);
       const SweepBlocks blocks(points.design());
-      const SweepOrder order(blocks, points);
+      const std::vector<unsigned long> order = order_of(blocks, points);
       std::set<unsigned long> seen;
       double last = 1e300;
       for (unsigned long i = 0; i < blocks.size(); ++i)

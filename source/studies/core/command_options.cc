@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
-#include <crawler/studies/core/petsc_options.h>
+#include <crawler/studies/core/command_options.h>
+#include <crawler/studies/core/log.h>
 
 #include <petscsys.h>
 
