@@ -17,13 +17,11 @@
 #include <crawler/run/result_json.h>
 #include <crawler/run/summary.h>
 #include <crawler/studies/core/compute.h>
-#include <crawler/studies/core/differentiated_numbers.h>
 #include <crawler/studies/core/entry_rules.h>
 #include <crawler/studies/core/sensitivities.h>
 #include <crawler/studies/core/variables.h>
 #include <crawler/studies/run/field_runs.h>
 #include <crawler/studies/run/run_in_memory.h>
-#include <crawler/studies/run/sensitivity_files.h>
 #include <crawler/studies/sweep/point_table.h>
 #include <crawler/studies/sweep/sweep_blocks.h>
 #include <crawler/studies/sweep/sweep_rows.h>

@@ -9,7 +9,7 @@
 #include <crawler/studies/core/progress.h>
 #include <crawler/studies/core/variables.h>
 #include <crawler/studies/optimize/optimize.h>
-#include <crawler/studies/run/run_plan.h>
+#include <crawler/studies/run/run_files.h>
 #include <crawler/studies/sweep/sweep.h>
 
 #include <fmt/format.h>

@@ -1,22 +1,155 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/error_estimate.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/run/accuracy_rule.h>
 #include <crawler/run/result_table.h>
-#include <crawler/studies/core/answer_differences.h>
-#include <crawler/studies/core/differentiated_numbers.h>
+#include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/sensitivities.h>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 namespace crawler
 {
   using namespace accuracy_rule::sensitivities;
 
+  double
+  step_of_differences(const double relative_error)
+  {
+    return std::clamp(0.5 * std::cbrt(relative_error), min_step_of_answers, largest_step_of_answers);
+  }
+
   namespace
   {
+    /// Places of the other answers, in steps: two differences, one of them far coarser.
+    inline constexpr std::array<int, 4> around_answer = {{-4, -1, 1, 4}};
+
+    /// Parameters of answers with an entry increased by @p step times each of @p places.
+    struct VariedAnswers
+    {
+      std::vector<Parameters> parameters;
+      std::vector<int> places; ///< around_answer, or 1, 2, 3, 4 or their negatives
+      double step;             ///< in units of the entry
+    };
+
+    /// Value of a number, and the bound of its error.
+    struct Known
+    {
+      double value, error;
+    };
+
+    Known
+    known(const SimulationResult &result, const std::size_t number)
+    {
+      constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+      const double error       = number == 0 ? (result.error ? result.error->total : unknown)
+                                             : error_bound(result, differentiated_numbers[number].key).value_or(unknown);
+      return {differentiated_numbers[number].of(result), error};
+    }
+
+    /// Weights of the middle and of the four other places.
+    using Weights = std::array<double, 5>;
+
+    /// Weights of two estimates of the derivative, and of the second differences to which a kink contributes and a
+    /// smooth function does not.
+    struct Differences
+    {
+      Weights value, coarse, kink;
+    };
+
+    constexpr Differences central = {{{0., 1. / 120., -8. / 15., 8. / 15., -1. / 120.}},
+                                     {{0., -1. / 8., 0., 0., 1. / 8.}},
+                                     {{-15. / 8., -1. / 16., 1., 1., -1. / 16.}}};
+    /// Differences to one side, which cannot detect a kink.
+    constexpr Differences one_sided = {{{-25. / 12., 4., -3., 4. / 3., -0.25}}, {{-0.75, 0., 1., 0., -0.25}}, {}};
+
+    using Values = std::array<Known, 5>;
+
+    Known
+    applied(const Weights &weights, const Values &values, const double step)
+    {
+      Known sum{0., 0.};
+      for (std::size_t i = 0; i < values.size(); ++i)
+      {
+        sum.value += weights[i] * values[i].value / step;
+        sum.error += std::abs(weights[i] / step) * (weights[i] != 0. ? values[i].error : 0.);
+      }
+      return sum;
+    }
+
+    /**
+     * Derivatives of the displacement and of other numbers by an entry, as differences of fourth order of whole
+     * answers, for scenes and methods that have no adjoint (doc/numerics.md, "Sensitivities"). The error bound is the
+     * sum of the difference to a coarse formula, the contribution of a kink, and the error bounds of the answers. @p
+     * result is the answer in the middle. A reason is set instead where an answer is missing or has no bound. Returns
+     * false, with nothing set, if the displacement seems to have a kink.
+     */
+    bool
+    differentiate_answers(VariedAnswers varied,
+                          const SimulationResult &result,
+                          EntrySensitivity &sensitivity,
+                          const std::function<bool()> &keep_going)
+    {
+      std::vector<Task> tasks(varied.parameters.size());
+      for (std::size_t i = 0; i < tasks.size(); ++i)
+      {
+        tasks[i].parameters = std::move(varied.parameters[i]);
+        tasks[i].gait       = result.gait.has_value();
+      }
+      compute_all(tasks, HUGE_VAL, [&]() { return keep_going && !keep_going(); });
+      for (const Task &task : tasks)
+      {
+        const SimulationResult &other = task.computed.result;
+        if (task.error)
+          sensitivity.reason = "a run with another value failed: " + problem_of(task);
+        else if (other.time.status == Status::stopped)
+          sensitivity.reason = "stopped before the sensitivity was known";
+        else if (other.time.status != Status::finished)
+          sensitivity.reason = "a run with another value did not finish: " + other.time.message;
+        else if (!other.error || !std::isfinite(other.error->total))
+          sensitivity.reason = "the error of a run with another value is not known";
+        if (!sensitivity.reason.empty())
+          return true;
+      }
+      const bool is_central          = varied.places.front() < 0 && varied.places.back() > 0;
+      const Differences &differences = is_central ? central : one_sided;
+      for (std::size_t number = 0; number < differentiated_numbers.size(); ++number)
+      {
+        if (!has_number(number, result) || !std::ranges::all_of(tasks, [number](const Task &task) {
+              return has_number(number, task.computed.result);
+            }))
+          continue;
+        Values values;
+        values[0] = known(result, number);
+        for (std::size_t i = 0; i < tasks.size(); ++i)
+          values[i + 1] = known(tasks[i].computed.result, number);
+        const Known value  = applied(differences.value, values, varied.step),
+                    coarse = applied(differences.coarse, values, varied.step),
+                    kink   = applied(differences.kink, values, varied.step);
+        if (number == 0 && std::abs(kink.value) > 2. * kink.error + suspicious * std::abs(value.value))
+          return false;
+        const double error = value.error + std::abs(value.value - coarse.value) + std::abs(kink.value);
+        if (!std::isfinite(error))
+          continue;
+        if (number == 0)
+        {
+          sensitivity.value = value.value;
+          sensitivity.error = error;
+        }
+        else
+          sensitivity.others.push_back({differentiated_numbers[number].key, value.value, error});
+      }
+      if (!sensitivity.value)
+        sensitivity.reason = "the error of the displacement is not known";
+      return true;
+    }
+
     /// Step for the forces at the points, relative to the entry.
     constexpr double step = 1e-3;
 
@@ -192,6 +325,45 @@ namespace crawler
     }
     for (Varied &one : varied)
       result.sensitivities.push_back(std::move(one.sensitivity));
+    return local;
+  }
+
+  void
+  write_sensitivities(const LocalSensitivity &local, const std::filesystem::path &folder, const UnitNames &units)
+  {
+    if (local.s.empty())
+      return;
+    std::string text = units.in_brackets("s [length],elastic modulus [1],friction [1]\n");
+    for (std::size_t i = 0; i < local.s.size(); ++i)
+      fmt::format_to(std::back_inserter(text), "{},{},{}\n", local.s[i], local.elastic_modulus[i], local.friction[i]);
+    write_file(folder / "sensitivity_body.csv", text);
+    if (local.times.empty())
+      return;
+    text = units.in_brackets("s [length],t [time],active stress [1/(force time)]\n");
+    for (std::size_t j = 0; j < local.times.size(); ++j)
+      for (std::size_t i = 0; i < local.s.size(); ++i)
+        fmt::format_to(
+          std::back_inserter(text), "{},{},{}\n", local.s[i], local.times[j], local.stress[j * local.s.size() + i]);
+    write_file(folder / "sensitivity_stress.csv", text);
+  }
+
+  LocalSensitivity
+  add_sensitivities(const Input &input,
+                    const NumericsChoice &choice,
+                    SimulationResult &result,
+                    const std::function<bool()> &keep_going)
+  {
+    Form form(input.file);
+    LocalSensitivity local = find_sensitivities(form, input.scene, input.sensitivities, choice, result, keep_going);
+    if (trimmed(input.parameters.output.sensitivities) == "all")
+      std::erase_if(result.sensitivities, [&](const EntrySensitivity &one) {
+        return one.standard_deviation == 0. &&
+               (one.may_vary ? one.value == 0. : input.file.assignment_of(one.entry) == nullptr);
+      });
+    std::ranges::stable_sort(result.sensitivities, [](const EntrySensitivity &a, const EntrySensitivity &b) {
+      const auto size = [](const EntrySensitivity &one) { return one.value ? std::abs(*one.value * one.at) : -1.; };
+      return size(a) > size(b);
+    });
     return local;
   }
 } // namespace crawler

@@ -8,9 +8,9 @@
 #include <crawler/studies/core/python.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/core/study_folder.h>
-#include <crawler/studies/core/table_csv.h>
 #include <crawler/studies/optimize/gradient_check.h>
 #include <crawler/studies/optimize/optimize.h>
+#include <crawler/studies/optimize/optimize_results.h>
 #include <crawler/studies/optimize/optimize_searches.h>
 #include <crawler/studies/run/run.h>
 
@@ -204,15 +204,19 @@ namespace crawler
     /// Writes tables, the optima with their runs, and the summary, on rank 0. @p stop: why the study is not whole.
     ExitCode
     write_results(OptimizeCases &cases,
-                  OptimizeSearches &searches,
+                  OptimizeMemory &memory,
+                  const std::vector<StartName> &starts,
                   const CommandOptions &options,
                   const std::string &stop,
                   const StudyClock &clock,
                   const fs::path &folder,
                   Log &log)
     {
-      const OptimizeResults results = searches.results();
-      const auto ignore             = [](const Table &) {};
+      memory.arrange(starts);
+      const OptimizeResults results(cases.names(), memory.starts());
+      const auto n_neighbours =
+        static_cast<std::size_t>(std::ranges::count_if(starts, [](const StartName &one) { return one.neighbour > 0; }));
+      const auto ignore = [](const Table &) {};
       for (const auto &[file, group] : {std::pair(OptimizeMemory::evaluations_file, OptimizeMemory::evaluations_group),
                                         std::pair(OptimizeMemory::file, OptimizeMemory::group)})
         write_table_csv(MPI_COMM_SELF, folder / file, group, (folder / file).replace_extension("csv"), ignore);
@@ -236,7 +240,7 @@ namespace crawler
         draw("optimize", folder, log);
       if (!end.warning.empty())
         log.warn(end.warning);
-      report(cases, results, searches.n_from_neighbours(), seconds, folder, log);
+      report(cases, results, n_neighbours, seconds, folder, log);
       return end.code;
     }
 
@@ -331,12 +335,12 @@ namespace crawler
         remove_optima(path);
     });
     clock.set_limit(cases.parameters().optimize.time_limit);
-    OptimizeSearches searches(
-      communicator, cases, std::move(memory), path, [&]() { return clock.is_over(); }, log);
-    const std::string stop = clock.reason(communicator, searches.go_on());
+    const SearchesMade searches = make_searches(
+      communicator, cases, memory.get(), path, [&]() { return clock.is_over(); }, log);
+    const std::string stop = clock.reason(communicator, searches.are_whole);
     return exit_code_of_first_rank(communicator, [&]() {
       folder.require_in_place();
-      const ExitCode end = write_results(cases, searches, options, stop, clock, path, log);
+      const ExitCode end = write_results(cases, *memory, searches.starts, options, stop, clock, path, log);
       folder.leave();
       return end;
     });

@@ -352,8 +352,8 @@ namespace crawler
                        "nonlinear or linear is expected",
                        "Model");
     if (model.model == Model::kinematic)
-      return std::make_unique<KinematicGait>(family, wishes, start);
-    return std::make_unique<SimulatedGait>(family, wishes, stops);
+      return kinematic_gait(family, wishes, start);
+    return simulated_gait(family, wishes, stops);
   }
 
   StartResult

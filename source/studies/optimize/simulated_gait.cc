@@ -3,8 +3,11 @@
 #include <crawler/adjoint/run_gradient.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/output/kymograph_writer.h>
+#include <crawler/output/observer.h>
 #include <crawler/run/simulation.h>
-#include <crawler/studies/core/answer_differences.h>
+#include <crawler/studies/core/compute.h>
+#include <crawler/studies/core/sensitivities.h>
+#include <crawler/studies/optimize/extremes_in_boxes.h>
 #include <crawler/studies/optimize/simulated_gait.h>
 
 #include <algorithm>
@@ -56,338 +59,379 @@ namespace crawler
     private:
       std::pair<double, double> &extremes_;
     };
+
+    /**
+     * Gaits of the levels that are simulated: answers of `crawler run` for the values of the variables, and derivatives
+     * by the adjoint of a run with the same numerics (adjoint/run_gradient.h). Where there is no adjoint they are
+     * differences of answers, which are computed together.
+     */
+    class SimulatedGait : public GaitModel
+    {
+    public:
+      /// @p interrupted is called after every step.
+      SimulatedGait(SceneFamily &family, const GaitWishes wishes, std::function<bool()> interrupted)
+        : family_(family)
+        , wishes_(wishes)
+        , interrupted_(std::move(interrupted))
+      {
+        if (wishes.numbers[GaitNumber::mean_square])
+          throw InputError(
+            "the mean-square strain is limited at the kinematic level only; Model = kinematic, or another "
+            "limit, is expected",
+            "Optimize/Mean-square strain");
+      }
+
+      GaitValues
+      evaluate(const std::vector<double> &x, const bool with_gradients, const std::vector<std::size_t> &places) override
+      {
+        GaitValues values;
+        try
+        {
+          if (latest_.empty() || latest_x_ != x)
+          {
+            latest_   = answers({x});
+            latest_x_ = x;
+            latest_extremes_.clear();
+          }
+          const Task &task = latest_.front();
+          values.problem   = problem_of(task);
+          if (!values.problem.empty())
+            return values;
+          values.numbers = numbers(task);
+          for (std::size_t i = 0; i < n_gait_numbers; ++i)
+            if (wishes_.numbers[i] && !std::isfinite(values.numbers[i]))
+              values.problem =
+                i == static_cast<std::size_t>(GaitNumber::speed)
+                  ? "the speed is not known, since the active stress does not tell the duration of a stride"
+                  : "a work is not known there";
+          if (wishes_.strain)
+          {
+            if (latest_extremes_.empty())
+              latest_extremes_ = extremes(task);
+            for (const StretchPlace &one : latest_extremes_)
+              values.strain.values.push_back(one.value - 1.);
+          }
+          if (wishes_.stress)
+            values.stress = family_.stress(x, /*rate=*/false, with_gradients);
+          if (wishes_.stress_rate)
+            values.stress_rate = family_.stress(x, /*rate=*/true, with_gradients);
+          if (with_gradients && values.problem.empty())
+          {
+            for (auto &gradient : values.gradients)
+              gradient.assign(x.size(), 0.);
+            values.by_differences.assign(x.size(), true);
+            values.strain_by_differences.assign(x.size(), wishes_.strain);
+            if (wishes_.strain)
+              strain_jacobian_.assign(latest_extremes_.size() * x.size(), 0.);
+            add_adjoint_gradients(x, task, wishes_.strain ? with_extremes(places) : places, values);
+            values.gradients[GaitNumber::friction_time] = family_.differences(
+              x,
+              [](const Parameters &there) {
+                return std::vector<double>(1,
+                                           there.time.end_time / (there.body.friction_coefficient * there.body.length));
+              },
+              1e-3);
+            add_differences(x, values);
+            if (wishes_.strain)
+              values.strain.jacobian = std::make_shared<const std::vector<double>>(strain_jacobian_);
+          }
+        }
+        catch (const InputError &error)
+        {
+          values.problem = error.what();
+        }
+        return values;
+      }
+
+      bool
+      refine(const std::vector<double> &) override
+      {
+        return false;
+      }
+      /// Steps see extremes at their stages only; a thousand pictures of each stride show those between.
+      std::pair<double, double>
+      extreme_strains(const std::vector<double> &x) override
+      {
+        constexpr double pictures_of_stride = 1000., max_pictures = 20000.;
+        evaluate(x, /*with_gradients=*/false, {});
+        const Task &task = latest_.front();
+        std::pair<double, double> extremes{task.computed.result.min_stretch.value - 1.,
+                                           task.computed.result.max_stretch.value - 1.};
+        if (has_pictures(task))
+          seen_by(std::make_unique<ExtremesOfPictures>(extremes),
+                  task,
+                  equal_parts(static_cast<std::size_t>(
+                    std::min(pictures_of_stride * std::max(strides_of(*task.scene), 1.), max_pictures))));
+        return extremes;
+      }
+
+      double
+      noise() const override
+      {
+        return family_.form().parameters.accuracy;
+      }
+      std::string
+      description() const override
+      {
+        return "simulations, with derivatives by the adjoint";
+      }
+
+    private:
+      std::vector<Task>
+      answers(const std::vector<std::vector<double>> &places)
+      {
+        std::vector<Task> tasks;
+        for (const auto &x : places)
+        {
+          tasks.emplace_back();
+          tasks.back().parameters = family_.parameters(x);
+          tasks.back().gait       = wishes_.numbers[GaitNumber::speed];
+        }
+        compute_all(tasks, HUGE_VAL, interrupted_);
+        if (interrupted_())
+          throw Interrupted();
+        return tasks;
+      }
+
+      ByGaitNumber<double>
+      numbers(const Task &task) const
+      {
+        const SimulationResult &result = task.computed.result;
+        const Scene &scene             = *task.scene;
+        ByGaitNumber<double> list;
+        list.fill(NAN);
+        list[GaitNumber::displacement] = result.displacement;
+        if (result.energy_balance)
+        {
+          list[GaitNumber::work]          = result.energy_balance->stress_work;
+          list[GaitNumber::positive_work] = result.energy_balance->positive_work;
+          list[GaitNumber::dissipation]   = result.energy_balance->dissipation;
+        }
+        if (result.gait)
+          list[GaitNumber::speed] = result.gait->speed();
+        list[GaitNumber::efficiency]    = result.gait_efficiency.value_or(NAN);
+        list[GaitNumber::friction_time] = scene.end_time / (scene.body.friction_coefficient * scene.body.length);
+        return list;
+      }
+
+      /// Repeats the run of a task with an observer at some times, parts of the duration.
+      std::unique_ptr<Observer>
+      seen_by(std::unique_ptr<Observer> observer, const Task &task, const std::vector<double> &times) const
+      {
+        const Scene &scene = *task.scene;
+        std::vector<double> rows;
+        for (const double part : times)
+          rows.push_back(scene.end_time * part);
+        TimeParameters time = task.parameters.time;
+        time.cycle_stop     = CycleStopMode::off;
+        std::vector<std::unique_ptr<Observer>> observers;
+        observers.push_back(std::move(observer));
+        Simulation(MPI_COMM_SELF, scene, time, task.computed.choice.numerics)
+          .run(PictureTimes({}, rows, scene.end_time), {.energy_balance = false}, observers, [&]() {
+            return !interrupted_();
+          });
+        if (interrupted_())
+          throw Interrupted();
+        return std::move(observers.front());
+      }
+
+      /// Extreme stretches in the boxes.
+      std::vector<StretchPlace>
+      extremes(const Task &task)
+      {
+        const Scene &scene = *task.scene;
+        if (!n_boxes_in_time_)
+          n_boxes_in_time_ = ExtremesInBoxes::boxes_in_time(strides_of(scene));
+        const ExtremesInBoxes boxes(
+          *n_boxes_in_time_, strides_of(scene), {breaks_in_space_of(scene), breaks_in_time_of(scene)});
+        if (has_pictures(task))
+        {
+          const auto seen = seen_by(std::make_unique<Kymograph>(boxes.points()), task, boxes.times());
+          const std::vector<double> &stretch = static_cast<const Kymograph &>(*seen).rows().stretch;
+          if (stretch.size() == boxes.points().size() * boxes.times().size())
+            return boxes.find(stretch);
+        }
+        const SimulationResult &result = task.computed.result;
+        const auto place_of            = [&](const Extreme &one) {
+          return StretchPlace{one.s / scene.body.length, one.t / scene.end_time, one.value};
+        };
+        return boxes.place(place_of(result.min_stretch), place_of(result.max_stretch));
+      }
+
+      /// Adds the smallest and the largest of the latest extremes to @p places.
+      /// Adds the two extremes only: each derivative costs a sweep.
+      std::vector<std::size_t>
+      with_extremes(std::vector<std::size_t> places) const
+      {
+        const auto of_value      = [](const StretchPlace &a, const StretchPlace &b) { return a.value < b.value; };
+        const auto [least, most] = std::ranges::minmax_element(latest_extremes_, of_value);
+        places.push_back(static_cast<std::size_t>(least - latest_extremes_.begin()));
+        places.push_back(static_cast<std::size_t>(most - latest_extremes_.begin()));
+        std::ranges::sort(places);
+        places.erase(std::unique(places.begin(), places.end()), places.end());
+        return places;
+      }
+
+      /// Adds gradients by the adjoint; of the strains, those of @p near.
+      /// Adds gradients for the variables for which all wanted numbers have derivatives.
+      void
+      add_adjoint_gradients(const std::vector<double> &x,
+                            const Task &task,
+                            const std::vector<std::size_t> &near,
+                            GaitValues &values)
+      {
+        constexpr double step        = 1e-3;
+        const Parameters &parameters = task.parameters;
+        const NumericsChoice &choice = task.computed.choice;
+        if (task.computed.result.model == Model::kinematic || choice.is_of_several_runs() ||
+            !RecordedRun::is_possible(*task.scene, parameters.time, choice.numerics))
+          return;
+        std::vector<Quantity> wanted;
+        for (std::size_t k = 0; k < n_gait_numbers; ++k)
+          if (wishes_.numbers[k] && quantities[k] && *quantities[k] != Quantity::speed)
+            wanted.push_back(*quantities[k]);
+        if (wishes_.numbers[GaitNumber::speed])
+          wanted.push_back(Quantity::stride); // the speed comes with it
+        std::vector<std::vector<Scene>> scenes(x.size());
+        std::vector<Variation> variations;
+        std::vector<std::size_t> own;
+        for (std::size_t i = 0; i < x.size(); ++i)
+        {
+          const auto around = family_.stencil(x, i, step);
+          bool is_similar   = true;
+          for (const double place : around.places)
+            if (place != 0.)
+            {
+              std::vector<double> other = x;
+              other[i] += place;
+              scenes[i].push_back(family_.parameters(other).create_scene());
+              is_similar = is_similar && have_similar_breaks(*task.scene, scenes[i].back());
+            }
+          if (!is_similar)
+            continue;
+          const bool is_one_sided = around.places[0] == 0.;
+          variations.push_back({{{scenes[i].data(), &scenes[i][1], &scenes[i][2], &scenes[i][3]}},
+                                around.places[is_one_sided ? 1 : 2],
+                                is_one_sided});
+          own.push_back(i);
+        }
+        try
+        {
+          const RecordedRun run(*task.scene, parameters.time, choice.numerics, [&]() { return !interrupted_(); });
+          std::vector<StretchPlace> places;
+          for (const std::size_t e : near)
+            places.push_back(latest_extremes_[e]);
+          RunGradient gradient(run);
+          const auto derivatives = gradient.derivatives(variations, wanted, places);
+          for (std::size_t v = 0; v < own.size(); ++v)
+          {
+            const std::size_t i = own[v];
+            bool is_known       = true;
+            for (std::size_t k = 0; k < n_gait_numbers; ++k)
+              if (wishes_.numbers[k] && quantities[k])
+              {
+                const auto &value      = derivatives[v][static_cast<std::size_t>(*quantities[k])];
+                is_known               = is_known && value.has_value();
+                values.gradients[k][i] = value.value_or(0.);
+              }
+            values.by_differences[i] = !is_known;
+            const auto &strains      = gradient.of_stretches()[v];
+            if (!wishes_.strain || !std::ranges::all_of(strains, [](const auto &one) { return one.has_value(); }))
+              continue;
+            for (std::size_t e = 0; e < strains.size(); ++e)
+              strain_jacobian_[near[e] * x.size() + i] = *strains[e];
+            values.strain_by_differences[i] = false;
+          }
+        }
+        catch (const std::exception &) // e.g. the engine gave up a step
+        {
+          if (interrupted_())
+            throw Interrupted();
+          values.by_differences.assign(x.size(), true);
+          values.strain_by_differences.assign(x.size(), wishes_.strain);
+        }
+      }
+
+      void
+      add_differences(const std::vector<double> &x, GaitValues &values)
+      {
+        const double step = step_of_differences(latest_.front().parameters.accuracy);
+        std::vector<std::vector<double>> places;
+        std::vector<std::pair<std::size_t, double>> weights; // variable and weight of each place
+        for (std::size_t i = 0; i < x.size(); ++i)
+          if (values.by_differences[i] || values.strain_by_differences[i])
+          {
+            const auto around = family_.stencil(x, i, step);
+            for (std::size_t k = 0; k < around.places.size(); ++k)
+            {
+              places.push_back(x);
+              places.back()[i] += around.places[k];
+              weights.emplace_back(i, around.weights[k]);
+            }
+          }
+        if (places.empty())
+          return;
+        const std::vector<Task> tasks = answers(places);
+        const std::size_t n           = x.size();
+        // Gaits on one side may be impossible, e.g. near inversion: those on the other side give a derivative of first
+        // order.
+        std::vector<std::size_t> nearest(n, tasks.size());
+        std::vector<std::string> problems(n);
+        const auto distance = [&](const std::size_t j) {
+          return std::abs(places[j][weights[j].first] - x[weights[j].first]);
+        };
+        for (std::size_t j = 0; j < tasks.size(); ++j)
+        {
+          const std::size_t i = weights[j].first;
+          if (const std::string problem = problem_of(tasks[j]); !problem.empty())
+            problems[i] = problem;
+          else if (distance(j) > 0. && (nearest[i] == tasks.size() || distance(j) < distance(nearest[i])))
+            nearest[i] = j;
+        }
+        for (std::size_t i = 0; i < n; ++i)
+        {
+          if (values.by_differences[i])
+            for (auto &gradient : values.gradients)
+              gradient[i] = 0.;
+          if (!problems[i].empty() && nearest[i] == tasks.size())
+            values.problem_of_gradients = "beside it: " + problems[i];
+        }
+        for (std::size_t j = 0; j < tasks.size(); ++j)
+        {
+          const std::size_t i     = weights[j].first;
+          const bool is_one_sided = !problems[i].empty();
+          if (is_one_sided && j != nearest[i])
+            continue;
+          const double weight = is_one_sided ? 1. / (places[j][i] - x[i]) : weights[j].second;
+          const auto there    = numbers(tasks[j]);
+          const auto change   = [&](const double value, const double at_x) {
+            return weight * (is_one_sided ? value - at_x : value);
+          };
+          if (values.by_differences[i])
+            for (std::size_t k = 0; k < n_gait_numbers; ++k)
+              values.gradients[k][i] += change(there[k], values.numbers[k]);
+          if (!values.strain_by_differences[i])
+            continue;
+          const std::vector<StretchPlace> extremes_there = extremes(tasks[j]);
+          for (std::size_t e = 0; e < latest_extremes_.size(); ++e)
+            strain_jacobian_[e * n + i] += change(extremes_there[e].value, latest_extremes_[e].value);
+        }
+      }
+
+      SceneFamily &family_;
+      const GaitWishes wishes_;
+      const std::function<bool()> interrupted_;
+      std::optional<std::size_t> n_boxes_in_time_; ///< where strains are limited
+      std::vector<double> latest_x_;               ///< variables of the following members
+      std::vector<Task> latest_;                   ///< single task, with the answer there
+      std::vector<StretchPlace> latest_extremes_;  ///< extremes in the boxes, if strains are limited
+      std::vector<double> strain_jacobian_;        ///< [extreme][variable]
+    };
   } // namespace
 
-  SimulatedGait::SimulatedGait(SceneFamily &family, const GaitWishes wishes, std::function<bool()> interrupted)
-    : family_(family)
-    , wishes_(wishes)
-    , interrupted_(std::move(interrupted))
+  std::unique_ptr<GaitModel>
+  simulated_gait(SceneFamily &family, const GaitWishes &wishes, std::function<bool()> interrupted)
   {
-    if (wishes.numbers[GaitNumber::mean_square])
-      throw InputError("the mean-square strain is limited at the kinematic level only; Model = kinematic, or another "
-                       "limit, is expected",
-                       "Optimize/Mean-square strain");
-  }
-
-  std::string
-  SimulatedGait::description() const
-  {
-    return "simulations, with derivatives by the adjoint";
-  }
-
-  std::unique_ptr<Observer>
-  SimulatedGait::seen_by(std::unique_ptr<Observer> observer, const Task &task, const std::vector<double> &times) const
-  {
-    const Scene &scene = *task.scene;
-    std::vector<double> rows;
-    for (const double part : times)
-      rows.push_back(scene.end_time * part);
-    TimeParameters time = task.parameters.time;
-    time.cycle_stop     = CycleStopMode::off;
-    std::vector<std::unique_ptr<Observer>> observers;
-    observers.push_back(std::move(observer));
-    Simulation(MPI_COMM_SELF, scene, time, task.computed.choice.numerics)
-      .run(PictureTimes({}, rows, scene.end_time), {.energy_balance = false}, observers, [&]() {
-        return !interrupted_();
-      });
-    if (interrupted_())
-      throw Interrupted();
-    return std::move(observers.front());
-  }
-
-  /// Steps see extremes at their stages only; a thousand pictures of each stride show those between.
-  std::pair<double, double>
-  SimulatedGait::extreme_strains(const std::vector<double> &x)
-  {
-    constexpr double pictures_of_stride = 1000., max_pictures = 20000.;
-    evaluate(x, /*with_gradients=*/false, {});
-    const Task &task = latest_.front();
-    std::pair<double, double> extremes{task.computed.result.min_stretch.value - 1.,
-                                       task.computed.result.max_stretch.value - 1.};
-    if (has_pictures(task))
-      seen_by(std::make_unique<ExtremesOfPictures>(extremes),
-              task,
-              equal_parts(static_cast<std::size_t>(
-                std::min(pictures_of_stride * std::max(strides_of(*task.scene), 1.), max_pictures))));
-    return extremes;
-  }
-
-  std::vector<StretchPlace>
-  SimulatedGait::extremes(const Task &task)
-  {
-    const Scene &scene = *task.scene;
-    if (!n_boxes_in_time_)
-      n_boxes_in_time_ = ExtremesInBoxes::boxes_in_time(strides_of(scene));
-    const ExtremesInBoxes boxes(
-      *n_boxes_in_time_, strides_of(scene), {breaks_in_space_of(scene), breaks_in_time_of(scene)});
-    if (has_pictures(task))
-    {
-      const auto seen                    = seen_by(std::make_unique<Kymograph>(boxes.points()), task, boxes.times());
-      const std::vector<double> &stretch = static_cast<const Kymograph &>(*seen).rows().stretch;
-      if (stretch.size() == boxes.points().size() * boxes.times().size())
-        return boxes.find(stretch);
-    }
-    const SimulationResult &result = task.computed.result;
-    const auto place_of            = [&](const Extreme &one) {
-      return StretchPlace{one.s / scene.body.length, one.t / scene.end_time, one.value};
-    };
-    return boxes.place(place_of(result.min_stretch), place_of(result.max_stretch));
-  }
-
-  std::vector<Task>
-  SimulatedGait::answers(const std::vector<std::vector<double>> &places)
-  {
-    std::vector<Task> tasks;
-    for (const auto &x : places)
-    {
-      tasks.emplace_back();
-      tasks.back().parameters = family_.parameters(x);
-      tasks.back().gait       = wishes_.numbers[GaitNumber::speed];
-    }
-    compute_all(tasks, HUGE_VAL, interrupted_);
-    if (interrupted_())
-      throw Interrupted();
-    return tasks;
-  }
-
-  ByGaitNumber<double>
-  SimulatedGait::numbers(const Task &task) const
-  {
-    const SimulationResult &result = task.computed.result;
-    const Scene &scene             = *task.scene;
-    ByGaitNumber<double> list;
-    list.fill(NAN);
-    list[GaitNumber::displacement] = result.displacement;
-    if (result.energy_balance)
-    {
-      list[GaitNumber::work]          = result.energy_balance->stress_work;
-      list[GaitNumber::positive_work] = result.energy_balance->positive_work;
-      list[GaitNumber::dissipation]   = result.energy_balance->dissipation;
-    }
-    if (result.gait)
-      list[GaitNumber::speed] = result.gait->speed();
-    list[GaitNumber::efficiency]    = result.gait_efficiency.value_or(NAN);
-    list[GaitNumber::friction_time] = scene.end_time / (scene.body.friction_coefficient * scene.body.length);
-    return list;
-  }
-
-  GaitValues
-  SimulatedGait::evaluate(const std::vector<double> &x,
-                          const bool with_gradients,
-                          const std::vector<std::size_t> &places)
-  {
-    GaitValues values;
-    try
-    {
-      if (latest_.empty() || latest_x_ != x)
-      {
-        latest_   = answers({x});
-        latest_x_ = x;
-        latest_extremes_.clear();
-      }
-      const Task &task = latest_.front();
-      values.problem   = problem_of(task);
-      if (!values.problem.empty())
-        return values;
-      values.numbers = numbers(task);
-      for (std::size_t i = 0; i < n_gait_numbers; ++i)
-        if (wishes_.numbers[i] && !std::isfinite(values.numbers[i]))
-          values.problem = i == static_cast<std::size_t>(GaitNumber::speed)
-                             ? "the speed is not known, since the active stress does not tell the duration of a stride"
-                             : "a work is not known there";
-      if (wishes_.strain)
-      {
-        if (latest_extremes_.empty())
-          latest_extremes_ = extremes(task);
-        for (const StretchPlace &one : latest_extremes_)
-          values.strain.values.push_back(one.value - 1.);
-      }
-      if (wishes_.stress)
-        values.stress = family_.stress(x, /*rate=*/false, with_gradients);
-      if (wishes_.stress_rate)
-        values.stress_rate = family_.stress(x, /*rate=*/true, with_gradients);
-      if (with_gradients && values.problem.empty())
-      {
-        for (auto &gradient : values.gradients)
-          gradient.assign(x.size(), 0.);
-        values.by_differences.assign(x.size(), true);
-        values.strain_by_differences.assign(x.size(), wishes_.strain);
-        if (wishes_.strain)
-          strain_jacobian_.assign(latest_extremes_.size() * x.size(), 0.);
-        add_adjoint_gradients(x, task, wishes_.strain ? with_extremes(places) : places, values);
-        values.gradients[GaitNumber::friction_time] = family_.differences(
-          x,
-          [](const Parameters &there) {
-            return std::vector<double>(1, there.time.end_time / (there.body.friction_coefficient * there.body.length));
-          },
-          1e-3);
-        add_differences(x, values);
-        if (wishes_.strain)
-          values.strain.jacobian = std::make_shared<const std::vector<double>>(strain_jacobian_);
-      }
-    }
-    catch (const InputError &error)
-    {
-      values.problem = error.what();
-    }
-    return values;
-  }
-
-  /// Adds gradients for the variables for which all wanted numbers have derivatives.
-  void
-  SimulatedGait::add_adjoint_gradients(const std::vector<double> &x,
-                                       const Task &task,
-                                       const std::vector<std::size_t> &near,
-                                       GaitValues &values)
-  {
-    constexpr double step        = 1e-3;
-    const Parameters &parameters = task.parameters;
-    const NumericsChoice &choice = task.computed.choice;
-    if (task.computed.result.model == Model::kinematic || choice.is_of_several_runs() ||
-        !RecordedRun::is_possible(*task.scene, parameters.time, choice.numerics))
-      return;
-    std::vector<Quantity> wanted;
-    for (std::size_t k = 0; k < n_gait_numbers; ++k)
-      if (wishes_.numbers[k] && quantities[k] && *quantities[k] != Quantity::speed)
-        wanted.push_back(*quantities[k]);
-    if (wishes_.numbers[GaitNumber::speed])
-      wanted.push_back(Quantity::stride); // the speed comes with it
-    std::vector<std::vector<Scene>> scenes(x.size());
-    std::vector<Variation> variations;
-    std::vector<std::size_t> own;
-    for (std::size_t i = 0; i < x.size(); ++i)
-    {
-      const auto around = family_.stencil(x, i, step);
-      bool is_similar   = true;
-      for (const double place : around.places)
-        if (place != 0.)
-        {
-          std::vector<double> other = x;
-          other[i] += place;
-          scenes[i].push_back(family_.parameters(other).create_scene());
-          is_similar = is_similar && have_similar_breaks(*task.scene, scenes[i].back());
-        }
-      if (!is_similar)
-        continue;
-      const bool is_one_sided = around.places[0] == 0.;
-      variations.push_back({{{scenes[i].data(), &scenes[i][1], &scenes[i][2], &scenes[i][3]}},
-                            around.places[is_one_sided ? 1 : 2],
-                            is_one_sided});
-      own.push_back(i);
-    }
-    try
-    {
-      const RecordedRun run(*task.scene, parameters.time, choice.numerics, [&]() { return !interrupted_(); });
-      std::vector<StretchPlace> places;
-      for (const std::size_t e : near)
-        places.push_back(latest_extremes_[e]);
-      RunGradient gradient(run);
-      const auto derivatives = gradient.derivatives(variations, wanted, places);
-      for (std::size_t v = 0; v < own.size(); ++v)
-      {
-        const std::size_t i = own[v];
-        bool is_known       = true;
-        for (std::size_t k = 0; k < n_gait_numbers; ++k)
-          if (wishes_.numbers[k] && quantities[k])
-          {
-            const auto &value      = derivatives[v][static_cast<std::size_t>(*quantities[k])];
-            is_known               = is_known && value.has_value();
-            values.gradients[k][i] = value.value_or(0.);
-          }
-        values.by_differences[i] = !is_known;
-        const auto &strains      = gradient.of_stretches()[v];
-        if (!wishes_.strain || !std::ranges::all_of(strains, [](const auto &one) { return one.has_value(); }))
-          continue;
-        for (std::size_t e = 0; e < strains.size(); ++e)
-          strain_jacobian_[near[e] * x.size() + i] = *strains[e];
-        values.strain_by_differences[i] = false;
-      }
-    }
-    catch (const std::exception &) // e.g. the engine gave up a step
-    {
-      if (interrupted_())
-        throw Interrupted();
-      values.by_differences.assign(x.size(), true);
-      values.strain_by_differences.assign(x.size(), wishes_.strain);
-    }
-  }
-
-  /// Adds the two extremes only: each derivative costs a sweep.
-  std::vector<std::size_t>
-  SimulatedGait::with_extremes(std::vector<std::size_t> places) const
-  {
-    const auto of_value      = [](const StretchPlace &a, const StretchPlace &b) { return a.value < b.value; };
-    const auto [least, most] = std::ranges::minmax_element(latest_extremes_, of_value);
-    places.push_back(static_cast<std::size_t>(least - latest_extremes_.begin()));
-    places.push_back(static_cast<std::size_t>(most - latest_extremes_.begin()));
-    std::ranges::sort(places);
-    places.erase(std::unique(places.begin(), places.end()), places.end());
-    return places;
-  }
-
-  void
-  SimulatedGait::add_differences(const std::vector<double> &x, GaitValues &values)
-  {
-    const double step = step_of_differences(latest_.front().parameters.accuracy);
-    std::vector<std::vector<double>> places;
-    std::vector<std::pair<std::size_t, double>> weights; // variable and weight of each place
-    for (std::size_t i = 0; i < x.size(); ++i)
-      if (values.by_differences[i] || values.strain_by_differences[i])
-      {
-        const auto around = family_.stencil(x, i, step);
-        for (std::size_t k = 0; k < around.places.size(); ++k)
-        {
-          places.push_back(x);
-          places.back()[i] += around.places[k];
-          weights.emplace_back(i, around.weights[k]);
-        }
-      }
-    if (places.empty())
-      return;
-    const std::vector<Task> tasks = answers(places);
-    const std::size_t n           = x.size();
-    // Gaits on one side may be impossible, e.g. near inversion: those on the other side give a derivative of first
-    // order.
-    std::vector<std::size_t> nearest(n, tasks.size());
-    std::vector<std::string> problems(n);
-    const auto distance = [&](const std::size_t j) {
-      return std::abs(places[j][weights[j].first] - x[weights[j].first]);
-    };
-    for (std::size_t j = 0; j < tasks.size(); ++j)
-    {
-      const std::size_t i = weights[j].first;
-      if (const std::string problem = problem_of(tasks[j]); !problem.empty())
-        problems[i] = problem;
-      else if (distance(j) > 0. && (nearest[i] == tasks.size() || distance(j) < distance(nearest[i])))
-        nearest[i] = j;
-    }
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      if (values.by_differences[i])
-        for (auto &gradient : values.gradients)
-          gradient[i] = 0.;
-      if (!problems[i].empty() && nearest[i] == tasks.size())
-        values.problem_of_gradients = "beside it: " + problems[i];
-    }
-    for (std::size_t j = 0; j < tasks.size(); ++j)
-    {
-      const std::size_t i     = weights[j].first;
-      const bool is_one_sided = !problems[i].empty();
-      if (is_one_sided && j != nearest[i])
-        continue;
-      const double weight = is_one_sided ? 1. / (places[j][i] - x[i]) : weights[j].second;
-      const auto there    = numbers(tasks[j]);
-      const auto change   = [&](const double value, const double at_x) {
-        return weight * (is_one_sided ? value - at_x : value);
-      };
-      if (values.by_differences[i])
-        for (std::size_t k = 0; k < n_gait_numbers; ++k)
-          values.gradients[k][i] += change(there[k], values.numbers[k]);
-      if (!values.strain_by_differences[i])
-        continue;
-      const std::vector<StretchPlace> extremes_there = extremes(tasks[j]);
-      for (std::size_t e = 0; e < latest_extremes_.size(); ++e)
-        strain_jacobian_[e * n + i] += change(extremes_there[e].value, latest_extremes_[e].value);
-    }
+    return std::make_unique<SimulatedGait>(family, wishes, std::move(interrupted));
   }
 } // namespace crawler

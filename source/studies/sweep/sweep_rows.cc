@@ -4,8 +4,7 @@
 #include <crawler/base/short_text.h>
 #include <crawler/base/versions.h>
 #include <crawler/parameters/declarations.h>
-#include <crawler/studies/core/differentiated_numbers.h>
-#include <crawler/studies/core/table_csv.h>
+#include <crawler/studies/core/sensitivities.h>
 #include <crawler/studies/sweep/checked_runs.h>
 #include <crawler/studies/sweep/sweep_rows.h>
 

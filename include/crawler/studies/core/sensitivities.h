@@ -3,18 +3,49 @@
 
 #include <crawler/accuracy/numerics_choice.h>
 #include <crawler/adjoint/run_gradient.h>
-#include <crawler/studies/core/sensitivity_entries.h>
+#include <crawler/adjoint/works.h>
+#include <crawler/studies/core/input.h>
 
+#include <array>
+#include <filesystem>
 #include <functional>
-#include <string>
 #include <vector>
 
 namespace crawler
 {
+  /// Number that is differentiated, by its key in the result table.
+  struct DifferentiatedNumber
+  {
+    const char *key;
+    double (*of)(const SimulationResult &);
+  };
+
+  /// Numbers in the order of all_quantities; the displacement is the first.
+  inline constexpr std::array<DifferentiatedNumber, all_quantities.size()> differentiated_numbers = {{
+    {"displacement", [](const SimulationResult &result) { return result.displacement; }},
+    {"stress_power", [](const SimulationResult &result) { return result.energy_balance->stress_work; }},
+    {"dissipation", [](const SimulationResult &result) { return result.energy_balance->dissipation; }},
+    {"positive_power", [](const SimulationResult &result) { return result.energy_balance->positive_work; }},
+    {"paper_energy", [](const SimulationResult &result) { return result.energy_balance->paper_energy(); }},
+    {"gait.displacement", [](const SimulationResult &result) { return result.gait->displacement; }},
+    {"gait.speed", [](const SimulationResult &result) { return result.gait->speed(); }},
+  }};
+
+  /// Returns true if these results have the number: an energy balance, a last stride.
+  inline bool
+  has_number(const std::size_t number, const SimulationResult &result)
+  {
+    return is_work(all_quantities[number]) ? result.energy_balance.has_value() : number == 0 || result.gait.has_value();
+  }
+
+  /// Step between answers with this relative error from which an entry is differentiated, relative to its value [1].
+  double
+  step_of_differences(double relative_error);
+
   /**
    * Adds the derivatives of displacement and works by @p entries, with the numerics of a finished run, to its @p
    * result, in the same order; their errors come from the derivatives with the numerics of the finer run. Where there
-   * is no adjoint they are differences of answers (answer_differences.h). @p scene is the one of @p form. An entry
+   * is no adjoint they are differences of answers. @p scene is the one of @p form. An entry
    * whose derivatives cannot be found has a reason instead. Returns where and when it matters, empty if that is not
    * known.
    */
@@ -25,4 +56,19 @@ namespace crawler
                      const NumericsChoice &choice,
                      SimulationResult &result,
                      const std::function<bool()> &keep_going);
+
+  /**
+   * Adds the requested sensitivities (Input::sensitivities) of a finished run to its @p result,
+   * those of largest relative effect first; if all are requested, those without effect, and those that may not vary and
+   * have their default, are left out. Returns where and when the run is sensitive, empty if that is not known.
+   */
+  LocalSensitivity
+  add_sensitivities(const Input &input,
+                    const NumericsChoice &choice,
+                    SimulationResult &result,
+                    const std::function<bool()> &keep_going);
+
+  /// Writes sensitivity_body.csv and sensitivity_stress.csv, unless they would be empty. Throws FileError.
+  void
+  write_sensitivities(const LocalSensitivity &local, const std::filesystem::path &folder, const UnitNames &units);
 } // namespace crawler

@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/accuracy/numerics_choice.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/log.h>
 
 #include <filesystem>
+#include <string>
 
 namespace crawler
 {
   struct SimulationResult;
 
-  /// Logs body and active stress.
+  /// Mesh and steps in words, for the user.
+  std::string
+  in_words(const Numerics &numerics, const Input &input);
+
+  /// Logs what will be computed. @p choice: null on a level that needs no mesh.
   void
-  report_scene(Log &log, const Input &input);
+  report_plan(Log &log, const Input &input, const ModelChoice &model, const NumericsChoice *choice);
 
   /// Makes the output folder with the initial files of a run: parameters, log, and the tables of active stress and
   /// segments if the input asks for them. Throws FileError.

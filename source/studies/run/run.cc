@@ -1,0 +1,541 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/model_choice.h>
+#include <crawler/accuracy/numerics_choice.h>
+#include <crawler/accuracy/run_as_promised.h>
+#include <crawler/accuracy/swept_error.h>
+#include <crawler/base/clock.h>
+#include <crawler/base/communication.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
+#include <crawler/base/stop_place.h>
+#include <crawler/base/stop_signal.h>
+#include <crawler/output/kymograph_writer.h>
+#include <crawler/output/snapshot_writer.h>
+#include <crawler/output/statistics_writer.h>
+#include <crawler/run/reduced_model.h>
+#include <crawler/run/self_check.h>
+#include <crawler/run/simulation.h>
+#include <crawler/run/summary.h>
+#include <crawler/scene/moving_jumps.h>
+#include <crawler/studies/core/command_options.h>
+#include <crawler/studies/core/input.h>
+#include <crawler/studies/core/log.h>
+#include <crawler/studies/core/output_folder.h>
+#include <crawler/studies/core/progress.h>
+#include <crawler/studies/core/sensitivities.h>
+#include <crawler/studies/run/reduced_pictures.h>
+#include <crawler/studies/run/run.h>
+#include <crawler/studies/run/run_checkpoint.h>
+#include <crawler/studies/run/run_files.h>
+#include <crawler/studies/run/run_stops.h>
+#include <crawler/time/failure.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+namespace crawler
+{
+  namespace
+  {
+    /// Ends the run of all if a rank has failed alone, e.g. for lack of memory.
+    void
+    agree_on_failure(MPI_Comm communicator, TimeOutcome &outcome)
+    {
+      const int n = static_cast<int>(size_of(communicator));
+      int speaker = outcome.status == Status::none ? n : static_cast<int>(rank_of(communicator));
+      MPI_Allreduce(MPI_IN_PLACE, &speaker, 1, MPI_INT, MPI_MIN, communicator);
+      if (speaker == n)
+        return;
+      const auto texts        = gather(outcome.reason + "\n" + outcome.message, communicator);
+      const std::string text  = broadcast(texts.empty() ? "" : texts[static_cast<std::size_t>(speaker)], communicator);
+      const std::size_t split = text.find('\n');
+      outcome.status          = Status::failed;
+      outcome.reason          = text.substr(0, split);
+      outcome.message         = text.substr(split + 1);
+    }
+
+    void
+    report_resumption(Log &log, const Resumption &resumption, const std::filesystem::path &folder)
+    {
+      for (const std::string &note : resumption.notes)
+        log.warn("warning: " + note);
+      switch (resumption.kind)
+      {
+        case Resumption::begins:
+          log.line(
+            fmt::format("There is no state in \"{}\" from which the run can resume: it starts from the beginning.",
+                        folder.string()));
+          break;
+        case Resumption::goes_on:
+          log.line("The run resumes from the state in restart.dat.");
+          break;
+        case Resumption::is_whole:
+          log.line(fmt::format("The run in \"{}\" is complete; nothing was computed.", folder.string()));
+          break;
+      }
+    }
+
+    /// Writes the output times of a level without a mesh as a run with one does. Returns false if @p keep_going
+    /// returned false.
+    bool
+    write_pictures(const ReducedModel &level,
+                   const Input &input,
+                   const std::filesystem::path &folder,
+                   const std::function<bool()> &keep_going)
+    {
+      const OutputParameters &output = input.parameters.output;
+      const double length            = input.scene.body.length;
+      const PictureTimes times       = times_without_mesh(input);
+      std::optional<SnapshotWriter> snapshots;
+      if (output.has_snapshots())
+        snapshots.emplace(output.snapshot_format, folder, length, times.n_snapshots() + 1);
+      KymographWriter kymograph(length, input.scene.end_time, input.scene.ground.profile, folder);
+      std::optional<StatisticsWriter> statistics;
+      if (output.statistics)
+        statistics.emplace(length, true, folder, output.energy_balance, input.parameters.units);
+      const bool whole = show_pictures(
+        level,
+        times,
+        {snapshots ? [&](const Frame &frame) { snapshots->write(frame); } : std::function<void(const Frame &)>(),
+         output.has_snapshots() ? &kymograph : nullptr,
+         statistics ? &*statistics : nullptr},
+        keep_going);
+      if (statistics)
+        statistics->end();
+      if (snapshots)
+        snapshots->end();
+      if (output.has_snapshots() && output.kymograph)
+        kymograph.end();
+      return whole;
+    }
+
+    /// `crawler run`, from the parameter file to the files and the exit code (all functions are collective). An
+    /// exception in a part of the computation becomes the end of the run, with all files of an end.
+    class RunStudy
+    {
+    public:
+      RunStudy(MPI_Comm communicator, const CommandOptions &options, ParameterFile file)
+        : begin_(now())
+        , communicator_(communicator)
+        , options_(options)
+        , is_first_(rank_of(communicator) == 0)
+        , log_(is_first_, options)
+        , input_(read_input(std::move(file)))
+        , folder_(output_folder(options.output, options.file))
+        , journal_(input_.parameters.time.checkpoint_interval,
+                   is_first_ ? [this](const std::string &all) { return keep_states(all); } : RunJournal::Write())
+        , stops_(stop_signal_, input_.parameters.time.wall_time_limit, begin_, folder_ / stop_file_name)
+        , pictures_(picture_times(input_.parameters.output, input_.scene))
+      {
+      }
+
+      ExitCode
+      run()
+      {
+        if (!begin())
+          return ExitCode::finished;
+        choose_level();
+        const bool has_mesh = !model_ || model_->needs_mesh();
+        if (has_mesh)
+        {
+          choose_mesh_and_steps();
+          if (stops_.arrived_anywhere(communicator_))
+          {
+            log_.warn(fmt::format("stopped {} during the pilot runs; nothing was written", stops_.in_words()));
+            return ExitCode::stopped;
+          }
+          agree_on_failure(communicator_, result_.time);
+          sharing_.is_shared = size_of(communicator_) > 1 && choice_ &&
+                               choice_->numerics.formulation == Formulation::position &&
+                               input_.parameters.discretization.shares(choice_->numerics.n_cells);
+          if (sharing_.is_shared)
+            sharing_.ranks = communicator_;
+          guarded([&]() { build(*choice_); });
+        }
+        sharing_.has_output = sharing_.is_shared || is_first_;
+        begin_output();
+        result_.setup_seconds = now() - begin_;
+        if (has_mesh)
+          compute_on_mesh();
+        else if (is_first_)
+          compute_without_mesh();
+        return finish();
+      }
+
+    private:
+      /// Division of the work: either all ranks share the cells, or each computes the whole body and the first one
+      /// writes.
+      struct Sharing
+      {
+        bool is_shared  = false;
+        MPI_Comm ranks  = MPI_COMM_SELF; ///< ranks that compute together
+        bool has_output = false;         ///< true if this rank takes part in writing
+      };
+
+      // Steps before the files exist.
+      /// Checks and, to resume, locks the folder, and reads its content. Returns false if nothing is left to do.
+      bool
+      begin()
+      {
+        if (options_.resume && options_.overwrite)
+          throw InputError("--resume and --overwrite contradict each other; one of them is expected");
+        Resumption resumption;
+        on_first_rank(communicator_, [&]() {
+          require_usable(folder_, options_.overwrite || options_.resume);
+          checkpoint_ = checkpoint_of(input_, options_);
+          if (options_.resume)
+          {
+            lock_.emplace(folder_, /*overwrite=*/true);
+            resumption = resumption_of(folder_, checkpoint_);
+          }
+        });
+        if (!options_.resume)
+          return true;
+        Archive known(broadcast(archived(resumption), communicator_));
+        known(resumption);
+        report_resumption(log_, resumption, folder_);
+        goes_on_ = resumption.kind == Resumption::goes_on;
+        if (goes_on_)
+          journal_.load(resumption.journal);
+        return resumption.kind != Resumption::is_whole;
+      }
+
+      void
+      choose_level()
+      {
+        guarded([&]() {
+          model_                  = choose_model(input_);
+          input_.parameters.model = model_->model;
+        });
+        agree_on_failure(communicator_, result_.time);
+      }
+
+      void
+      choose_mesh_and_steps()
+      {
+        guarded([&]() {
+          WaitProgress pilots(log_, pilot_runs);
+          const auto goes_on = [&]() {
+            pilots.step();
+            reach(StopPlace::pilot);
+            return !is_stopped();
+          };
+          choice_ = choose_numerics(MPI_COMM_SELF, input_.parameters, input_.scene, KeepGoing(goes_on, &journal_));
+          if (choice_ && input_.parameters.output.has_snapshots())
+            prepare_for_pictures(*choice_, input_.parameters);
+        });
+      }
+
+      void
+      build(const NumericsChoice &choice)
+      {
+        simulation_.reset();
+        if (choice.front_part > 0.)
+          scene_with_fronts_ = with_fronts(input_.scene, choice.front_part);
+        simulation_ = std::make_unique<Simulation>(sharing_.ranks,
+                                                   scene_with_fronts_ ? *scene_with_fronts_ : input_.scene,
+                                                   input_.parameters.time,
+                                                   choice.numerics);
+      }
+
+      /// Makes the files, now that nothing in the input can be refused any more.
+      void
+      begin_output()
+      {
+        on_first_rank(communicator_, [&]() {
+          if (!lock_)
+            lock_.emplace(folder_, options_.overwrite);
+          begin_files(log_, input_, folder_, goes_on_);
+          has_files_ = true;
+        });
+        if (model_)
+          report_plan(log_, input_, *model_, choice_ ? &*choice_ : nullptr);
+        announce_petsc_options(options_, log_);
+      }
+
+      // Computation without or with a mesh.
+      /// Computes a level that needs no mesh on the first rank, and writes the files of any run.
+      void
+      compute_without_mesh()
+      {
+        guarded([&]() {
+          const OutputParameters &output = input_.parameters.output;
+          const double setup             = result_.setup_seconds;
+          const auto keep_going          = [&]() { return !is_stopped(); };
+          ReducedModel level(input_.scene, model_->model);
+          result_               = level.compute(input_.parameters.accuracy, output.energy_balance, keep_going);
+          result_.setup_seconds = setup;
+          level.describe_gait(result_);
+          log_.line(level.description());
+          const Stopwatch watch;
+          if (result_.error && (output.has_snapshots() || output.statistics) &&
+              !write_pictures(level, input_, folder_, keep_going))
+            result_.time.status = Status::stopped;
+          result_.output_seconds = watch.seconds();
+        });
+      }
+
+      void
+      compute_on_mesh()
+      {
+        const Parameters &parameters   = input_.parameters;
+        const OutputParameters &output = parameters.output;
+        other_runs_.emplace(log_, "runs on other meshes come first");
+        guarded([&]() {
+          const KeepGoing keep_going(
+            [&]() {
+              if (other_runs_)
+                other_runs_->step();
+              return !stops_.arrived_anywhere(sharing_.ranks);
+            },
+            &journal_);
+          const Simulation::Options options = {.energy_balance = output.energy_balance,
+                                               .cycles = cycle_wish(parameters, input_.scene, output.has_snapshots()),
+                                               .gait   = Simulation::GaitWish::any};
+          const double setup                = result_.setup_seconds;
+          Answer answer                     = run_as_promised(
+            sharing_.ranks,
+            parameters,
+            input_.scene,
+            *choice_,
+            [&](const NumericsChoice &choice) {
+              announce_next_try(choice);
+              SimulationResult run = simulation_->run(pictures_, options, observers(), keep_going);
+              other_runs_.emplace(log_, "other runs measure the error");
+              result_.time = run.time;
+              return run;
+            },
+            options,
+            /*writes=*/true,
+            keep_going);
+          result_ = std::move(answer.result);
+          if (answer.choice.is_of_several_runs())
+            log_.line("  (" + answer.choice.explanation + ")");
+          choice_                  = answer.choice;
+          result_.setup_seconds    = setup;
+          result_.estimate_seconds = answer.estimate_seconds;
+          result_.refinements      = answer.refinements;
+        });
+      }
+
+      SimulationResult
+      simulate(const NumericsChoice &choice);
+      /// Announces the runs of an answer one after the other: the first one has been built and announced.
+      void
+      announce_next_try(const NumericsChoice &choice)
+      {
+        const bool is_again         = ++n_runs_ > 1;
+        const bool is_of_other_form = choice_->is_of_several_runs() && !choice.is_of_several_runs();
+        if (is_again)
+        {
+          const TimeOutcome &latest = result_.time;
+          log_.line((latest.status == Status::failed ? latest.reason + ": " + latest.message
+                                                     : "The error is larger than Accuracy asks for") +
+                    ": running again, " + (choice.is_family ? "in the stretch form." : "finer."));
+          if (sharing_.has_output)
+            on_first_rank(sharing_.ranks, [&]() {
+              if (journal_.was_written()) // older states need the files that are about to be removed
+              {
+                remove_checkpoints(folder_);
+                journal_.write();
+              }
+              remove_fields(folder_);
+            });
+        }
+        if (is_again || choice.is_of_several_runs() || is_of_other_form)
+          build(choice);
+        if (!choice.is_of_several_runs() && (is_again || is_of_other_form))
+          log_.line(in_words(choice.numerics, input_));
+        if (is_of_other_form)
+          log_.line("  (" + choice.explanation + ")");
+        other_runs_.reset();
+      }
+
+      Simulation::Observers
+      observers()
+      {
+        const OutputParameters &output = input_.parameters.output;
+        const double length            = input_.scene.body.length;
+        Simulation::Observers observers;
+        if (!sharing_.has_output)
+          return observers;
+        if (output.has_snapshots())
+          observers.push_back(
+            std::make_unique<SnapshotWriter>(output.snapshot_format, folder_, length, pictures_.n_snapshots() + 1));
+        if (output.has_snapshots() && output.kymograph)
+          observers.push_back(
+            std::make_unique<KymographWriter>(length, input_.scene.end_time, input_.scene.ground.profile, folder_));
+        if (output.statistics)
+          observers.push_back(std::make_unique<StatisticsWriter>(
+            length, is_first_, folder_, output.energy_balance, input_.parameters.units));
+        if (!options_.quiet)
+          observers.push_back(std::make_unique<RunProgress>(log_, input_.scene));
+        return observers;
+      }
+
+      // Steps at the end.
+      ExitCode
+      finish()
+      {
+        name_stop();
+        check_identities(result_, input_.parameters);
+        add_what_follows();
+        warn_of_unused_petsc_options(communicator_, options_, log_);
+        on_first_rank(communicator_, [&]() { leave_folder(); });
+        // Signals may have stopped some ranks only.
+        return exit_code_of_first_rank(communicator_, [&]() {
+          const OutputParameters &output = input_.parameters.output;
+          const bool has_pictures        = output.has_snapshots() && (choice_ || !model_ || result_.error);
+          return report_end(log_,
+                            result_,
+                            input_.parameters.units,
+                            folder_,
+                            has_pictures ? animation_file(output.snapshot_format) : "");
+        });
+      }
+
+      void
+      name_stop()
+      {
+        if (result_.time.status == Status::stopped && result_.time.reason.empty())
+          stop(choice_ ? fmt::format("at t = {:.6g}", result_.time.time) : "before the end");
+        if (result_.time.status == Status::finished && input_.parameters.error_estimate && result_.error &&
+            !std::isfinite(result_.error->total) && is_stopped())
+          stop("after the end of the run, before its error was known");
+      }
+
+      /// Adds results of a run that has ended: its error by the adjoint, and sensitivities.
+      void
+      add_what_follows()
+      {
+        if (is_first_ && !sharing_.is_shared && choice_)
+          sweep_error(input_.parameters, input_.scene, *choice_, result_, [&]() { return !is_stopped(); });
+        other_runs_.reset();
+        if (is_first_ && !input_.sensitivities.empty() && result_.time.status != Status::finished)
+          log_.warn("there are no sensitivities, since the run did not end normally");
+        else if (is_first_ && !input_.sensitivities.empty())
+        {
+          WaitProgress progress(log_, "runs for the sensitivities");
+          const auto goes_on = [&]() {
+            progress.step();
+            return !is_stopped();
+          };
+          write_sensitivities(add_sensitivities(input_, choice_.value_or(NumericsChoice()), result_, goes_on),
+                              folder_,
+                              input_.parameters.units);
+          if (is_stopped() &&
+              !std::ranges::all_of(result_.sensitivities, [](const auto &one) { return one.value.has_value(); }))
+            stop("after the end of the run, before all sensitivities were known");
+        }
+        if (choice_ && result_.time.status == Status::finished && input_.parameters.error_estimate &&
+            !std::isfinite(result_.error->total))
+          log_.warn("the error of the displacement is not known: the second run, which measures it, did not finish");
+      }
+
+      void
+      write_summary()
+      {
+        result_.model = input_.parameters.model;
+        write_file(folder_ / "summary.json", summary_json(result_, size_of(communicator_), options_.command_line));
+      }
+
+      void
+      leave_folder()
+      {
+        lock_->require_in_place();
+        const bool is_for_later = choice_ && result_.time.status == Status::stopped && is_stopped();
+        if (is_for_later)
+          journal_.write();
+        write_summary();
+        if (!is_for_later) // a kill before this loses nothing
+          remove_checkpoints(folder_);
+        else if (journal_.was_written())
+          log_.line("The state of the run is in restart.dat: the same command with --resume continues it.");
+      }
+
+      /// Decides on this rank alone. Levels without a mesh cannot be resumed, so only a signal stops them.
+      bool
+      is_stopped()
+      {
+        return model_ && !model_->needs_mesh() ? stop_signal_.arrived_anywhere(MPI_COMM_SELF)
+                                               : stops_.arrived_anywhere(MPI_COMM_SELF);
+      }
+
+      void
+      stop(const std::string &when)
+      {
+        result_.time.status  = Status::stopped;
+        result_.time.reason  = stops_.reason();
+        result_.time.message = fmt::format("stopped {} {}", stops_.in_words(), when);
+      }
+
+      /// Performs @p work unless the run has ended.
+      template <typename Work>
+      void
+      guarded(const Work &work)
+      {
+        try
+        {
+          if (result_.time.status == Status::none)
+            work();
+        }
+        catch (...)
+        {
+          result_.time = failure_of(std::current_exception());
+          if (!sharing_.is_shared)
+            return;
+          std::filesystem::create_directories(folder_);
+          write_summary(); // by the rank that failed, since the others may be waiting
+          throw;
+        }
+      }
+
+      /// Writes the states of the journal.
+      bool
+      keep_states(const std::string &all)
+      {
+        if (!has_files_)
+          return false;
+        lock_->require_in_place();
+        checkpoint_.journal = all;
+        write_checkpoint(folder_, checkpoint_);
+        reach(StopPlace::state);
+        return true;
+      }
+
+      const StopSignal stop_signal_; ///< ends the run in an orderly way when a signal arrives
+      const double begin_;
+      const MPI_Comm communicator_;
+      const CommandOptions &options_;
+      const bool is_first_;
+      Log log_;
+      Input input_;
+      const std::filesystem::path folder_;
+      std::optional<FolderLock> lock_;
+      RunCheckpoint checkpoint_;
+      bool goes_on_ = false, has_files_ = false;
+      RunJournal journal_;
+      RunStops stops_;
+
+      std::optional<ModelChoice> model_;
+      std::optional<NumericsChoice> choice_; ///< numerics of a level with a mesh
+      Sharing sharing_;
+      PictureTimes pictures_;
+      std::optional<Scene> scene_with_fronts_;
+      std::unique_ptr<Simulation> simulation_;
+      std::optional<WaitProgress> other_runs_; ///< progress of runs without one of their own
+      unsigned int n_runs_ = 0;
+      SimulationResult result_;
+    };
+  } // namespace
+
+  ExitCode
+  run(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
+  {
+    return RunStudy(communicator, options, file).run();
+  }
+} // namespace crawler
