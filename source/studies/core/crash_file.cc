@@ -16,9 +16,6 @@
 
 namespace crawler
 {
-  const std::string crash_file = "crashes.txt";
-  const std::string crash_message =
-    "the program crashed twice at this point; this is a bug in the program, please report it";
 
   namespace
   {

@@ -19,8 +19,6 @@ namespace crawler
 {
   namespace fs = std::filesystem;
 
-  const std::string study_lock_name = "study.lock", report_name = "report.html";
-
   namespace
   {
     /// Files of runs and studies, except those that a run writes as it proceeds.
@@ -230,6 +228,16 @@ namespace crawler
     for (const std::string &name : own_names)
       fs::remove(folder / name, error);
     remove_fields(folder);
+  }
+
+  void
+  remove_run(const fs::path &folder)
+  {
+    std::error_code error;
+    prepare(folder);
+    fs::remove(folder / "active_stress.csv", error);
+    fs::remove(folder / "solution", error); // removed only if they are empty
+    fs::remove(folder, error);
   }
 
   void

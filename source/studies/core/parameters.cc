@@ -6,11 +6,9 @@
 
 namespace crawler
 {
-  const std::string sweep_syntax = "\"Section/Entry : VALUES\", several of them separated by semicolons";
   const std::string variables_in_brackets =
     "In a list, Section/Entry[2] is the second number, [1-5] are the first five, each a variable, and [*] are all of "
     "them; among the constants of a formula, Section/Constants[a] is a.";
-  const std::string variables_syntax = "\"Section/Entry : FROM to TO\", several of them separated by semicolons";
 
   void
   SweepParameters::add_parameters(Declarations &declarations)

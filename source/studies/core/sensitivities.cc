@@ -30,12 +30,14 @@ namespace crawler
     /// Places of the other answers, in steps: two differences, one of them far coarser.
     inline constexpr std::array<int, 4> around_answer = {{-4, -1, 1, 4}};
 
-    /// Parameters of answers with an entry increased by @p step times each of @p places.
-    struct VariedAnswers
+    /// Entry, and the scenes in which it differs slightly.
+    struct Varied
     {
-      std::vector<Parameters> parameters;
-      std::vector<int> places; ///< around_answer, or 1, 2, 3, 4 or their negatives
-      double step;             ///< in units of the entry
+      EntrySensitivity sensitivity;
+      double step                        = 0.; ///< between the scenes, in units of the entry; negative: downwards
+      bool is_one_sided                  = false;
+      std::vector<Parameters> parameters = {}; ///< of the scenes
+      std::vector<Scene> scenes          = {}; ///< four, or none if there is a reason
     };
 
     /// Value of a number, and the bound of its error.
@@ -91,7 +93,7 @@ namespace crawler
      * false, with nothing set, if the displacement seems to have a kink.
      */
     bool
-    differentiate_answers(VariedAnswers varied,
+    differentiate_answers(const Varied &varied,
                           const SimulationResult &result,
                           EntrySensitivity &sensitivity,
                           const std::function<bool()> &keep_going)
@@ -99,7 +101,7 @@ namespace crawler
       std::vector<Task> tasks(varied.parameters.size());
       for (std::size_t i = 0; i < tasks.size(); ++i)
       {
-        tasks[i].parameters = std::move(varied.parameters[i]);
+        tasks[i].parameters = varied.parameters[i];
         tasks[i].gait       = result.gait.has_value();
       }
       compute_all(tasks, HUGE_VAL, [&]() { return keep_going && !keep_going(); });
@@ -117,8 +119,7 @@ namespace crawler
         if (!sensitivity.reason.empty())
           return true;
       }
-      const bool is_central          = varied.places.front() < 0 && varied.places.back() > 0;
-      const Differences &differences = is_central ? central : one_sided;
+      const Differences &differences = varied.is_one_sided ? one_sided : central;
       for (std::size_t number = 0; number < differentiated_numbers.size(); ++number)
       {
         if (!has_number(number, result) || !std::ranges::all_of(tasks, [number](const Task &task) {
@@ -153,15 +154,6 @@ namespace crawler
     /// Step for the forces at the points, relative to the entry.
     constexpr double step = 1e-3;
 
-    /// Entry, and the scenes in which it differs slightly.
-    struct Varied
-    {
-      EntrySensitivity sensitivity;
-      VariedAnswers answers;     ///< parameters of the scenes
-      std::vector<Scene> scenes; ///< four, or none if there is a reason
-      bool is_one_sided = false;
-    };
-
     /// Makes the scenes in which an entry has other values, to one side if it is at a limit. An error in one of them is
     /// a reason. @p step: between the values, relative; @p both_sides: their places, in steps.
     Varied
@@ -169,20 +161,21 @@ namespace crawler
       Form &form, const Scene &scene, const std::string &entry, const double step, const std::array<int, 4> &both_sides)
     {
       const double value = *to_number(form.declarations.value(entry)), d = value != 0. ? step * std::abs(value) : step;
-      Varied one{{entry, value, {}, {}, ""}, {}, {}};
+      Varied one{{entry, value, {}, {}, ""}};
       const std::vector<int> around(both_sides.begin(), both_sides.end()), above = {1, 2, 3, 4},
                                                                            below = {-1, -2, -3, -4};
       for (const auto &places : {around, above, below})
         try
         {
           one.scenes.clear();
-          one.answers = {{}, places, places == below ? -d : d};
+          one.parameters.clear();
+          one.step         = places == below ? -d : d;
+          one.is_one_sided = places != around;
           for (const int i : places)
           {
-            one.answers.parameters.push_back(form.parameters_with(entry, value + i * d));
-            one.scenes.push_back(one.answers.parameters.back().create_scene());
+            one.parameters.push_back(form.parameters_with(entry, value + i * d));
+            one.scenes.push_back(one.parameters.back().create_scene());
           }
-          one.is_one_sided = places != around;
           one.sensitivity.reason.clear();
           for (const Scene &other : one.scenes)
             if (!have_similar_breaks(scene, other))
@@ -287,8 +280,7 @@ namespace crawler
           if (!one.scenes.empty())
           {
             const auto &scenes = one.scenes;
-            variations.push_back(
-              {{{&scenes[0], &scenes[1], &scenes[2], &scenes[3]}}, one.answers.step, one.is_one_sided});
+            variations.push_back({{{&scenes[0], &scenes[1], &scenes[2], &scenes[3]}}, one.step, one.is_one_sided});
             known.push_back(&one.sensitivity);
           }
         const RecordedRun run(scene, parameters.time, choice.numerics, keep_going);
@@ -315,11 +307,10 @@ namespace crawler
       const double apart = step_of_differences(accuracy);
       varied             = varied_by(apart, around_answer);
       for (Varied &one : varied)
-        if (!one.scenes.empty() && !differentiate_answers(std::move(one.answers), result, one.sensitivity, keep_going))
+        if (!one.scenes.empty() && !differentiate_answers(one, result, one.sensitivity, keep_going))
         {
-          VariedAnswers closer =
-            vary(form, scene, one.sensitivity.entry, closer_answers * apart, around_answer).answers;
-          if (!differentiate_answers(std::move(closer), result, one.sensitivity, keep_going))
+          const Varied closer = vary(form, scene, one.sensitivity.entry, closer_answers * apart, around_answer);
+          if (!differentiate_answers(closer, result, one.sensitivity, keep_going))
             one.sensitivity.reason = "the displacement has a kink there, or changes a lot between nearby values";
         }
     }

@@ -70,11 +70,11 @@ namespace crawler
   }
 
   ExtremesInBoxes::ExtremesInBoxes(const std::size_t n_time, const double strides, const Breaks &breaks)
-    : n_time_(n_time)
-    , points_(equal_parts(n_space * per_box, breaks.in_space))
-    , times_(equal_parts(static_cast<std::size_t>(std::clamp(
-                           per_box * boxes_of_stride * strides, per_box * static_cast<double>(n_time), max_times)),
-                         breaks.in_time))
+    : points(equal_parts(n_space * per_box, breaks.in_space))
+    , times(equal_parts(static_cast<std::size_t>(std::clamp(
+                          per_box * boxes_of_stride * strides, per_box * static_cast<double>(n_time), max_times)),
+                        breaks.in_time))
+    , n_time_(n_time)
   {
   }
 
@@ -86,9 +86,9 @@ namespace crawler
                                 const std::size_t j,
                                 const double sign) const
   {
-    const std::size_t n = points_.size();
+    const std::size_t n = points.size();
     const auto point    = [&](const std::size_t k, const std::size_t row) {
-      return Point{points_[k], stretch[row * n + k]};
+      return Point{points[k], stretch[row * n + k]};
     };
     const auto in_row = [&](const std::size_t row) {
       std::size_t best = i;
@@ -99,13 +99,13 @@ namespace crawler
                                       : point(best, row);
     };
     const Point own = in_row(j);
-    if (j == 0 || j + 1 == times_.size())
-      return {own.first, times_[j], own.second};
+    if (j == 0 || j + 1 == times.size())
+      return {own.first, times[j], own.second};
     const Point before = in_row(j - 1), after = in_row(j + 1);
     const Point vertex =
-      sharpened(sign, {times_[j - 1], before.second}, {times_[j], own.second}, {times_[j + 1], after.second});
-    const bool is_earlier = vertex.first < times_[j];
-    const double part     = std::abs((vertex.first - times_[j]) / (times_[is_earlier ? j - 1 : j + 1] - times_[j]));
+      sharpened(sign, {times[j - 1], before.second}, {times[j], own.second}, {times[j + 1], after.second});
+    const bool is_earlier = vertex.first < times[j];
+    const double part     = std::abs((vertex.first - times[j]) / (times[is_earlier ? j - 1 : j + 1] - times[j]));
     return {std::lerp(own.first, is_earlier ? before.first : after.first, part), vertex.first, vertex.second};
   }
 
@@ -116,14 +116,14 @@ namespace crawler
     for (std::size_t b = 0; b < n_time_; ++b)
       for (std::size_t a = 0; a < n_space; ++a)
       {
-        const auto [first_s, end_s] = inside(points_, a, n_space);
-        const auto [first_t, end_t] = inside(times_, b, n_time_);
+        const auto [first_s, end_s] = inside(points, a, n_space);
+        const auto [first_t, end_t] = inside(times, b, n_time_);
         for (const double sign : {-1., 1.})
         {
           std::size_t i = first_s, j = first_t;
           for (std::size_t t = first_t; t < end_t; ++t)
             for (std::size_t s = first_s; s < end_s; ++s)
-              if (sign * stretch[t * points_.size() + s] > sign * stretch[j * points_.size() + i])
+              if (sign * stretch[t * points.size() + s] > sign * stretch[j * points.size() + i])
               {
                 i = s;
                 j = t;

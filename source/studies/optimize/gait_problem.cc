@@ -25,7 +25,9 @@ namespace crawler
   GaitProblem::wishes(const OptimizeParameters &p)
   {
     GaitWishes wishes;
-    const auto want = [&](const GaitNumber number, const bool is_wanted) { wishes.numbers[number] |= is_wanted; };
+    const auto want = [&](const GaitNumber::Index number, const bool is_wanted) {
+      wishes.numbers[number] |= is_wanted;
+    };
     want(GaitNumber::displacement, p.objective != "speed");
     want(GaitNumber::speed, p.objective == "speed");
     want(GaitNumber::work, p.objective == "merit" || p.objective == "cost of transport");
@@ -130,9 +132,10 @@ namespace crawler
   {
     const double sign = sign_of_direction(parameters_);
     // f = sign D^1 W^power T^power
-    const GaitNumber first  = parameters_.objective == "speed" ? GaitNumber::speed : GaitNumber::displacement;
-    const bool is_merit     = parameters_.objective.ends_with("merit");
-    const GaitNumber energy = parameters_.objective == "periodic merit" ? GaitNumber::dissipation : GaitNumber::work;
+    const GaitNumber::Index first = parameters_.objective == "speed" ? GaitNumber::speed : GaitNumber::displacement;
+    const bool is_merit           = parameters_.objective.ends_with("merit");
+    const GaitNumber::Index energy =
+      parameters_.objective == "periodic merit" ? GaitNumber::dissipation : GaitNumber::work;
     const double power_of_W = is_merit                                       ? -0.5
                               : parameters_.objective == "cost of transport" ? -1.
                                                                              : 0.,

@@ -12,15 +12,6 @@ namespace crawler
 {
   namespace
   {
-    constexpr std::array<const char *, n_gait_numbers> words_of_numbers = {{"displacement",
-                                                                            "work",
-                                                                            "positive work",
-                                                                            "mean-square strain",
-                                                                            "speed",
-                                                                            "T/(gamma L)",
-                                                                            "dissipation",
-                                                                            "efficiency"}};
-
     /// Number to check: its value, and its derivative by a variable.
     struct Checked
     {
@@ -98,9 +89,9 @@ namespace crawler
     const GaitValues here = model.evaluate(x, /*with_gradients=*/true);
     here.require_start();
     std::vector<Checked> list;
-    for (std::size_t k = 0; k < n_gait_numbers; ++k)
+    for (std::size_t k = 0; k < gait_numbers.size(); ++k)
       if (wishes.numbers[k])
-        list.push_back({words_of_numbers[k],
+        list.push_back({gait_numbers[k].words,
                         [k](const GaitValues &there) { return there.numbers[k]; },
                         [k](const GaitValues &there, const std::size_t i) { return there.gradients[k][i]; }});
     if (wishes.strain && std::ranges::find(here.strain_by_differences, true) == here.strain_by_differences.end())
@@ -117,7 +108,7 @@ namespace crawler
       else
         log.line(fmt::format("{}: its derivatives are differences of simulations, since the adjoint does not cover it; "
                              "there is nothing to compare",
-                             family.variables()[i].path));
+                             family.variables[i].path));
     if (checked.empty() || list.empty())
       return std::nullopt;
 
@@ -147,10 +138,8 @@ namespace crawler
                            tolerance,
                            deviations[c] <= tolerance ? "allowed" : "allowed: they do NOT agree"));
       for (const std::size_t i : checked)
-        log.line(fmt::format("  {:<60} {:>17.10g} {:>17.10g}",
-                             family.variables()[i].path,
-                             list[c].derivative(here, i),
-                             differences[c][i]));
+        log.line(fmt::format(
+          "  {:<60} {:>17.10g} {:>17.10g}", family.variables[i].path, list[c].derivative(here, i), differences[c][i]));
     }
     return std::ranges::max(deviations) <= tolerance;
   }

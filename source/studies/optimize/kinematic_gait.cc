@@ -271,7 +271,7 @@ namespace crawler
       measure_slopes(const std::vector<double> &start)
       {
         constexpr double step = 1e-2, round_off = 1e-11;
-        const auto &variables = family_.variables();
+        const auto &variables = family_.variables;
         const auto n          = static_cast<double>(start.size());
         Linear linear{start, std::make_shared<const State>(family_.parameters(start)), {}, {}};
         linear.samples  = sample(*linear.state);
@@ -368,14 +368,14 @@ namespace crawler
         const double bound       = largest_merit(*state.reduced.scene().friction, 1. + least, 1. + most) *
                              std::sqrt(values[StrainFunctional::dissipation]),
                      part = std::abs(values[StrainFunctional::displacement]) / bound;
-        return {{{D,
-                  energy * values[StrainFunctional::stress_work],
-                  energy * values[StrainFunctional::positive_work],
-                  values[StrainFunctional::mean_square],
-                  D / scene.end_time,
-                  scene.end_time / (scene.body.friction_coefficient * scene.body.length),
-                  energy * values[StrainFunctional::dissipation],
-                  bound > 0. && !scene.profiles.friction ? part : NAN}}};
+        return {{D,
+                 energy * values[StrainFunctional::stress_work],
+                 energy * values[StrainFunctional::positive_work],
+                 values[StrainFunctional::mean_square],
+                 D / scene.end_time,
+                 scene.end_time / (scene.body.friction_coefficient * scene.body.length),
+                 energy * values[StrainFunctional::dissipation],
+                 bound > 0. && !scene.profiles.friction ? part : NAN}};
       }
 
       void
@@ -403,18 +403,18 @@ namespace crawler
               if (const auto its_values = grid_->values(its.on_grid, there.body(*grid_)))
               {
                 const auto its_numbers = numbers(there, its, *its_values);
-                for (std::size_t j = 0; j < n_gait_numbers; ++j)
+                for (std::size_t j = 0; j < gait_numbers.size(); ++j)
                   derivatives[j] += around.weights[k] * its_numbers[j];
               }
             }
             if (!only_strain[i]) // variables of body, ground or time
-              for (std::size_t j = 0; j < n_gait_numbers; ++j)
+              for (std::size_t j = 0; j < gait_numbers.size(); ++j)
                 values.gradients[j][i] = derivatives[j];
           }
         }
         const std::vector<Samples> &slopes = linear_ ? linear_->slopes : slopes_;
         const Units &units                 = state.reduced.units();
-        const auto put = [&](const StrainFunctional::Number number, const GaitNumber what, const double unit) {
+        const auto put = [&](const StrainFunctional::Number number, const GaitNumber::Index what, const double unit) {
           if (!wishes_.numbers[what])
             return;
           const StrainSamples weights = grid_->weights(number, samples.on_grid, state.body(*grid_));

@@ -48,13 +48,7 @@ namespace crawler
       fs::remove_all(folder / "starts", error); // files of earlier versions
       for (const fs::path &file : files)
         fs::remove(file, error);
-      for (const fs::path &run : runs)
-      {
-        prepare(run);
-        fs::remove(run / "active_stress.csv", error);
-        fs::remove(run / "solution", error); // removed only if they are empty
-        fs::remove(run, error);
-      }
+      std::ranges::for_each(runs, remove_run);
     }
 
     /// Throws InputError for a study of a version in which starts were files of their own, before the table of starts.
@@ -97,7 +91,7 @@ namespace crawler
       const auto family           = cases.family(start.number_of_case);
       const Parameters parameters = family->parameters(start.best.x);
       const std::string number    = cases.are_several() ? fmt::format("-{}", start.number_of_case + 1) : "";
-      Declarations &entries       = family->form().declarations;
+      Declarations &entries       = family->form.declarations;
       entries.set("Sweep/Axes", "");
       const fs::path file = folder / ("optimum" + number + ".prm"), place = folder / ("best" + number);
       write_file(file,
@@ -257,7 +251,7 @@ namespace crawler
         , x(scenes->start(0))
       {
         if (accuracy)
-          scenes->form().declarations.set("Accuracy", to_text(*accuracy));
+          scenes->form.declarations.set("Accuracy", to_text(*accuracy));
         model = make_gait_model(*scenes, x, []() { return false; });
       }
     };
@@ -282,7 +276,7 @@ namespace crawler
       {
         CaseStart start(cases, number, std::min(accuracy, accurate));
         const SceneFamily &family = *start.scenes;
-        const auto wishes         = GaitProblem::wishes(start.scenes->form().parameters.optimize);
+        const auto wishes         = GaitProblem::wishes(start.scenes->form.parameters.optimize);
         if (number == 0)
           introduce(cases, *start.model, {}, log);
         if (cases.are_several())
@@ -293,13 +287,13 @@ namespace crawler
           for (std::size_t i = 0; i < start.x.size(); ++i)
           {
             const double shift = beside * family.scale(start.x, i);
-            start.x[i] += start.x[i] + shift <= family.variables()[i].to ? shift : -shift;
+            start.x[i] += start.x[i] + shift <= family.variables[i].to ? shift : -shift;
           }
           log.line(fmt::format("Near the start, with all variables {:g} % of their size away:", 100. * beside));
           result = check_gradient(*start.model, family, wishes, start.x, log);
         }
         agrees = agrees && result.value_or(true);
-        start.scenes->form().declarations.set("Accuracy", to_text(accuracy));
+        start.scenes->form.declarations.set("Accuracy", to_text(accuracy));
       }
       return agrees ? ExitCode::finished : ExitCode::self_check_failed;
     }
@@ -361,7 +355,7 @@ namespace crawler
         if (number == 0)
           introduce(cases, *start.model, cases.notes(file), log);
         GaitProblem problem(
-          *start.model, start.scenes->form().parameters.optimize, start.scenes->variables(), start.x, []() {
+          *start.model, start.scenes->form.parameters.optimize, start.scenes->variables, start.x, []() {
             return false;
           });
         const GaitRecord record = problem.record(problem.to_y(start.x));

@@ -80,11 +80,11 @@ namespace crawler
     for (std::size_t i = 0; i < names_.axes.size(); ++i)
       its.values.push_back(points_->design().value(i, number));
     const auto scenes                 = family(number);
-    const Declarations &entries       = scenes->form().declarations;
-    const OptimizeParameters &problem = scenes->form().parameters.optimize;
-    scenes->form().parameters.create_scene();
+    const Declarations &entries       = scenes->form.declarations;
+    const OptimizeParameters &problem = scenes->form.parameters.optimize;
+    scenes->form.parameters.create_scene();
     its.sign = problem.direction == "forward" ? 1. : -1.;
-    for (const Variable &variable : scenes->variables())
+    for (const Variable &variable : scenes->variables)
     {
       its.paths.push_back(variable.path);
       if (add(names_.paths, variable.path))
@@ -122,7 +122,7 @@ namespace crawler
   {
     VariedEntries varied = points_ ? points_->varied() : VariedEntries();
     const auto first     = family(0);
-    for (const Variable &variable : first->variables())
+    for (const Variable &variable : first->variables)
       varied.paths.push_back(variable.path);
     return notes_on_entries(file, declarations(), "optimize", varied);
   }

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -22,16 +21,6 @@ namespace crawler
   namespace
   {
     const std::string converged = "converged", stopped = "stopped";
-
-    /// Columns in the order of GaitNumber.
-    const std::array<RowFile::Column, n_gait_numbers> number_columns = {{{"displacement", "length", ""},
-                                                                         {"stress_power", "energy", ""},
-                                                                         {"positive_power", "energy", ""},
-                                                                         {"mean_square_strain", "1", ""},
-                                                                         {"speed", "length/time", ""},
-                                                                         {"friction_time", "time^2/(force length)", ""},
-                                                                         {"dissipation", "energy", ""},
-                                                                         {"efficiency", "1", ""}}};
 
     /// Visits the fields of a row in the order of the columns: describes, writes or reads them.
     class RowFields
@@ -108,8 +97,8 @@ namespace crawler
       if (std::isnan(record.x.front()))
         record.x.clear();
       fields.number({"objective", names.unit, names.objective}, record.objective);
-      for (std::size_t i = 0; i < n_gait_numbers; ++i)
-        fields.number(number_columns[i], record.numbers[i]);
+      for (std::size_t i = 0; i < gait_numbers.size(); ++i)
+        fields.number({gait_numbers[i].column, gait_numbers[i].unit, ""}, record.numbers[i]);
       fields.number({"violation", "1", "excess over the limit that is exceeded most, relative to it"},
                     record.violation);
       fields.text({"problem", "", "why there is no gait", width}, record.problem);
@@ -238,7 +227,7 @@ namespace crawler
                                  const ParameterFile &parameter_file,
                                  std::string command_line)
     : names_(cases.names())
-    , folder_(folder.path())
+    , folder_(folder.path)
     , command_line_(std::move(command_line))
     , table_(table_of_starts(names_))
     , plan_{0, known_index(), cases.inputs(), cases.effective()}
@@ -265,7 +254,7 @@ namespace crawler
             ++n_damaged;
         }
       if (n_damaged > 0)
-        folder.log().warn(fmt::format(
+        folder.log.warn(fmt::format(
           "warning: the evaluations of {} differ from what was written, so {} was damaged; they are computed again",
           counted(n_damaged, "start"),
           evaluations_file));

@@ -30,11 +30,11 @@ namespace crawler
     {
       constexpr double more = 10.;
       const auto family     = cases.family(own.number_of_case);
-      const auto &variables = family->variables();
+      const auto &variables = family->variables;
       for (std::size_t i = 0; i < x.size(); ++i)
         if (x[i] < variables[i].from || x[i] > variables[i].to)
           return std::nullopt;
-      const OptimizeParameters wishes = family->form().parameters.optimize;
+      const OptimizeParameters wishes = family->form.parameters.optimize;
       try
       {
         const auto model = make_gait_model(*family, x, []() { return false; });

@@ -89,7 +89,7 @@ namespace crawler
         : family_(family)
         , state_(state)
         , stops_(stops)
-        , wanted_(family.form().parameters.optimize)
+        , wanted_(family.form.parameters.optimize)
         , parameters_(wanted_)
         , start_(x)
         , x_(x)
@@ -192,7 +192,7 @@ namespace crawler
             see(*current);
           return stops_();
         };
-        GaitProblem problem(model, wanted_, family_.variables(), x_, stops, &parameters_);
+        GaitProblem problem(model, wanted_, family_.variables, x_, stops, &parameters_);
         current         = &problem;
         const auto keep = [&](const GaitRecord *const optimum) {
           result_.records.insert(result_.records.end(), problem.records().begin(), problem.records().end());
@@ -253,7 +253,7 @@ namespace crawler
       as_near_as_limits_admit(GaitModel &model)
       {
         constexpr unsigned int n_bisections = 12;
-        GaitProblem problem(model, wanted_, family_.variables(), start_, stops_);
+        GaitProblem problem(model, wanted_, family_.variables, start_, stops_);
         const auto at = [&, end = result_.best.x](const double part) {
           std::vector<double> x(end.size());
           for (std::size_t i = 0; i < x.size(); ++i)

@@ -85,33 +85,33 @@ namespace crawler
     }
   } // namespace
 
-  SceneFamily::SceneFamily(Form &form)
-    : form_(form)
-    , variables_(variables_of_gait(form))
+  SceneFamily::SceneFamily(Form &its_form)
+    : form(its_form)
+    , variables(variables_of_gait(its_form))
   {
   }
 
   SceneFamily::~SceneFamily()
   {
-    for (const Variable &variable : variables_)
-      form_.declarations.set(variable.path, to_text(variable.start));
+    for (const Variable &variable : variables)
+      form.declarations.set(variable.path, to_text(variable.start));
   }
 
   Parameters
   SceneFamily::parameters(const std::vector<double> &x)
   {
     for (std::size_t i = 0; i < x.size(); ++i)
-      form_.declarations.set(variables_[i].path, to_text(x[i]));
-    return form_.parameters;
+      form.declarations.set(variables[i].path, to_text(x[i]));
+    return form.parameters;
   }
 
   std::vector<double>
   SceneFamily::start(const unsigned long number) const
   {
-    const OptimizeParameters &own = form_.parameters.optimize;
+    const OptimizeParameters &own = form.parameters.optimize;
     std::mt19937_64 random(own.seed * 1000003ul + number);
     std::vector<double> x;
-    for (const Variable &variable : variables_)
+    for (const Variable &variable : variables)
     {
       const double part  = static_cast<double>(random() >> 11) * 0x1p-52 - 1.; // from -1 to 1, the same on all machines
       const double shift = number == 0 ? 0. : own.spread * part * (variable.to - variable.from);
@@ -124,7 +124,7 @@ namespace crawler
   SceneFamily::scale(const std::vector<double> &x, const std::size_t i) const
   {
     constexpr double least = 0.01, of_unknown = 0.1;
-    const Variable &variable = variables_[i];
+    const Variable &variable = variables[i];
     const double range = variable.to - variable.from, size = std::max(std::abs(x[i]), std::abs(variable.start));
     return size > 0. ? std::clamp(size, least * range, range) : of_unknown * range;
   }
@@ -132,7 +132,7 @@ namespace crawler
   SceneFamily::Stencil
   SceneFamily::stencil(const std::vector<double> &x, const std::size_t i, const double relative_step) const
   {
-    const Variable &variable = variables_[i];
+    const Variable &variable = variables[i];
     const double step        = relative_step * scale(x, i);
     if (x[i] - 2. * step >= variable.from && x[i] + 2. * step <= variable.to)
       return {{-2. * step, -step, step, 2. * step},

@@ -17,16 +17,6 @@ namespace crawler
 {
   namespace
   {
-    /// Quantity that the adjoint differentiates for each number.
-    constexpr std::array<std::optional<Quantity>, n_gait_numbers> quantities = {{Quantity::displacement,
-                                                                                 Quantity::stress_work,
-                                                                                 Quantity::positive_work,
-                                                                                 std::nullopt,
-                                                                                 Quantity::speed,
-                                                                                 std::nullopt,
-                                                                                 Quantity::dissipation,
-                                                                                 std::nullopt}};
-
     double
     strides_of(const Scene &scene)
     {
@@ -98,10 +88,10 @@ namespace crawler
           if (!values.problem.empty())
             return values;
           values.numbers = numbers(task);
-          for (std::size_t i = 0; i < n_gait_numbers; ++i)
+          for (std::size_t i = 0; i < gait_numbers.size(); ++i)
             if (wishes_.numbers[i] && !std::isfinite(values.numbers[i]))
               values.problem =
-                i == static_cast<std::size_t>(GaitNumber::speed)
+                i == GaitNumber::speed
                   ? "the speed is not known, since the active stress does not tell the duration of a stride"
                   : "a work is not known there";
           if (wishes_.strain)
@@ -168,7 +158,7 @@ namespace crawler
       double
       noise() const override
       {
-        return family_.form().parameters.accuracy;
+        return family_.form.parameters.accuracy;
       }
       std::string
       description() const override
@@ -246,9 +236,9 @@ namespace crawler
           *n_boxes_in_time_, strides_of(scene), {breaks_in_space_of(scene), breaks_in_time_of(scene)});
         if (has_pictures(task))
         {
-          const auto seen = seen_by(std::make_unique<Kymograph>(boxes.points()), task, boxes.times());
+          const auto seen                    = seen_by(std::make_unique<Kymograph>(boxes.points), task, boxes.times);
           const std::vector<double> &stretch = static_cast<const Kymograph &>(*seen).rows().stretch;
-          if (stretch.size() == boxes.points().size() * boxes.times().size())
+          if (stretch.size() == boxes.points.size() * boxes.times.size())
             return boxes.find(stretch);
         }
         const SimulationResult &result = task.computed.result;
@@ -287,9 +277,9 @@ namespace crawler
             !RecordedRun::is_possible(*task.scene, parameters.time, choice.numerics))
           return;
         std::vector<Quantity> wanted;
-        for (std::size_t k = 0; k < n_gait_numbers; ++k)
-          if (wishes_.numbers[k] && quantities[k] && *quantities[k] != Quantity::speed)
-            wanted.push_back(*quantities[k]);
+        for (std::size_t k = 0; k < gait_numbers.size(); ++k)
+          if (wishes_.numbers[k] && gait_numbers[k].quantity && *gait_numbers[k].quantity != Quantity::speed)
+            wanted.push_back(*gait_numbers[k].quantity);
         if (wishes_.numbers[GaitNumber::speed])
           wanted.push_back(Quantity::stride); // the speed comes with it
         std::vector<std::vector<Scene>> scenes(x.size());
@@ -327,10 +317,10 @@ namespace crawler
           {
             const std::size_t i = own[v];
             bool is_known       = true;
-            for (std::size_t k = 0; k < n_gait_numbers; ++k)
-              if (wishes_.numbers[k] && quantities[k])
+            for (std::size_t k = 0; k < gait_numbers.size(); ++k)
+              if (wishes_.numbers[k] && gait_numbers[k].quantity)
               {
-                const auto &value      = derivatives[v][static_cast<std::size_t>(*quantities[k])];
+                const auto &value      = derivatives[v][static_cast<std::size_t>(*gait_numbers[k].quantity)];
                 is_known               = is_known && value.has_value();
                 values.gradients[k][i] = value.value_or(0.);
               }
@@ -408,7 +398,7 @@ namespace crawler
             return weight * (is_one_sided ? value - at_x : value);
           };
           if (values.by_differences[i])
-            for (std::size_t k = 0; k < n_gait_numbers; ++k)
+            for (std::size_t k = 0; k < gait_numbers.size(); ++k)
               values.gradients[k][i] += change(there[k], values.numbers[k]);
           if (!values.strain_by_differences[i])
             continue;

@@ -23,6 +23,7 @@
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/progress.h>
 #include <crawler/studies/core/sensitivities.h>
+#include <crawler/studies/core/study.h>
 #include <crawler/studies/run/reduced_pictures.h>
 #include <crawler/studies/run/run.h>
 #include <crawler/studies/run/run_checkpoint.h>

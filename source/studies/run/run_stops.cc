@@ -9,7 +9,6 @@
 
 namespace crawler
 {
-  const std::string stop_file_name = "stop";
 
   namespace
   {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 namespace crawler
 {
@@ -48,40 +49,33 @@ namespace crawler
       return "";
     }
 
-    /// Comparison of two answers: whether there is one, and why they cannot both be right (empty if they can).
-    struct Comparison
-    {
-      bool possible = false;
-      std::string contradiction;
-    };
-
-    Comparison
+    /// Reason why two answers cannot both be right, empty if they can; nothing if they cannot be compared.
+    std::optional<std::string>
     compare(const Claim &a, const Claim &b, const InversionFacts &facts)
     {
       if (!is_answer(a) || !is_answer(b))
-        return {};
+        return std::nullopt;
       if (finished(a) && finished(b))
       {
         const double promised = a.promised_error + b.promised_error;
         if (std::isnan(promised))
-          return {};
+          return std::nullopt;
         const double difference = std::abs(a.displacement - b.displacement);
         if (difference <= promised)
-          return {true, ""};
-        return {
-          true,
-          fmt::format("the displacements of {} and {}, {:.8g} and {:.8g}, differ by {:.3g}, but {:.3g} is promised",
-                      a.run,
-                      b.run,
-                      a.displacement,
-                      b.displacement,
-                      difference,
-                      promised)};
+          return "";
+        return fmt::format(
+          "the displacements of {} and {}, {:.8g} and {:.8g}, differ by {:.3g}, but {:.3g} is promised",
+          a.run,
+          b.run,
+          a.displacement,
+          b.displacement,
+          difference,
+          promised);
       }
       const double difference = std::abs(uninverted_until(a, facts) - uninverted_until(b, facts));
       if (difference <= inversion_time_tolerance * facts.end_time)
-        return {true, ""};
-      return {true, fmt::format("{}, but {}", in_words(a), in_words(b))};
+        return "";
+      return fmt::format("{}, but {}", in_words(a), in_words(b));
     }
   } // namespace
 
@@ -103,9 +97,9 @@ namespace crawler
 
     bool compared           = false;
     const auto look_at_pair = [&](const Claim &a, const Claim &b) {
-      const Comparison comparison = compare(a, b, facts);
-      compared                    = compared || comparison.possible;
-      return comparison.contradiction;
+      const auto contradiction = compare(a, b, facts);
+      compared                 = compared || contradiction;
+      return contradiction.value_or("");
     };
     for (std::size_t i = 0; i < runs.size(); ++i)
       for (std::size_t j = i + 1; j < all.size(); ++j)

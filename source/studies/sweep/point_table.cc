@@ -18,7 +18,6 @@
 
 namespace crawler
 {
-  const std::string time_limit_reason = "time_limit";
 
   namespace
   {
@@ -105,13 +104,13 @@ namespace crawler
     {
       for (const auto &[name, version] : provenance("", ""))
         if (name.starts_with("version of "))
-          if (const std::string was = read_attribute(folder.path() / table.file, table.group, name); was != version)
-            folder.log().warn(fmt::format("warning: the {} was {} when the {} began and is now {}: new rows may differ "
-                                          "from old ones by round-off or more",
-                                          name,
-                                          was,
-                                          folder.kind().name,
-                                          version));
+          if (const std::string was = read_attribute(folder.path / table.file, table.group, name); was != version)
+            folder.log.warn(fmt::format("warning: the {} was {} when the {} began and is now {}: new rows may differ "
+                                        "from old ones by round-off or more",
+                                        name,
+                                        was,
+                                        folder.kind.name,
+                                        version));
     }
   } // namespace
 
@@ -224,17 +223,17 @@ namespace crawler
                   const PlannedRows &plan,
                   const std::string &command_line)
   {
-    const auto path = folder.path() / table.file;
+    const auto path = folder.path / table.file;
     if (!folder.begin(file.text(), plan.effective))
     {
-      create_table(folder.path(), table, plan, command_line);
+      create_table(folder.path, table, plan, command_line);
       return std::vector<bool>(plan.n, false);
     }
     std::optional<RowReader> rows;
     folder.resume([&]() {
       rows.emplace(MPI_COMM_SELF, path, table.group);
       const auto attribute = [&](const std::string &name) { return read_attribute(path, table.group, name); };
-      const auto &free     = folder.kind().free_entries;
+      const auto &free     = folder.kind.free_entries;
       const auto has_columns =
         std::ranges::equal(rows->read(0, 0), table.columns, {}, &Column::name, &RowFile::Column::name);
       std::vector<std::string> changes;
@@ -255,16 +254,7 @@ namespace crawler
       return changes;
     });
     warn_of_other_versions(folder, table);
-    return rows_done(*rows, table, folder.log());
-  }
-
-  PlannedRows
-  planned_rows(const PointTable &table, const SweepPoints &points)
-  {
-    return {points.design().n_points(),
-            known_columns(table.columns, points.design()),
-            sweep_inputs(points),
-            points.effective()};
+    return rows_done(*rows, table, folder.log);
   }
 
   std::vector<bool>

@@ -53,12 +53,7 @@ namespace crawler
       for (const auto &entry : fs::directory_iterator(points))
         if (entry.is_directory() && to_number(entry.path().filename().string()))
           folders.push_back(entry.path());
-      for (const fs::path &folder : folders)
-      {
-        prepare(folder);
-        fs::remove(folder / "solution", error); // removed only if they are empty
-        fs::remove(folder, error);
-      }
+      std::ranges::for_each(folders, remove_run);
       fs::remove(points, error);
     }
 
@@ -212,7 +207,9 @@ namespace crawler
                        options,
                        log);
     const std::vector<bool> done = points_done(communicator, [&]() {
-      auto list = begin_or_resume(folder, table, file, planned_rows(table, points), options.command_line);
+      const PlannedRows plan{
+        design.n_points(), known_columns(table.columns, design), sweep_inputs(points), points.effective()};
+      auto list = begin_or_resume(folder, table, file, plan, options.command_line);
       if (std::count(list.begin(), list.end(), true) == 0)
         remove_kept_fields(path / "points"); // fields of an earlier sweep
       return list;

@@ -19,8 +19,6 @@
 
 namespace crawler
 {
-  const std::string sweep_file = "results.h5", sweep_group = "results";
-
   namespace
   {
     constexpr double not_known        = std::numeric_limits<double>::quiet_NaN();

@@ -130,7 +130,7 @@ namespace crawler
     bool
     measure_all(const Study &study, const TradeoffReference &reference)
     {
-      const auto path    = study.folder.path();
+      const auto path    = study.folder.path;
       const auto columns = study.table.written_columns();
       const auto meshes  = meshes_to_do(study);
       RowFile rows(study.communicator, path / study.table.file, study.table.group, columns);
@@ -217,7 +217,7 @@ namespace crawler
       std::string text;
       study.done        = points_done(study.communicator, [&]() {
         auto done = begin_or_resume(study.folder, study.table, input.file, plan, study.command_line);
-        text      = read_attribute(study.folder.path() / study.table.file, study.table.group, "reference");
+        text      = read_attribute(study.folder.path / study.table.file, study.table.group, "reference");
         return done;
       });
       text              = broadcast(text, study.communicator);
@@ -238,7 +238,7 @@ namespace crawler
       text = broadcast(made.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), study.communicator);
       on_first_rank(study.communicator, [&]() {
         plan.more["reference"] = text;
-        create_table(study.folder.path(), study.table, plan, study.command_line);
+        create_table(study.folder.path, study.table, plan, study.command_line);
       });
       return nlohmann::json::parse(text);
     }
@@ -247,7 +247,7 @@ namespace crawler
     void
     conclude(const Study &study, const TradeoffReference &reference, const SweepCounts &counts, const SweepEnd &end)
     {
-      const auto path    = study.folder.path();
+      const auto path    = study.folder.path;
       auto summary       = nlohmann::ordered_json::parse(sweep_json(counts, end));
       summary["message"] = reference.message.empty() ? nullptr : nlohmann::ordered_json(reference.message);
       summary["reference"] =

@@ -9,7 +9,7 @@ namespace crawler
 {
   /// File in the folder of a study in which a process that dies of a fault of its own (SIGSEGV, SIGBUS, SIGFPE, SIGILL,
   /// SIGABRT) notes the points it was computing: rows of a table, settings or starts.
-  extern const std::string crash_file;
+  inline const std::string crash_file = "crashes.txt";
 
   /**
    * Writes that file: during the lifetime of the object, fault signals write a line of points before they end the
@@ -48,5 +48,6 @@ namespace crawler
   };
 
   /// Message of a point that is given up, whose reason is "crashed".
-  extern const std::string crash_message;
+  inline const std::string crash_message =
+    "the program crashed twice at this point; this is a bug in the program, please report it";
 } // namespace crawler

@@ -21,10 +21,10 @@ namespace crawler
   require_usable(const std::filesystem::path &folder, bool overwrite);
 
   /// Name of the file that is locked (base/file_lock.h) while a run or study writes to the folder.
-  extern const std::string study_lock_name;
+  inline const std::string study_lock_name = "study.lock";
 
   /// Page that `crawler report` makes.
-  extern const std::string report_name;
+  inline const std::string report_name = "report.html";
 
   /// Makes a folder. Throws FileError.
   void
@@ -65,6 +65,10 @@ namespace crawler
   /// Makes the folder, without the results of an earlier run (only files that this program writes are removed).
   void
   prepare(const std::filesystem::path &folder);
+
+  /// Removes the folder of a run, but not files that are not the program's.
+  void
+  remove_run(const std::filesystem::path &folder);
 
   /// Removes files that a run writes as it proceeds: the fields and the statistics.
   void

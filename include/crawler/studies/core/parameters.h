@@ -10,10 +10,10 @@
 namespace crawler
 {
   /// Syntax of Sweep/Axes, in words.
-  extern const std::string sweep_syntax;
+  inline const std::string sweep_syntax = "\"Section/Entry : VALUES\", several of them separated by semicolons";
 
   /// Syntax of Optimize/Variables and Fit/Variables, in words.
-  extern const std::string variables_syntax;
+  inline const std::string variables_syntax = "\"Section/Entry : FROM to TO\", several of them separated by semicolons";
 
   /// Section "Sweep": which scenes `crawler sweep` computes (sweep_design.h reads the axes).
   struct SweepParameters

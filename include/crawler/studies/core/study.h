@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/base/stop_signal.h>
+#include <crawler/studies/core/command_options.h>
 #include <crawler/studies/core/log.h>
 
 #include <mpi.h>
@@ -91,4 +92,12 @@ namespace crawler
   /// Throws FileError on all ranks for a problem with the files of any rank (empty: none) (collective).
   void
   throw_on_all_ranks(MPI_Comm communicator, const std::string &problem);
+
+  /// Logs the options behind "--".
+  void
+  announce_petsc_options(const CommandOptions &options, Log &log);
+
+  /// Warns of PETSc options that no rank has read by the end: they are most likely misspelt (collective).
+  void
+  warn_of_unused_petsc_options(MPI_Comm communicator, const CommandOptions &options, Log &log);
 } // namespace crawler

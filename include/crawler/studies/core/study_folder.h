@@ -28,7 +28,7 @@ namespace crawler
   class StudyFolder
   {
   public:
-    StudyFolder(StudyKind kind, std::filesystem::path path, const CommandOptions &options, Log &log);
+    StudyFolder(StudyKind its_kind, std::filesystem::path its_path, const CommandOptions &options, Log &its_log);
 
     /// Returns true if a study is to be resumed (--resume). Otherwise makes the folder, with the parameter file, the @p
     /// effective parameters and the log; a study that was killed before it had results is begun anew. Throws InputError
@@ -52,21 +52,9 @@ namespace crawler
     void
     leave();
 
-    const StudyKind &
-    kind() const
-    {
-      return kind_;
-    }
-    const std::filesystem::path &
-    path() const
-    {
-      return path_;
-    }
-    Log &
-    log()
-    {
-      return log_;
-    }
+    const StudyKind kind;
+    const std::filesystem::path path;
+    Log &log;
 
   private:
     bool
@@ -85,10 +73,7 @@ namespace crawler
     void
     leaving_if_refused(const std::function<void()> &work);
 
-    const StudyKind kind_;
-    const std::filesystem::path path_;
     const CommandOptions &options_;
-    Log &log_;
     std::optional<FileLock> lock_;
   };
 } // namespace crawler

@@ -34,16 +34,7 @@ namespace crawler
 
     /// Points and times at which a kymograph is needed to find them: parts of length and duration, and both sides of
     /// breaks.
-    const std::vector<double> &
-    points() const
-    {
-      return points_;
-    }
-    const std::vector<double> &
-    times() const
-    {
-      return times_;
-    }
+    const std::vector<double> points, times;
 
     /// Extremes in all boxes, first the smallest, then the largest, of a run with this @p stretch at points and times;
     /// refined between points and times that no break separates.
@@ -59,6 +50,5 @@ namespace crawler
     sharpened_at(const std::vector<double> &stretch, std::size_t i, std::size_t j, double sign) const;
 
     const std::size_t n_time_;
-    std::vector<double> points_, times_;
   };
 } // namespace crawler

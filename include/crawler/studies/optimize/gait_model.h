@@ -1,47 +1,51 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/adjoint/works.h>
 #include <crawler/base/exceptions.h>
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace crawler
 {
-  /// Numbers of which objective and limits of a gait are made, in the user's units.
-  enum class GaitNumber
+  /// Number of which objective and limits of a gait are made, in the user's units.
+  struct GaitNumber
   {
-    displacement,
-    work,          ///< stress work over the duration
-    positive_work, ///< positive stress work over the duration
-    mean_square,   ///< mean square of the strain
-    speed,
-    friction_time, ///< T/(gamma L): the merit is D/sqrt(W T/(gamma L))
-    dissipation,
-    efficiency ///< relative to the best of all gaits with its energy and strains; not differentiated
+    enum Index : std::size_t
+    {
+      displacement,
+      work,          ///< stress work over the duration
+      positive_work, ///< positive stress work over the duration
+      mean_square,   ///< mean square of the strain
+      speed,
+      friction_time, ///< T/(gamma L): the merit is D/sqrt(W T/(gamma L))
+      dissipation,
+      efficiency ///< relative to the best of all gaits with its energy and strains; not differentiated
+    };
+
+    const char *words, *column, *unit;
+    std::optional<Quantity> quantity = {}; ///< quantity that the adjoint differentiates
   };
-  inline constexpr std::size_t n_gait_numbers = 8;
+
+  /// Gait numbers by their index.
+  inline constexpr std::array<GaitNumber, 8> gait_numbers = {
+    {{"displacement", "displacement", "length", Quantity::displacement},
+     {"work", "stress_power", "energy", Quantity::stress_work},
+     {"positive work", "positive_power", "energy", Quantity::positive_work},
+     {"mean-square strain", "mean_square_strain", "1"},
+     {"speed", "speed", "length/time", Quantity::speed},
+     {"T/(gamma L)", "friction_time", "time^2/(force length)"},
+     {"dissipation", "dissipation", "energy", Quantity::dissipation},
+     {"efficiency", "efficiency", "1"}}};
 
   /// Value for each gait number.
   template <typename Value>
-  struct ByGaitNumber : std::array<Value, n_gait_numbers>
-  {
-    using std::array<Value, n_gait_numbers>::operator[];
-
-    Value &
-    operator[](const GaitNumber one)
-    {
-      return (*this)[static_cast<std::size_t>(one)];
-    }
-    const Value &
-    operator[](const GaitNumber one) const
-    {
-      return (*this)[static_cast<std::size_t>(one)];
-    }
-  };
+  using ByGaitNumber = std::array<Value, gait_numbers.size()>;
 
   /// Values that are limited at many places, and their derivatives by the variables: [place][variable].
   struct LimitedValues

@@ -150,7 +150,7 @@ namespace crawler
   private:
     struct NumberLimit
     {
-      GaitNumber number;
+      GaitNumber::Index number;
       std::string name;
       double value;
     };

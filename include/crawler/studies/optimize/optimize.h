@@ -14,11 +14,6 @@ namespace crawler
    * crawler optimize: the best gait of section Optimize (collective). Ranks share the starts; each ends as a row of
    * starts.h5, so that a study that was killed can be resumed with --resume. Then the best gait is written as
    * optimum.prm and run with all files, into the folder "best".
-   *
-   * Parts, each used by those below it: scene_family.h, variables, starts, and their scenes; kinematic_gait.h and
-   * simulated_gait.h, the numbers of a gait, with derivatives (gait_model.h); gait_problem.h, objective and limits;
-   * rol_optimizer.h; optimize_start.h, the search from one start; optimize_memory.h, rows of starts and evaluations;
-   * optimize_searches.h, the searches of all ranks; optimize_results.h, tables and summary.
    */
   ExitCode
   optimize(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file);

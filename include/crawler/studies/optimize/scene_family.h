@@ -17,7 +17,7 @@ namespace crawler
   {
     const char *name;
     std::optional<double> OptimizeParameters::*value;
-    std::optional<GaitNumber> number = {}; ///< unset: a limit of values at many places
+    std::optional<GaitNumber::Index> number = {}; ///< unset: a limit of values at many places
   };
 
   /// Limits in the order in which results name them.
@@ -35,23 +35,15 @@ namespace crawler
   class SceneFamily
   {
   public:
-    /// @p form must outlive it. Throws InputError as read_variables() does, and for an objective without maximum: one
-    /// that no limit bounds.
-    explicit SceneFamily(Form &form);
+    /// @p its_form must outlive it. Throws InputError as read_variables() does, and for an objective without maximum:
+    /// one that no limit bounds.
+    explicit SceneFamily(Form &its_form);
     SceneFamily(const SceneFamily &) = delete;
     /// Restores the form.
     ~SceneFamily();
 
-    const std::vector<Variable> &
-    variables() const
-    {
-      return variables_;
-    }
-    Form &
-    form()
-    {
-      return form_;
-    }
+    Form &form;
+    const std::vector<Variable> variables;
 
     /// Throws InputError.
     Parameters
@@ -88,9 +80,5 @@ namespace crawler
     /// Largest magnitude of the active stress or its rate, also between the points of that grid.
     double
     largest_stress(const std::vector<double> &x, bool rate);
-
-  private:
-    Form &form_;
-    const std::vector<Variable> variables_;
   };
 } // namespace crawler

@@ -12,7 +12,7 @@
 namespace crawler
 {
   /// Name of the file in the output folder whose presence asks the run to stop.
-  extern const std::string stop_file_name;
+  inline const std::string stop_file_name = "stop";
 
   /// Limit in words for the user; also of runs without files.
   inline std::string

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <limits>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -12,10 +12,9 @@ namespace crawler
   {
     std::string run;    ///< its name in explanations
     std::string status; ///< finished and inverted are answers; anything else (failed, stopped, ...) claims nothing
-    double displacement = std::numeric_limits<double>::quiet_NaN(); ///< at the end time, if finished [length]
-    double promised_error =
-      std::numeric_limits<double>::quiet_NaN(); ///< error of the displacement, if promised [length]
-    double inversion_time = std::numeric_limits<double>::quiet_NaN(); ///< time of inversion, if inverted [time]
+    double displacement   = NAN; ///< at the end time, if finished [length]
+    double promised_error = NAN; ///< error of the displacement, if promised [length]
+    double inversion_time = NAN; ///< time of inversion, if inverted [time]
   };
 
   /// Knowledge about the inversion of a scene without a run (doc/theory.md, "When a body can invert").
@@ -24,8 +23,8 @@ namespace crawler
     double end_time      = 1.;   ///< T [time]
     bool possible_inside = true; ///< a > -1
     /// Earliest and latest time of inversion of an end; infinite if no end inverts.
-    double earliest_at_end = std::numeric_limits<double>::infinity();
-    double latest_at_end   = std::numeric_limits<double>::infinity();
+    double earliest_at_end = HUGE_VAL;
+    double latest_at_end   = HUGE_VAL;
   };
 
   /// Relative tolerance, as a part of the end time, within which times of inversion agree.

@@ -38,7 +38,7 @@ namespace crawler
   };
 
   /// Reason of a point that took longer than the time limit.
-  extern const std::string time_limit_reason;
+  inline const std::string time_limit_reason = "time_limit";
 
   /// Number or word of a run under this key, and its value in a row; not a number or empty where it is unknown.
   const ResultEntry &
@@ -71,10 +71,6 @@ namespace crawler
     std::string effective;                        ///< all entries as used, as a .prm file
     std::map<std::string, std::string> more = {}; ///< attributes that are kept with the rows
   };
-
-  /// Rows of a sweep, whose table must outlive them.
-  PlannedRows
-  planned_rows(const PointTable &table, const SweepPoints &points);
 
   /// Makes the table without rows (one process).
   void

@@ -14,10 +14,6 @@ namespace crawler
    * crawler sweep: a run without files for each point of section Sweep, shared among all ranks; the results are a
    * table, results.h5 and results.csv (collective). A point that fails is a row with status and reason. With --resume
    * the points that have no row yet are computed, with --strict rows that failed make the exit code 8.
-   *
-   * Parts, each used by those below it: sweep_design.h, values of the axes; sweep_points.h, the parameters of a point;
-   * sweep_blocks.h, grouping and order of the points, and one rank's work; sweep_rows.h, columns, rows and results of
-   * the table; sweep_inputs.h, inputs of the answers; point_table.h, to begin or to resume.
    */
   ExitCode
   sweep(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file);

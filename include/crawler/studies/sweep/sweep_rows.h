@@ -23,7 +23,7 @@ namespace crawler
   std::vector<RowFile::Column>
   sweep_columns(const SweepPoints &points);
 
-  extern const std::string sweep_file, sweep_group; ///< results.h5, and the group in it
+  inline const std::string sweep_file = "results.h5", sweep_group = "results"; ///< table, and the group in it
 
   /// Row of a point that has been computed, in the columns after the known ones. @p sensitivities: the entries by which
   /// it was differentiated; @p checked: values of checked_columns(), if there are any.

@@ -16,8 +16,8 @@ namespace
   seen(const ExtremesInBoxes &boxes, const auto &stretch)
   {
     std::vector<double> values;
-    for (const double t : boxes.times())
-      for (const double s : boxes.points())
+    for (const double t : boxes.times)
+      for (const double s : boxes.points)
         values.push_back(stretch(s, t));
     return values;
   }
