@@ -13,7 +13,6 @@ namespace crawler
   {
     constexpr double between_bars  = 0.1; ///< [s]
     constexpr double between_waits = 3.;
-    constexpr double between_lines = 5.;
 
     /// Number of characters of a text in UTF-8.
     std::size_t
@@ -145,49 +144,5 @@ namespace crawler
                   snapshot.integrals.displacement / length_,
                   snapshot.stretch.min.value,
                   snapshot.stretch.max.value));
-  }
-
-
-  StudyProgress::StudyProgress(Log &log, const unsigned long n_parts, std::string parts)
-    : log_(log)
-    , n_parts_(n_parts)
-    , parts_(std::move(parts))
-    , bar_(log)
-  {
-  }
-
-  bool
-  StudyProgress::is_line_due() const
-  {
-    return now() >= last_line_ + between_lines;
-  }
-
-  bool
-  StudyProgress::is_due() const
-  {
-    return bar_.is_due() || is_line_due();
-  }
-
-  void
-  StudyProgress::report(const unsigned long done, const std::string &remark, const std::string &state)
-  {
-    const bool is_single = n_parts_ == 1 && !state.empty();
-    const double seconds = bar_.seconds(), rate = done / seconds;
-    const std::string words =
-      is_single ? state : fmt::format("{} of {} {}, {:.3g} {}/s", done, n_parts_, parts_, rate, parts_);
-    const std::string end = remark + (is_single || state.empty() ? "" : "; this one: " + state);
-    if (is_line_due())
-    {
-      last_line_ = now();
-      log_.progress(is_single ? fmt::format("  {}, {}", words, duration_in_words(seconds))
-                              : fmt::format("  {:3.0f} %  {}, {}{}",
-                                            100. * done / n_parts_,
-                                            words,
-                                            done > 0 ? duration_in_words((n_parts_ - done) / rate) + " left"
-                                                     : "time left not known yet",
-                                            end));
-    }
-    if (bar_.is_due())
-      bar_.show(is_single ? std::nullopt : std::optional(static_cast<double>(done) / n_parts_), words + end);
   }
 } // namespace crawler

@@ -46,7 +46,7 @@ namespace crawler
       const Form form(ParameterFile::from_text(text, "parameters.prm"));
       std::map<std::string, std::string> list;
       for (unsigned int i = 0; i < form.declarations.entries().size(); ++i)
-        list.emplace(form.declarations.entries()[i].path, form.declarations.value(i));
+        list.emplace(form.declarations.entries()[i].path, "\"" + form.declarations.value(i) + "\"");
       return list;
     };
     const auto are_same_number = [](const std::string &a, const std::string &b) {
@@ -55,23 +55,33 @@ namespace crawler
       };
       return number(a) && number(a) == number(b);
     };
-    const auto old_values = values(before), new_values = values(after);
     std::vector<std::string> list;
-    const auto compare = [&](const std::string &entry) {
-      const auto value_in = [&](const auto &all) {
-        const auto found = all.find(entry);
-        return found == all.end() ? std::string("not there") : "\"" + found->second + "\"";
-      };
-      const std::string was = value_in(old_values), is = value_in(new_values);
-      if (was != is && !are_same_number(was, is) && std::find(others.begin(), others.end(), entry) == others.end())
-        list.push_back(fmt::format("{} was {} and is {}", entry, was, is));
-    };
-    for (const auto &[entry, value] : old_values)
-      compare(entry);
-    for (const auto &[entry, value] : new_values)
-      if (!old_values.contains(entry))
-        compare(entry);
+    add_differences(
+      values(before), values(after), "{}", "not there", list, [&](const auto &entry, const auto &was, const auto &is) {
+        return are_same_number(was, is) || std::ranges::find(others, entry) != others.end();
+      });
     return list;
+  }
+
+  void
+  add_differences(
+    const std::map<std::string, std::string> &before,
+    const std::map<std::string, std::string> &after,
+    const std::string &what,
+    const std::string &otherwise,
+    std::vector<std::string> &list,
+    const std::function<bool(const std::string &name, const std::string &was, const std::string &is)> &does_not_count)
+  {
+    const auto text_in = [&](const auto &texts, const std::string &name) {
+      const auto found = texts.find(name);
+      return found == texts.end() ? otherwise : found->second;
+    };
+    auto all = before;
+    all.insert(after.begin(), after.end());
+    for (const auto &[name, ignored] : all)
+      if (const std::string was = text_in(before, name), is = text_in(after, name);
+          was != is && !(does_not_count && does_not_count(name, was, is)))
+        list.push_back(fmt::format(fmt::runtime(what), name) + fmt::format(" was {} and is {}", was, is));
   }
 
   StudyClock::StudyClock(std::string section)
@@ -109,6 +119,69 @@ namespace crawler
   {
     return now() - begin_;
   }
+
+  namespace
+  {
+    /// Progress of a study of many runs: a bar, or a line every few seconds, with parts done, speed, and time left.
+    class StudyProgress
+    {
+    public:
+      /// @p parts names the @p n_parts parts, as "points".
+      StudyProgress(Log &log, const unsigned long n_parts, std::string parts)
+        : log_(log)
+        , n_parts_(n_parts)
+        , parts_(std::move(parts))
+        , bar_(log)
+      {
+      }
+
+      /// True if report() would show anything.
+      bool
+      is_due() const
+      {
+        return bar_.is_due() || is_line_due();
+      }
+
+      /// @p remark stands at the end of the line. @p state describes the part in progress; if there is a single part,
+      /// it is the whole report.
+      void
+      report(const unsigned long done, const std::string &remark, const std::string &state)
+      {
+        const bool is_single = n_parts_ == 1 && !state.empty();
+        const double seconds = bar_.seconds(), rate = done / seconds;
+        const std::string words =
+          is_single ? state : fmt::format("{} of {} {}, {:.3g} {}/s", done, n_parts_, parts_, rate, parts_);
+        const std::string end = remark + (is_single || state.empty() ? "" : "; this one: " + state);
+        if (is_line_due())
+        {
+          last_line_ = now();
+          log_.progress(is_single ? fmt::format("  {}, {}", words, duration_in_words(seconds))
+                                  : fmt::format("  {:3.0f} %  {}, {}{}",
+                                                100. * done / n_parts_,
+                                                words,
+                                                done > 0 ? duration_in_words((n_parts_ - done) / rate) + " left"
+                                                         : "time left not known yet",
+                                                end));
+        }
+        if (bar_.is_due())
+          bar_.show(is_single ? std::nullopt : std::optional(static_cast<double>(done) / n_parts_), words + end);
+      }
+
+    private:
+      bool
+      is_line_due() const
+      {
+        constexpr double between_lines = 5.; // [s]
+        return now() >= last_line_ + between_lines;
+      }
+
+      Log &log_;
+      const unsigned long n_parts_;
+      const std::string parts_;
+      ProgressBar bar_;
+      double last_line_ = now();
+    };
+  } // namespace
 
   bool
   share_work(MPI_Comm communicator, const SharedWork &work, Log &log)

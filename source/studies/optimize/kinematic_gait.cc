@@ -385,9 +385,10 @@ namespace crawler
         for (auto &gradient : values.gradients)
           gradient.assign(x.size(), 0.);
         std::vector<bool> only_strain(x.size(), true);
+        std::vector<Samples> own_slopes; // unless the strain is linear
         if (!linear_)
         {
-          slopes_.assign(x.size(), {});
+          own_slopes.assign(x.size(), {});
           for (std::size_t i = 0; i < x.size(); ++i)
           {
             const auto around = family_.stencil(x, i, step);
@@ -398,7 +399,7 @@ namespace crawler
               other[i] += around.places[k];
               const State there(family_.parameters(other));
               const Samples its = sample(there);
-              slopes_[i].add(around.weights[k], its);
+              own_slopes[i].add(around.weights[k], its);
               only_strain[i] = only_strain[i] && there.is_like(state);
               if (const auto its_values = grid_->values(its.on_grid, there.body(*grid_)))
               {
@@ -412,7 +413,7 @@ namespace crawler
                 values.gradients[j][i] = derivatives[j];
           }
         }
-        const std::vector<Samples> &slopes = linear_ ? linear_->slopes : slopes_;
+        const std::vector<Samples> &slopes = linear_ ? linear_->slopes : own_slopes;
         const Units &units                 = state.reduced.units();
         const auto put = [&](const StrainFunctional::Number number, const GaitNumber::Index what, const double unit) {
           if (!wishes_.numbers[what])
@@ -460,7 +461,6 @@ namespace crawler
         std::vector<Samples> slopes;
       };
       std::optional<Linear> linear_;
-      std::vector<Samples> slopes_;                         ///< at the last x, if the strain is not linear
       std::shared_ptr<const std::vector<double>> jacobian_; ///< Jacobian of the strain where it is limited, if it is
                                                             ///< linear
     };

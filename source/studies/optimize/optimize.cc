@@ -7,7 +7,6 @@
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/python.h>
 #include <crawler/studies/core/study.h>
-#include <crawler/studies/core/study_folder.h>
 #include <crawler/studies/optimize/gradient_check.h>
 #include <crawler/studies/optimize/optimize.h>
 #include <crawler/studies/optimize/optimize_results.h>

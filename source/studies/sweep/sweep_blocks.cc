@@ -261,24 +261,6 @@ namespace crawler
       points[i].checked = std::move(rows[i]);
   }
 
-  unsigned long
-  SweepWork::try_out(const unsigned long number)
-  {
-    const auto never    = []() { return false; };
-    auto points         = part(number);
-    const std::size_t n = points.size();
-    for (const Point &done : compute_shared(block_of(number), points, never))
-      std::erase(points, done.number);
-    for (const unsigned long point : points)
-    {
-      std::vector<Point> one;
-      one.push_back({point, numerics_.task(point)});
-      compute_all({&one[0].task, 1}, time_limit_, never);
-      check(one, never);
-    }
-    return n;
-  }
-
   bool
   SweepWork::compute(const unsigned long number,
                      const std::vector<bool> &done,

@@ -24,25 +24,6 @@ namespace crawler
     {
       return json.dump(-1, ' ', /*ensure_ascii=*/false, nlohmann::json::error_handler_t::replace);
     }
-
-    /// Adds "WHAT was A and is B" for each name whose text differs; a missing text is @p otherwise.
-    void
-    compare(const Texts &before,
-            const Texts &now,
-            const std::string &what,
-            const std::string &otherwise,
-            std::vector<std::string> &list)
-    {
-      const auto text_in = [&](const Texts &texts, const std::string &name) {
-        const auto found = texts.find(name);
-        return found == texts.end() ? otherwise : found->second;
-      };
-      Texts all = before;
-      all.insert(now.begin(), now.end());
-      for (const auto &[name, ignored] : all)
-        if (const std::string was = text_in(before, name), is = text_in(now, name); was != is)
-          list.push_back(fmt::format(fmt::runtime(what), name) + fmt::format(" was {} and is {}", was, is));
-    }
   } // namespace
 
   Texts
@@ -125,8 +106,8 @@ namespace crawler
     auto all = before.scenes;
     all.insert(now.scenes.begin(), now.scenes.end());
     for (const auto &[name, ignored] : all)
-      compare(scene_in(before, name), scene_in(now, name), "{} in " + name, "not set", list);
-    compare(before.files, now.files, "the file \"{}\"", "not there", list);
+      add_differences(scene_in(before, name), scene_in(now, name), "{} in " + name, "not set", list);
+    add_differences(before.files, now.files, "the file \"{}\"", "not there", list);
     return list;
   }
 } // namespace crawler

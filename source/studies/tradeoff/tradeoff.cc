@@ -102,7 +102,6 @@ namespace crawler
       const StudyClock &clock;
       const std::string &command_line;
       StudyFolder &folder;
-      Log &log;
       std::vector<bool> done = {}; ///< settings that have a row
     };
 
@@ -167,7 +166,7 @@ namespace crawler
       };
       const auto n_missing = static_cast<unsigned long>(std::ranges::count(study.done, false));
       return share_work(
-        study.communicator, {meshes.size(), n_missing, "settings", study.interrupted, measure_mesh}, study.log);
+        study.communicator, {meshes.size(), n_missing, "settings", study.interrupted, measure_mesh}, study.folder.log);
     }
 
     /// Reports the quality of the reference; without a reference nothing can be measured.
@@ -222,18 +221,18 @@ namespace crawler
       });
       text              = broadcast(text, study.communicator);
       const auto n_done = std::ranges::count(study.done, true);
-      study.log.line(fmt::format("Tradeoff of {}: {} settings on {}{}",
-                                 input.file.name(),
-                                 study.settings.size(),
-                                 counted(size_of(study.communicator), "rank"),
-                                 n_done > 0 ? fmt::format("; {} are already done", n_done) : ""));
+      study.folder.log.line(fmt::format("Tradeoff of {}: {} settings on {}{}",
+                                        input.file.name(),
+                                        study.settings.size(),
+                                        counted(size_of(study.communicator), "rank"),
+                                        n_done > 0 ? fmt::format("; {} are already done", n_done) : ""));
       for (const std::string &note : input.notes)
-        study.log.line(note);
+        study.folder.log.line(note);
       if (!text.empty())
         if (TradeoffReference reference = nlohmann::json::parse(text); reference.status == "finished")
           return reference;
       // Every rank computes the reference, so that none has an idle core beside it; that of the first is used.
-      study.log.line("Making the reference ...");
+      study.folder.log.line("Making the reference ...");
       const nlohmann::json made = make_reference(input.parameters, study.interrupted);
       text = broadcast(made.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), study.communicator);
       on_first_rank(study.communicator, [&]() {
@@ -259,21 +258,21 @@ namespace crawler
         if (python.status == static_cast<int>(ExitCode::file_error))
           throw FileError(python.problem);
         if (python.status != 0)
-          study.log.line(fmt::format(
+          study.folder.log.line(fmt::format(
             "No fronts, no recommendations and no picture were made: {}. Make them later with: crawler plot {}",
             python.problem,
             path.string()));
         else
-          draw("tradeoff", path, study.log);
+          draw("tradeoff", path, study.folder.log);
         const auto whole = nlohmann::json::parse(read_whole_file(path / "summary.json"));
         for (const auto &line : whole.value("advice", nlohmann::json::array()))
-          study.log.line(line.get<std::string>());
+          study.folder.log.line(line.get<std::string>());
       }
-      study.log.line(fmt::format("{:.1f} s. Results are in {}/.", end.seconds, path.string()));
+      study.folder.log.line(fmt::format("{:.1f} s. Results are in {}/.", end.seconds, path.string()));
       if (end.status == "stopped" && reference.status == "finished")
-        study.log.warn(fmt::format("{} after {} settings; --resume continues",
-                                   study.clock.in_words(end.reason),
-                                   end.n_before + n_computed(counts, end)));
+        study.folder.log.warn(fmt::format("{} after {} settings; --resume continues",
+                                          study.clock.in_words(end.reason),
+                                          end.n_before + n_computed(counts, end)));
     }
   } // namespace
 
@@ -291,7 +290,7 @@ namespace crawler
     const std::function<bool()> interrupted = [&]() { return clock.is_over(); };
     const StudyKind kind = {"tradeoff", {table.file}, {"Tradeoff/Time limit", "Tradeoff/Time limit per run"}};
     StudyFolder folder(kind, path, options, log);
-    Study study{communicator, input, table, settings, interrupted, clock, options.command_line, folder, log};
+    Study study{communicator, input, table, settings, interrupted, clock, options.command_line, folder};
     const TradeoffReference reference = begin(study);
     const auto n_before               = static_cast<unsigned long>(std::ranges::count(study.done, true));
     SweepEnd end{reference.status, "", 0., size_of(communicator), n_before, options.command_line};

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <crawler/base/file_lock.h>
+#include <crawler/studies/core/command_options.h>
+#include <crawler/studies/core/log.h>
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -25,10 +28,6 @@ namespace crawler
 
   /// Page that `crawler report` makes.
   inline const std::string report_name = "report.html";
-
-  /// Makes a folder. Throws FileError.
-  void
-  make_folder(const std::filesystem::path &folder);
 
   /// Returns true if the folder has nothing but what a run or study leaves that is killed while it begins, and files of
   /// these names too.
@@ -73,4 +72,68 @@ namespace crawler
   /// Removes files that a run writes as it proceeds: the fields and the statistics.
   void
   remove_fields(const std::filesystem::path &folder);
+
+  /// Differences between the commands that compute many runs.
+  struct StudyKind
+  {
+    std::string name;                      ///< "sweep", for sentences
+    std::vector<std::string> results;      ///< files any of which makes a folder one with results, to be resumed
+    std::vector<std::string> free_entries; ///< entries for the amount of computation: they may change meanwhile
+  };
+
+  /**
+   * Folder of a study of many runs, as seen by rank 0: a new study begins in it, or an old one is resumed, and no other
+   * one writes to it meanwhile (study.lock).
+   */
+  class StudyFolder
+  {
+  public:
+    StudyFolder(StudyKind its_kind, std::filesystem::path its_path, const CommandOptions &options, Log &its_log);
+
+    /// Returns true if a study is to be resumed (--resume). Otherwise makes the folder, with the parameter file, the @p
+    /// effective parameters and the log; a study that was killed before it had results is begun anew. Throws InputError
+    /// if the folder contains anything else, or a study in progress; FileError.
+    bool
+    begin(const std::string &original, const std::string &effective);
+
+    /// Resumes the study in the folder. Throws InputError if it was made with other inputs: the differences that @p
+    /// changes finds, in words. If anything is thrown, by @p changes too, the folder is left as it was.
+    void
+    resume(const std::function<std::vector<std::string>()> &changes);
+
+    /// Throws FileError if the folder is no longer the one in which the study began.
+    void
+    require_in_place() const
+    {
+      lock_->require_in_place();
+    }
+
+    /// Ends writing. Throws FileError if the log is not whole.
+    void
+    leave();
+
+    const StudyKind kind;
+    const std::filesystem::path path;
+    Log &log;
+
+  private:
+    bool
+    has_results() const;
+    /// True for anything else than a study, or what one leaves that is killed before it has results.
+    bool
+    is_foreign() const;
+
+    void
+    lock();
+
+    /// Removes the file FILE-1-NUMBER.lock that MPI leaves beside a table where the only process of a study is killed.
+    void
+    remove_locks_of_mpi() const;
+
+    void
+    leaving_if_refused(const std::function<void()> &work);
+
+    const CommandOptions &options_;
+    std::optional<FileLock> lock_;
+  };
 } // namespace crawler

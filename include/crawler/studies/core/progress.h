@@ -81,31 +81,4 @@ namespace crawler
     ProgressBar bar_;
     unsigned int next_tenth_ = 1;
   };
-
-  /// Progress of a study of many runs: a bar, or a line every few seconds, with parts done, speed, and time left.
-  class StudyProgress
-  {
-  public:
-    /// @p parts names the @p n_parts parts, as "points".
-    StudyProgress(Log &log, unsigned long n_parts, std::string parts);
-
-    /// True if report() would show anything.
-    bool
-    is_due() const;
-
-    /// @p remark stands at the end of the line. @p state describes the part in progress; if there is a single part, it
-    /// is the whole report.
-    void
-    report(unsigned long done, const std::string &remark = "", const std::string &state = "");
-
-  private:
-    bool
-    is_line_due() const;
-
-    Log &log_;
-    const unsigned long n_parts_;
-    const std::string parts_;
-    ProgressBar bar_;
-    double last_line_ = now();
-  };
 } // namespace crawler

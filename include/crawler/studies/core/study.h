@@ -30,6 +30,17 @@ namespace crawler
   std::vector<std::string>
   differences(const std::string &before, const std::string &after, const std::vector<std::string> &others);
 
+  /// Adds "WHAT was A and is B" for each name whose text differs, unless it @p does_not_count; a missing text is @p
+  /// otherwise. @p what is a format of the name.
+  void
+  add_differences(const std::map<std::string, std::string> &before,
+                  const std::map<std::string, std::string> &after,
+                  const std::string &what,
+                  const std::string &otherwise,
+                  std::vector<std::string> &list,
+                  const std::function<bool(const std::string &name, const std::string &was, const std::string &is)>
+                    &does_not_count = {});
+
   /// Clock of a study, with the two causes that end it early: a signal, which from now on ends it in an orderly way, or
   /// its time limit.
   class StudyClock

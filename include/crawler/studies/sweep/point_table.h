@@ -4,7 +4,7 @@
 #include <crawler/base/row_file.h>
 #include <crawler/run/result_table.h>
 #include <crawler/studies/core/compute.h>
-#include <crawler/studies/core/study_folder.h>
+#include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/sweep/sweep_inputs.h>
 #include <crawler/studies/sweep/sweep_points.h>
 

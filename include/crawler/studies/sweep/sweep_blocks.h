@@ -77,10 +77,6 @@ namespace crawler
             const std::function<bool()> &interrupted,
             const std::function<void(unsigned long n, unsigned long failed)> &see);
 
-    /// Computes the points of the part @p number without files; returns their number.
-    unsigned long
-    try_out(unsigned long number);
-
   private:
     SweepBlock
     block_of(unsigned long part) const;
