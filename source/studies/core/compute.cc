@@ -303,7 +303,6 @@ namespace crawler
       choose_model(task.parameters, *task.scene); // refuses what the model cannot compute
     }
 
-    /// Discards all results of an attempt.
     void
     forget(Task &task)
     {

@@ -56,18 +56,6 @@ namespace crawler
   }
 
   void
-  Log::line(const std::string &text)
-  {
-    write(text, /*on_screen=*/true);
-  }
-
-  void
-  Log::progress(const std::string &text)
-  {
-    write(text, /*on_screen=*/status_width_ == 0);
-  }
-
-  void
   Log::warn(const std::string &text)
   {
     if (!active_)

@@ -48,16 +48,6 @@ namespace crawler
   }
 
 
-  ProgressBar::ProgressBar(Log &log)
-    : log_(log)
-  {
-  }
-
-  ProgressBar::~ProgressBar()
-  {
-    log_.show_status("");
-  }
-
   bool
   ProgressBar::is_due() const
   {

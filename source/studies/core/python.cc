@@ -10,7 +10,6 @@
 #include <array>
 #include <cstdlib>
 #include <iostream>
-#include <stdexcept>
 #include <sysexits.h>
 
 namespace crawler

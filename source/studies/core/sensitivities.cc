@@ -40,7 +40,6 @@ namespace crawler
       std::vector<Scene> scenes          = {}; ///< four, or none if there is a reason
     };
 
-    /// Value of a number, and the bound of its error.
     struct Known
     {
       double value, error;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/versions.h>
@@ -84,42 +83,6 @@ namespace crawler
         list.push_back(fmt::format(fmt::runtime(what), name) + fmt::format(" was {} and is {}", was, is));
   }
 
-  StudyClock::StudyClock(std::string section)
-    : begin_(now())
-    , section_(std::move(section))
-  {
-  }
-
-  void
-  StudyClock::set_limit(const std::optional<double> seconds)
-  {
-    limit_ = seconds;
-  }
-
-  bool
-  StudyClock::is_over() const
-  {
-    return signal_.arrived() || (limit_ && seconds() > *limit_);
-  }
-
-  std::string
-  StudyClock::reason(MPI_Comm communicator, const bool is_whole) const
-  {
-    return is_whole ? "" : signal_.arrived_anywhere(communicator) ? "signal" : "time_limit";
-  }
-
-  std::string
-  StudyClock::in_words(const std::string &reason) const
-  {
-    return "stopped by " + (reason == "signal" ? "a signal" : section_ + "/Time limit");
-  }
-
-  double
-  StudyClock::seconds() const
-  {
-    return now() - begin_;
-  }
-
   namespace
   {
     /// Progress of a study of many runs: a bar, or a line every few seconds, with parts done, speed, and time left.
@@ -135,7 +98,6 @@ namespace crawler
       {
       }
 
-      /// True if report() would show anything.
       bool
       is_due() const
       {

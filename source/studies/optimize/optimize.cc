@@ -16,7 +16,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -111,7 +110,6 @@ namespace crawler
       return {fs::exists(place / "summary.json") ? read_whole_file(place / "summary.json") : "{}", is_good};
     }
 
-    /// End of a study.
     struct Ending
     {
       std::string reason; ///< empty: none, all is well
@@ -169,7 +167,6 @@ namespace crawler
       return {"", ExitCode::finished, ""};
     }
 
-    /// Logs the results and where they are.
     void
     report(const OptimizeCases &cases,
            const OptimizeResults &results,

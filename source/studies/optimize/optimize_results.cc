@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/plain_numbers.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/optimize/optimize_results.h>
 

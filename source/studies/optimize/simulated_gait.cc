@@ -30,7 +30,6 @@ namespace crawler
       return task.computed.result.model != Model::kinematic && !task.computed.choice.has_fronts;
     }
 
-    /// Observer of the extreme strains.
     class ExtremesOfPictures : public Observer
     {
     public:
@@ -225,7 +224,6 @@ namespace crawler
         return std::move(observers.front());
       }
 
-      /// Extreme stretches in the boxes.
       std::vector<StretchPlace>
       extremes(const Task &task)
       {

@@ -5,7 +5,6 @@
 #include <crawler/accuracy/swept_error.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
-#include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/base/stop_place.h>
 #include <crawler/base/stop_signal.h>
@@ -17,7 +16,6 @@
 #include <crawler/run/simulation.h>
 #include <crawler/run/summary.h>
 #include <crawler/scene/moving_jumps.h>
-#include <crawler/studies/core/command_options.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/log.h>
 #include <crawler/studies/core/output_folder.h>

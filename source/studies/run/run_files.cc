@@ -14,7 +14,6 @@ namespace crawler
 {
   namespace
   {
-    /// Logs body and active stress.
     void
     report_scene(Log &log, const Input &input)
     {

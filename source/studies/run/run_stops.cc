@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/clock.h>
-#include <crawler/base/communication.h>
 #include <crawler/studies/run/run_stops.h>
-
-#include <fmt/format.h>
 
 #include <utility>
 
@@ -41,12 +38,6 @@ namespace crawler
       next_look_ = time + between_looks;
     }
     return is_out_of_time_ || is_asked_;
-  }
-
-  bool
-  RunStops::arrived_anywhere(MPI_Comm communicator)
-  {
-    return is_true_anywhere(arrived(), communicator);
   }
 
   const char *

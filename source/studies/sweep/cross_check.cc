@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <optional>
 
 namespace crawler
@@ -78,12 +77,6 @@ namespace crawler
       return fmt::format("{}, but {}", in_words(a), in_words(b));
     }
   } // namespace
-
-  std::string
-  Verdict::in_words() const
-  {
-    return kind == agree ? "agree" : kind == unchecked ? "unchecked" : "silent wrong answer";
-  }
 
   Verdict
   cross_check(const std::vector<Claim> &runs, const Claim &refined, const InversionFacts &facts)

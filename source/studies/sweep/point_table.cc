@@ -6,7 +6,6 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/sweep/point_table.h>
-#include <crawler/studies/sweep/sweep_inputs.h>
 
 #include <fmt/format.h>
 
@@ -23,7 +22,6 @@ namespace crawler
   {
     constexpr unsigned long rows_together = 1 << 16;
 
-    /// Text of a value of the table.
     std::string
     text_of(const Column &column, const unsigned long row)
     {

@@ -11,7 +11,6 @@
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/progress.h>
 #include <crawler/studies/core/study.h>
-#include <crawler/studies/run/run.h>
 #include <crawler/studies/sweep/point_table.h>
 #include <crawler/studies/sweep/sweep.h>
 #include <crawler/studies/sweep/sweep_blocks.h>
@@ -22,7 +21,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <span>
 
 namespace crawler
@@ -151,7 +149,6 @@ namespace crawler
         log);
     }
 
-    /// Logs the findings of a cross-check.
     void
     report_check(const SweepCounts &counts, Log &log)
     {
@@ -168,7 +165,6 @@ namespace crawler
           : fmt::format("; the largest measured error is {:.2g} of the promised one", counts.largest_error_ratio)));
     }
 
-    /// Logs the results at the end.
     void
     report(const SweepCounts &counts, const SweepEnd &end, const fs::path &folder, const StudyClock &clock, Log &log)
     {

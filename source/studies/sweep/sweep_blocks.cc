@@ -52,18 +52,6 @@ namespace crawler
     parts_of_run_                     = (rows_ + rows_of_block - 1) / rows_of_block;
   }
 
-  unsigned long
-  SweepBlocks::size() const
-  {
-    return n_runs_ * parts_of_run_;
-  }
-
-  unsigned long
-  SweepBlocks::largest() const
-  {
-    return (rows_ + parts_of_run_ - 1) / parts_of_run_ * row_;
-  }
-
   SweepBlock
   SweepBlocks::operator[](const unsigned long number) const
   {
@@ -93,7 +81,6 @@ namespace crawler
     return order;
   }
 
-  /// Point with its answer.
   struct SweepWork::Point
   {
     unsigned long number;
@@ -166,18 +153,6 @@ namespace crawler
     , numerics_(points)
     , note_(note)
   {
-  }
-
-  unsigned long
-  SweepWork::n_parts() const
-  {
-    return blocks_.size() * parts_of_block_;
-  }
-
-  SweepBlock
-  SweepWork::block_of(const unsigned long part) const
-  {
-    return blocks_[order_[part / parts_of_block_]];
   }
 
   std::vector<unsigned long>

@@ -10,13 +10,11 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <set>
@@ -382,11 +380,5 @@ namespace crawler
       }
     }
     return list;
-  }
-
-  bool
-  SweepDesign::varies(const std::string &entry) const
-  {
-    return std::any_of(axes_.begin(), axes_.end(), [&](const SweepAxis &axis) { return axis.entry == entry; });
   }
 } // namespace crawler

@@ -5,7 +5,6 @@
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/sweep/sweep_inputs.h>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <filesystem>

@@ -46,11 +46,6 @@ namespace crawler
     }
   } // namespace
 
-  SweepNumerics::SweepNumerics(SweepPoints &points)
-    : points_(points)
-  {
-  }
-
   Task
   SweepNumerics::task(const unsigned long point) const
   {

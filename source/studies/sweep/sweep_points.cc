@@ -60,12 +60,6 @@ namespace crawler
     }
   }
 
-  const Declarations &
-  SweepPoints::declarations() const
-  {
-    return base_->declarations;
-  }
-
   std::vector<std::string>
   SweepPoints::scene_names() const
   {
@@ -75,12 +69,6 @@ namespace crawler
     std::ranges::sort(names);
     names.erase(std::unique(names.begin(), names.end()), names.end());
     return names;
-  }
-
-  ParameterFile
-  SweepPoints::scene(const std::string &name) const
-  {
-    return ParameterFile::read((design_->folder() / name).string());
   }
 
   std::vector<std::string>

@@ -13,9 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
-#include <utility>
 
 namespace crawler
 {
@@ -24,7 +22,6 @@ namespace crawler
     constexpr double not_known        = std::numeric_limits<double>::quiet_NaN();
     constexpr unsigned int word_width = 24, reason_width = 32, message_width = 256;
 
-    /// Unit of a number by its key.
     std::string
     unit_of(const std::string &key)
     {
@@ -42,30 +39,28 @@ namespace crawler
     void
     count(const Table &table, SweepCounts &counts)
     {
-      const auto column = [&](const std::string &name) {
-        const auto found = std::ranges::find(table, name, &Column::name);
-        return found == table.end() ? nullptr : &found->values;
-      };
-      const auto texts = [&](const std::string &name) {
-        const auto *values = column(name);
-        return values == nullptr ? std::vector<std::string>() : std::get<std::vector<std::string>>(*values);
-      };
-      for (const std::string &text : texts("status"))
-        ++counts.statuses[text.empty() ? "missing" : text];
-      for (const std::string &text : texts("reason"))
-        if (!text.empty())
-          ++counts.reasons[text];
-      const std::vector<std::string> verdicts = texts("verdict"), explanations = texts("explanation");
-      for (std::size_t i = 0; i < verdicts.size(); ++i)
-      {
-        if (!verdicts[i].empty())
-          ++counts.verdicts[verdicts[i]];
-        if (!explanations[i].empty() && counts.wrong_answers.size() < max_wrong_answers)
-          counts.wrong_answers.emplace(std::get<std::vector<double>>(*column("index"))[i], explanations[i]);
-      }
-      for (const char *run : {"", "position ", "stretch "})
-        if (const auto *ratios = column(std::string(run) + "error ratio"))
-          for (const double ratio : std::get<std::vector<double>>(*ratios))
+      using Texts   = std::vector<std::string>;
+      using Numbers = std::vector<double>;
+      for (const auto &[name, unit, description, values] : table)
+        if (name == "status")
+          for (const std::string &text : std::get<Texts>(values))
+            ++counts.statuses[text.empty() ? "missing" : text];
+        else if (name == "reason" || name == "verdict")
+        {
+          for (const std::string &text : std::get<Texts>(values))
+            if (!text.empty())
+              ++(name == "reason" ? counts.reasons : counts.verdicts)[text];
+        }
+        else if (name == "explanation")
+        {
+          const auto &texts = std::get<Texts>(values);
+          const auto &index = std::get<Numbers>(table.front().values);
+          for (std::size_t i = 0; i < texts.size() && counts.wrong_answers.size() < max_wrong_answers; ++i)
+            if (!texts[i].empty())
+              counts.wrong_answers.emplace(index[i], texts[i]);
+        }
+        else if (name.ends_with("error ratio"))
+          for (const double ratio : std::get<Numbers>(values))
             counts.largest_error_ratio = std::fmax(counts.largest_error_ratio, ratio);
     }
 

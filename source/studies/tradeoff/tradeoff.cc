@@ -78,7 +78,6 @@ namespace crawler
       return to_number(text).value_or(std::numeric_limits<double>::quiet_NaN());
     }
 
-    /// Adds the errors if there is a displacement.
     void
     compare(TradeoffTexts &row, const TradeoffReference &reference)
     {

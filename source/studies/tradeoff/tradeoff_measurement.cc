@@ -27,8 +27,7 @@ namespace crawler
     /// Shortest measurement [s]; faster runs are repeated.
     constexpr double shortest_measurement = 5e-3;
     /// Duration [s] beyond which the first run of a setting counts as a measurement.
-    constexpr double long_run = 0.1;
-    /// Number of bodies side by side.
+    constexpr double long_run        = 0.1;
     constexpr std::size_t batch_size = 8;
     /// Number of steps after each of which the heap is examined, and interval in steps afterwards.
     constexpr unsigned long looks_at_heap = 64, steps_between_looks = 16;
@@ -52,7 +51,6 @@ namespace crawler
 #endif
     }
 
-    /// Setting as it is run.
     struct Run
     {
       const Scene &scene;

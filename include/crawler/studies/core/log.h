@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <vector>
 
 namespace crawler
 {
@@ -24,7 +23,10 @@ namespace crawler
     ~Log();
 
     void
-    line(const std::string &text);
+    line(const std::string &text)
+    {
+      write(text, /*on_screen=*/true);
+    }
 
     /// Writes a line that must not be missed: on standard error, also if quiet.
     void
@@ -32,7 +34,10 @@ namespace crawler
 
     /// Writes a line about the progress of the work: only in the file where a status is shown instead.
     void
-    progress(const std::string &text);
+    progress(const std::string &text)
+    {
+      write(text, /*on_screen=*/status_width_ == 0);
+    }
 
     /// Columns of the status; 0 if none is shown, because standard output is no terminal or is quiet.
     unsigned int

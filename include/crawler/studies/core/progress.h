@@ -18,10 +18,16 @@ namespace crawler
   class ProgressBar
   {
   public:
-    explicit ProgressBar(Log &log);
+    explicit ProgressBar(Log &log)
+      : log_(log)
+    {
+    }
     ProgressBar(const ProgressBar &) = delete;
     /// Takes the bar away.
-    ~ProgressBar();
+    ~ProgressBar()
+    {
+      log_.show_status("");
+    }
 
     /// True if there is a bar, and it was drawn long enough ago to be redrawn.
     bool

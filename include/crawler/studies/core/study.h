@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/clock.h>
 #include <crawler/base/stop_signal.h>
 #include <crawler/studies/core/command_options.h>
 #include <crawler/studies/core/log.h>
 
 #include <mpi.h>
 
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
@@ -47,29 +47,47 @@ namespace crawler
   {
   public:
     /// @p section of the parameters, for messages.
-    explicit StudyClock(std::string section);
+    explicit StudyClock(std::string section)
+      : section_(std::move(section))
+    {
+    }
 
     void
-    set_limit(std::optional<double> seconds);
+    set_limit(const std::optional<double> seconds)
+    {
+      limit_ = seconds;
+    }
 
     /// Returns true if the time is over or a signal has arrived on this rank.
     bool
-    is_over() const;
+    is_over() const
+    {
+      return signal_.arrived() || (limit_ && seconds() > *limit_);
+    }
 
     /// Cause of an early end: "signal" or "time_limit"; empty if the study @p is_whole (collective).
     std::string
-    reason(MPI_Comm communicator, bool is_whole) const;
+    reason(MPI_Comm communicator, const bool is_whole) const
+    {
+      return is_whole ? "" : signal_.arrived_anywhere(communicator) ? "signal" : "time_limit";
+    }
 
     /// Reason in words, e.g. "stopped by a signal".
     std::string
-    in_words(const std::string &reason) const;
+    in_words(const std::string &reason) const
+    {
+      return "stopped by " + (reason == "signal" ? "a signal" : section_ + "/Time limit");
+    }
 
     double
-    seconds() const;
+    seconds() const
+    {
+      return now() - begin_;
+    }
 
   private:
     const StopSignal signal_;
-    const double begin_;
+    const double begin_ = now();
     const std::string section_;
     std::optional<double> limit_;
   };

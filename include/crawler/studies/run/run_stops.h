@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/communication.h>
 #include <crawler/base/stop_signal.h>
 
 #include <fmt/format.h>
@@ -30,7 +31,10 @@ namespace crawler
 
     /// Returns true, from then on, once the run is to stop on any rank (collective).
     bool
-    arrived_anywhere(MPI_Comm communicator);
+    arrived_anywhere(MPI_Comm communicator)
+    {
+      return is_true_anywhere(arrived(), communicator);
+    }
 
     /// Reason: "signal", "time_limit" or "stop_file"; and in words, "by ...".
     const char *

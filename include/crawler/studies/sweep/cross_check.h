@@ -44,7 +44,10 @@ namespace crawler
 
     /// "agree", "unchecked" or "silent wrong answer".
     std::string
-    in_words() const;
+    in_words() const
+    {
+      return kind == agree ? "agree" : kind == unchecked ? "unchecked" : "silent wrong answer";
+    }
   };
 
   /**

@@ -6,8 +6,6 @@
 
 #include <mpi.h>
 
-#include <string>
-
 namespace crawler
 {
   /**

@@ -6,7 +6,6 @@
 #include <crawler/studies/sweep/sweep_numerics.h>
 
 #include <functional>
-#include <map>
 #include <span>
 #include <vector>
 
@@ -32,11 +31,17 @@ namespace crawler
     explicit SweepBlocks(const SweepDesign &design);
 
     unsigned long
-    size() const;
+    size() const
+    {
+      return n_runs_ * parts_of_run_;
+    }
 
     /// Number of points of the largest block.
     unsigned long
-    largest() const;
+    largest() const
+    {
+      return (rows_ + parts_of_run_ - 1) / parts_of_run_ * row_;
+    }
 
     SweepBlock
     operator[](unsigned long number) const;
@@ -62,7 +67,10 @@ namespace crawler
     SweepWork(SweepPoints &points, unsigned int n_ranks, CrashNote *note = nullptr);
 
     unsigned long
-    n_parts() const;
+    n_parts() const
+    {
+      return blocks_.size() * parts_of_block_;
+    }
 
     /// Receives the rows of consecutive points, the first of which is number @p first.
     using WriteRows = std::function<void(unsigned long first, std::span<const RowFile::Row> rows)>;
@@ -79,7 +87,10 @@ namespace crawler
 
   private:
     SweepBlock
-    block_of(unsigned long part) const;
+    block_of(const unsigned long part) const
+    {
+      return blocks_[order_[part / parts_of_block_]];
+    }
     /// Points of the part @p number, in order.
     std::vector<unsigned long>
     part(unsigned long number) const;

@@ -3,6 +3,7 @@
 
 #include <crawler/studies/core/parameters.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -65,7 +66,10 @@ namespace crawler
 
     /// Returns true if the entry varies from point to point.
     bool
-    varies(const std::string &entry) const;
+    varies(const std::string &entry) const
+    {
+      return std::any_of(axes_.begin(), axes_.end(), [&](const SweepAxis &axis) { return axis.entry == entry; });
+    }
 
     /// Returns true if point i has the value i of each axis.
     bool

@@ -28,7 +28,10 @@ namespace crawler
   class SweepNumerics
   {
   public:
-    explicit SweepNumerics(SweepPoints &points);
+    explicit SweepNumerics(SweepPoints &points)
+      : points_(points)
+    {
+    }
 
     /// Returns true if the points of this sweep share numerics.
     static bool

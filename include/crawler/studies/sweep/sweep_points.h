@@ -35,14 +35,20 @@ namespace crawler
 
     /// Entries of the file itself, without an axis.
     const Declarations &
-    declarations() const;
+    declarations() const
+    {
+      return base_->declarations;
+    }
 
     /// Files on the file axis: their different names, sorted, and one of them, which is read now. Throws InputError,
     /// FileError.
     std::vector<std::string>
     scene_names() const;
     ParameterFile
-    scene(const std::string &name) const;
+    scene(const std::string &name) const
+    {
+      return ParameterFile::read((design_->folder() / name).string());
+    }
 
     /// Entries as used, except for the axes, as a .prm file.
     const std::string &

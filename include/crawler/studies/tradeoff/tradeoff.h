@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/studies/run/run.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/parameters/parameter_file.h>
+#include <crawler/studies/core/command_options.h>
+
+#include <mpi.h>
 
 namespace crawler
 {
