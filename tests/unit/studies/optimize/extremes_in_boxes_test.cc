@@ -84,8 +84,8 @@ TEST(ExtremesInBoxes, OfManyStrides)
 {
   EXPECT_EQ(ExtremesInBoxes::boxes_in_time(0.3), 8u);
   EXPECT_EQ(ExtremesInBoxes::boxes_in_time(4.), ExtremesInBoxes::boxes_in_time(15.));
-  EXPECT_GE(ExtremesInBoxes(32, 15.).times().size(), 15u * 120);
-  EXPECT_LE(ExtremesInBoxes(32, 1e6).times().size(), 2600u);
+  EXPECT_GE(ExtremesInBoxes(32, 15.).times.size(), 15u * 120);
+  EXPECT_LE(ExtremesInBoxes(32, 1e6).times.size(), 2600u);
 }
 
 TEST(ExtremesInBoxes, WhereOnlyThoseOfTheRunAreKnown)
