@@ -27,10 +27,10 @@ namespace crawler
     /// True if the error is known beforehand: the rule of the numerics does not cover the effect of a point value of
     /// the stretch, seen from elsewhere.
     bool
-    is_promised(const NumericsChoice &choice, const Scene &scene)
+    is_predicted(const NumericsChoice &choice, const Scene &scene)
     {
       const StretchFeedback *feedback = scene.active_stress->feedback();
-      return std::isfinite(choice.promised_error) && (feedback == nullptr || !feedback->sees_near());
+      return choice.follows_rule() && (feedback == nullptr || !feedback->sees_near());
     }
 
     /// Changes the tolerance by @p factor. The limits of the steps change with it, as the steps of radau 9 do: steps
@@ -46,36 +46,34 @@ namespace crawler
     Numerics
     finer(const NumericsChoice &choice, const std::string &integrator, const Scene &scene)
     {
-      Numerics n          = choice.numerics;
-      const bool promised = is_promised(choice, scene);
+      Numerics n           = choice.numerics;
+      const bool predicted = is_predicted(choice, scene);
       // Kinks move through cells and steps where the friction switches its direction: errors fall by low powers. A
       // displacement of 0 does not tell the error of the works. Inside soft bodies layers are as thin as at their ends.
       const bool is_soft = scene.body.elastic_modulus / natural_units(scene).force < soft;
       const bool much_finer =
-        !promised || choice.is_steep || is_soft || scene.ground.direction.is_uneven() || scene.keeps_its_centre();
+        !predicted || choice.is_steep || is_soft || scene.ground.direction.is_uneven() || scene.keeps_its_centre();
       if (n.mesh.tolerance > 0.)
       {
         n.mesh.tolerance *= finer_mesh_tolerance;
         // Adaptive meshes of two tolerances may have the same cells where they matter; halved cells differ.
-        if (!promised)
+        if (!predicted)
           n.n_cells *= 2;
       }
       else if (n.formulation == Formulation::stretch)
         n.parts *= 2; // one family of meshes
       else
       {
-        const double factor = much_finer        ? more_cells_without_promise
-                              : choice.is_rough ? more_cells_if_rough
-                                                : more_cells;
+        const double factor = much_finer ? more_cells_without_rule : choice.is_rough ? more_cells_if_rough : more_cells;
         n.n_cells           = finer_n_cells(factor, n.n_cells, scene.breaks_in_space().size(), n.grading);
       }
       change_steps(n,
-                   much_finer                      ? finer_tolerance_without_promise
+                   much_finer                      ? finer_tolerance_without_rule
                    : integrator == best_integrator ? finer_tolerance
                                                    : finer_tolerance_than_others);
       n.integrator = best_integrator;
       // Layers that neither mesh resolves would be missed by the difference.
-      if (promised && is_soft && n.mesh.tolerance == 0. && n.grading.levels == 0)
+      if (predicted && is_soft && n.mesh.tolerance == 0. && n.grading.levels == 0)
       {
         const double k      = scene.body.elastic_modulus / natural_units(scene).force;
         const double levels = std::log(layer_cells * k * n.n_cells) / std::log(layer_ratio);
@@ -103,8 +101,8 @@ namespace crawler
           set_error_bound(result, key, std::max(*known, part * *value));
     }
 
-    /// Runs with more cells and its own steps: where nothing is promised this separates the two parts of the error,
-    /// since their sum may be small by chance.
+    /// Runs with more cells and its own steps: where no rule predicts the error this separates the two parts of the
+    /// error, since their sum may be small by chance.
     SimulationResult
     run_on_finer_mesh(MPI_Comm communicator,
                       const RunParameters &parameters,
@@ -216,35 +214,34 @@ namespace crawler
              const SimulationResult *const finer_mesh)
   {
     DisplacementError &error = result.error.emplace();
-    double total             = choice.promised_error;
+    double total             = choice.measured_error.value_or(choice.wanted_error);
     std::optional<double> space; // part of the total, if it was measured
     if (finer != nullptr)
     {
       if (finer->time.status != Status::finished ||
           (finer_mesh != nullptr && finer_mesh->time.status != Status::finished))
         return;
-      const bool promised = is_promised(choice, scene);
-      const double part   = !promised                             ? 0.
-                            : choice.numerics.mesh.tolerance > 0. ? promised_part_if_adaptive
-                            : choice.numerics.grading.levels > 0  ? promised_part_if_graded
-                                                                  : promised_part;
+      const bool predicted = is_predicted(choice, scene);
+      const double part    = !predicted                            ? 0.
+                             : choice.numerics.mesh.tolerance > 0. ? predicted_part_if_adaptive
+                             : choice.numerics.grading.levels > 0  ? predicted_part_if_graded
+                                                                   : predicted_part;
       const double factor =
-        promised && !choice.is_steep && !scene.keeps_its_centre() ? measured_factor : factor_without_promise;
+        predicted && !choice.is_steep && !scene.keeps_its_centre() ? measured_factor : factor_without_rule;
       if (finer_mesh != nullptr)
       {
         space = factor * std::abs(finer_mesh->displacement - result.displacement);
         // Kinks that move with the place where the velocity changes its sign make errors that change their sign from
         // mesh to mesh: a difference may be small by chance, and so may be that which ended the search.
-        if (scene.ground.direction.is_uneven() && choice.numerics.grading.levels > 0 &&
-            std::isfinite(choice.promised_error))
-          space = std::max(*space, accuracy_rule::graded::part * choice.promised_error);
+        if (scene.ground.direction.is_uneven() && choice.numerics.grading.levels > 0 && choice.follows_rule())
+          space = std::max(*space, accuracy_rule::graded::part * choice.wanted_error);
         total = *space + factor * std::abs(finer->displacement - finer_mesh->displacement);
       }
       else
       {
         total = factor * std::abs(finer->displacement - result.displacement);
-        if (promised)
-          total += part * choice.promised_error;
+        if (predicted)
+          total += part * choice.wanted_error;
       }
       total = std::max(total, choice.min_error);
       // Works of extrapolated cycles have the same relative error as the displacement.
@@ -287,17 +284,17 @@ namespace crawler
                   SimulationResult &result,
                   const KeepGoing &keep_going)
   {
-    if (choice.is_measured)
+    if (choice.measured_error)
       set_errors(choice, result, nullptr, parameters, scene);
     else
     {
       // Failures of the finer run do not affect the answer.
       SimulationResult finer, finer_mesh;
-      const bool promised = is_promised(choice, scene);
+      const bool predicted = is_predicted(choice, scene);
       try
       {
         finer = finer_run(communicator, parameters, scene, choice, result, keep_going);
-        if (!promised && finer.time.status == Status::finished)
+        if (!predicted && finer.time.status == Status::finished)
           finer_mesh = run_on_finer_mesh(communicator, parameters, scene, choice, result, keep_going);
       }
       catch (...)
@@ -306,7 +303,7 @@ namespace crawler
         if (size_of(communicator) > 1) // the other ranks may be waiting
           throw;
       }
-      set_errors(choice, result, &finer, parameters, scene, promised ? nullptr : &finer_mesh);
+      set_errors(choice, result, &finer, parameters, scene, predicted ? nullptr : &finer_mesh);
     }
   }
 } // namespace crawler

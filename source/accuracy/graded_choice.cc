@@ -121,7 +121,7 @@ namespace crawler
       run(const Numerics &numerics, SimulationResult &result)
       {
         const unsigned int many = std::max(max_cells, max_cells_of_piece * n_pieces_);
-        is_too_fine_ = numerics.n_cells > (result_.time.steps * many > max_work ? many : more_cells_than_most * many);
+        is_too_fine_ = numerics.n_cells > (result_.time.steps * many > max_work ? many : cheap_mesh_factor * many);
         possible_ =
           possible_ && ++n_runs_ <= max_runs && !is_too_fine_ && smallest_size(task_.scene, numerics) >= smallest_cell;
         if (!possible_)

@@ -424,28 +424,17 @@ namespace crawler
           return answer_;
         if (finished(latest_))
         {
-          result                        = extrapolated_;
-          const double cycles           = result.cycles ? result.cycles->bound : 0.;
-          const double floor            = min_part * wanted();
-          result.error                  = {.total = std::max(space_error_, floor) + time_error_ + cycles,
-                                           .space = std::max(space_error_, floor),
-                                           .time  = time_error_ + cycles,
-                                           .model = 0.};
-          result.errors                 = errors_of_numbers();
-          answer_.choice.promised_error = result.error->total;
+          result              = extrapolated_;
+          const double cycles = result.cycles ? result.cycles->bound : 0.;
+          const double floor  = min_part * wanted();
+          result.error        = {.total = std::max(space_error_, floor) + time_error_ + cycles,
+                                 .space = std::max(space_error_, floor),
+                                 .time  = time_error_ + cycles,
+                                 .model = 0.};
+          result.errors       = errors_of_numbers();
           if (!std::isfinite(space_error_))
             result.error = DisplacementError();
-          if (!(result.error->total <= wanted() * (1. + 1e-9)))
-          {
-            result.time.status = Status::failed;
-            result.time.reason = accuracy_not_met;
-            result.time.message =
-              std::isfinite(space_error_)
-                ? fmt::format("the error of the displacement is about {:.2g}, but Accuracy asks for {:.2g}",
-                              result.error->total,
-                              wanted())
-                : "the error of the displacement is not known: the meshes do not agree";
-          }
+          fails_accuracy(result, wanted() * (1. + 1e-9), "the meshes do not agree");
         }
         else if (latest_.inversion)
         {

@@ -143,10 +143,9 @@ namespace crawler
         before_       = result.displacement;
         result.errors = number_errors(result, other, factor, parameters_.accuracy);
         result.corrected.reset();
-        result.time                   = steepest.time;
-        answer_.result                = std::move(result);
-        answer_.choice.wanted_error   = wanted();
-        answer_.choice.promised_error = answer_.result.error->total;
+        result.time                 = steepest.time;
+        answer_.result              = std::move(result);
+        answer_.choice.wanted_error = wanted();
       }
 
       /// Judges the answer: one not as accurate as wanted, or of one width of fronts only, is none.
@@ -158,16 +157,9 @@ namespace crawler
           return;
         if (!before_)
           result.error.emplace();
-        const double error  = result.error->total;
-        TimeOutcome &ending = result.time;
-        ending.status       = error <= wanted() ? Status::finished : Status::failed;
-        ending.reason       = error <= wanted() ? "" : accuracy_not_met;
-        ending.message      = error <= wanted() ? ""
-                              : std::isfinite(error)
-                                ? fmt::format("the error of the displacement is about {:.2g}, but Accuracy asks for {:.2g}",
-                                         error,
-                                         wanted())
-                                : "the error of the displacement is not known: steeper fronts have no answer";
+        result.time.status = Status::finished;
+        result.time.reason = result.time.message = "";
+        fails_accuracy(result, wanted(), "steeper fronts have no answer");
       }
 
       RunParameters parameters_; ///< parameters of the runs

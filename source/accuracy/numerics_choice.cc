@@ -504,9 +504,9 @@ namespace crawler
           std::max(std::min(family_tolerance * accuracy_, largest_family_tolerance) * choice_.strain * L_, 1e-13 * L_));
         if (!parameters_.time.initial_step)
           n.initial_step = 1e-4 * T_;
-        choice_.is_family      = !user_cells_;
-        choice_.is_users       = !choice_.is_family;
-        choice_.promised_error = choice_.wanted_error = choice_.space_share = std::numeric_limits<double>::quiet_NaN();
+        choice_.is_family    = !user_cells_;
+        choice_.is_users     = !choice_.is_family;
+        choice_.wanted_error = choice_.space_share = std::numeric_limits<double>::quiet_NaN();
         choice_.explanation =
           choice_.is_family
             ? fmt::format("for Accuracy {:g}: the stretch form, on ever finer meshes until the displacement settles",
@@ -573,9 +573,8 @@ namespace crawler
             const double error =
               is_first ? moving_factor_of_first * change : moving_factor * std::max(change, 0.5 * change_before);
             const double wanted    = accuracy_ * size_;
-            choice_.promised_error = error;
+            choice_.measured_error = error;
             choice_.space_share    = 0.9; // the tolerance is small
-            choice_.is_measured    = true;
             choice_.advice = "the active stress jumps at places that move through the cells, where the error falls "
                              "only like the size of a cell, and works and energies are known only to within some per "
                              "cent: fronts of finite width (a smoothed square profile) cost far less";
@@ -649,9 +648,8 @@ namespace crawler
         if (predicts && !jumps_move_ && !user_cells_ && !user_tolerance_ && !fixed &&
             !parameters_.discretization.mesh_tolerance)
         {
-          choice_.space_share    = space_over_time_ / (1. + space_over_time_);
-          choice_.wanted_error   = accuracy_ * size_;
-          choice_.promised_error = choice_.wanted_error;
+          choice_.space_share  = space_over_time_ / (1. + space_over_time_);
+          choice_.wanted_error = accuracy_ * size_;
           if (n.mesh.tolerance > 0. && stiffness() < very_soft)
             choice_.min_error = soft_error * size_;
         }
@@ -659,31 +657,32 @@ namespace crawler
           choice_.wanted_error = accuracy_ * size_;
         if (std::isfinite(choice_.wanted_error))
           choice_.min_size = std::max(displacement_floor * pilot_.largest_u, min_size());
-        const double seconds   = watch_.seconds();
-        const std::string kind = jumps_move_ ? "jumps of the active stress that move, "
-                                 : is_graded ? fmt::format("sudden stress, {} of cells smaller by {:g} each, ",
+        const double seconds     = watch_.seconds();
+        const std::string kind   = jumps_move_ ? "jumps of the active stress that move, "
+                                   : is_graded ? fmt::format("sudden stress, {} of cells smaller by {:g} each, ",
                                                            counted(n.grading.levels, "level"),
                                                            n.grading.ratio)
-                                 : n.mesh.tolerance > 0.
-                                   ? fmt::format("adaptive mesh, tolerance {:.2g}, ", n.mesh.tolerance)
-                                   : "";
-        choice_.explanation    = predicts
-                                   ? fmt::format("for Accuracy {:g}: {}from {} in {:.2g} s: {} about {:.3g}",
+                                   : n.mesh.tolerance > 0.
+                                     ? fmt::format("adaptive mesh, tolerance {:.2g}, ", n.mesh.tolerance)
+                                     : "";
+        choice_.explanation      = predicts
+                                     ? fmt::format("for Accuracy {:g}: {}from {} in {:.2g} s: {} about {:.3g}",
                                               accuracy_,
                                               kind,
                                               counted(n_pilots_, "pilot run"),
                                               seconds,
                                               scene_.keeps_its_centre() ? "deformation" : "displacement",
                                               pilot_.displacement)
-                                   : fmt::format("for Accuracy {:g}: {}the last of {}, with {} cells, ended early: {}",
+                                     : fmt::format("for Accuracy {:g}: {}the last of {}, with {} cells, ended early: {}",
                                               accuracy_,
                                               kind,
                                               counted(n_pilots_, "pilot run"),
                                               n.n_cells,
                                               pilot_.time.message);
-        if (std::max(choice_.promised_error, choice_.min_error) > 1.5 * choice_.wanted_error)
-          choice_.explanation += fmt::format("; Accuracy cannot be met, the error is about {:.2g} of the displacement",
-                                             std::max(choice_.promised_error, choice_.min_error) / size_);
+        const double least_error = choice_.measured_error.value_or(choice_.min_error);
+        if (least_error > 1.5 * choice_.wanted_error)
+          choice_.explanation +=
+            fmt::format("; Accuracy cannot be met, the error is about {:.2g} of the displacement", least_error / size_);
         if (!scales_.sees_all)
           choice_.explanation +=
             "; an event of the active stress that is shorter than a step of its sampling may be missed";

@@ -20,8 +20,8 @@ namespace crawler
     bool
     may_share(const NumericsChoice &choice, const SceneToCompute &one)
     {
-      return !choice.is_measured && !one.scene->keeps_its_centre() && // displacements of 0 tell nothing
-             !choice.is_of_several_runs() && std::isfinite(choice.promised_error) &&
+      return !one.scene->keeps_its_centre() && // displacements of 0 tell nothing
+             !choice.is_of_several_runs() && choice.follows_rule() &&
              batch_method(*one.scene, one.parameters->time, choice.numerics);
     }
 

@@ -49,14 +49,7 @@ namespace crawler
     catch (const std::runtime_error &) // the answer and its bound stay
     {
     }
-    if (!(error.total <= choice.wanted_error) && std::isfinite(choice.wanted_error))
-    {
-      result.time.status  = Status::failed;
-      result.time.reason  = accuracy_not_met;
-      result.time.message = fmt::format("the adjoint finds that the error of the displacement is about {:.2g}, but "
-                                        "Accuracy asks for {:.2g}",
-                                        error.total,
-                                        choice.wanted_error);
-    }
+    if (std::isfinite(choice.wanted_error) && fails_accuracy(result, choice.wanted_error, ""))
+      result.time.message = "by the adjoint, " + result.time.message;
   }
 } // namespace crawler

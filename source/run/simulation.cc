@@ -246,10 +246,10 @@ namespace crawler
   {
     if (!run_->goes_on)
       run_->part_start = run_->accepted.time;
-    run_->goes_on    = false;
-    run_->lanes_look = may_take_looks_of_lanes();
+    run_->goes_on      = false;
+    run_->lane_samples = can_sample_lanes();
     if (integrators_.lanes)
-      integrators_.lanes->look_inside(run_->lanes_look);
+      integrators_.lanes->look_inside(run_->lane_samples);
     Stepper &stepper    = *integrators_.present;
     stepper.stage_rates = nullptr;
     if (mesh_.velocity->keeps_rates() || run_->output_times.next() < HUGE_VAL)

@@ -12,7 +12,7 @@ namespace crawler
 {
   /// True if they may be taken: not where round-off of the state counts, in very stiff or small cells.
   bool
-  Simulation::may_take_looks_of_lanes() const
+  Simulation::can_sample_lanes() const
   {
     return run_->options.energy_balance && mesh_.position != nullptr &&
            integrators_.present == integrators_.lanes.get() && mesh_.velocity->is_known_to_lanes() &&
@@ -21,9 +21,9 @@ namespace crawler
 
   /// True if those of this step, where no stretch is nearly lost, may be taken.
   bool
-  Simulation::takes_looks_of_lanes(const Step &step) const
+  Simulation::samples_lanes(const Step &step) const
   {
-    if (!run_->lanes_look || step.size == 0.)
+    if (!run_->lane_samples || step.size == 0.)
       return false;
     const LaneStep &seen = integrators_.lanes->lane_step();
     const std::span<const LaneStage> stages(seen.stages, integrators_.lanes->tables().setup.n_stages);
@@ -79,7 +79,7 @@ namespace crawler
 
   /// Takes stretch and works of an accepted step, if no observer needs more of its end.
   void
-  Simulation::take_looks_of_lanes(const Step &step)
+  Simulation::sample_lanes(const Step &step)
   {
     const LaneStep &seen    = integrators_.lanes->lane_step();
     const unsigned int last = integrators_.lanes->tables().setup.n_stages - 1;

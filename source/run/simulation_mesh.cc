@@ -12,7 +12,7 @@ namespace crawler
 {
   namespace
   {
-    /// Step of settle() after a change of mesh, over the root of the tolerance.
+    /// Step of balance_state() after a change of mesh, over the root of the tolerance.
     constexpr double settling_factor = 0.01;
   } // namespace
 
@@ -29,7 +29,7 @@ namespace crawler
       mesh_.assembler->set_initial_state(y_);
     const double old_time = run_->accepted.time;
     if (mesh_.velocity->keeps_rates())
-      settle();
+      balance_state();
     if (run_->options.energy_balance)
     {
       const std::vector<double> old_v(old_discretization->n_owned(), 0.), new_v(v_.size(), 0.);
@@ -49,7 +49,7 @@ namespace crawler
    * u''/2, is a small part of the tolerance. If it cannot be made the state is left as it is.
    */
   void
-  Simulation::settle()
+  Simulation::balance_state()
   {
     constexpr unsigned int max_corrections = 10;
     const double size                      = settling_factor * std::sqrt(std::min(numerics_.tolerance, 1e-8));

@@ -29,8 +29,8 @@ namespace crawler
   {
     if (stress_failed())
       return Ending::lost;
-    const bool lanes_look = run_->observers.empty() && takes_looks_of_lanes(step);
-    StretchRange &stretch = run_->stretch = lanes_look ? stretch_of_lanes() : mesh_.assembler->stretch_range(y);
+    const bool lane_samples = run_->observers.empty() && samples_lanes(step);
+    StretchRange &stretch = run_->stretch = lane_samples ? stretch_of_lanes() : mesh_.assembler->stretch_range(y);
     if (!std::isfinite(stretch.min.value) || !std::isfinite(stretch.max.value))
     {
       run_->diagnosis = {Status::failed,
@@ -55,25 +55,25 @@ namespace crawler
     }
     // Pictures need the velocity at output times only, the energy balance and adaptive meshes always.
     const bool is_shown = !run_->observers.empty() && run_->output_times.next() <= step.time + min_time_between_breaks;
-    if ((run_->options.energy_balance || is_adaptive() || is_shown) && !lanes_look &&
+    if ((run_->options.energy_balance || is_adaptive() || is_shown) && !lane_samples &&
         !finds_velocity(step.time, step.size, y, v_))
       return Ending::lost;
     if (is_adaptive() && !mesh_is_good(step, y))
       return Ending::mesh;
-    if (lanes_look)
-      take_looks_of_lanes(step);
+    if (lane_samples)
+      sample_lanes(step);
     else
     {
       if (!compute_integrals(step, y))
         return Ending::lost;
-      if (takes_looks_of_lanes(step))
+      if (samples_lanes(step))
         see_stretch_of_lanes(integrators_.lanes->tables().setup.n_stages - 1);
       else
         look_at_extremes(step.time, stretch);
     }
     if (run_->options.resolution != ResolutionWish::none)
       look_at_resolution(step, y);
-    if (leads_nowhere(step))
+    if (stagnates(step))
       return Ending::lost;
     keep_history(step, y);
     run_->accepted.y.assign(y.begin(), y.end());
@@ -125,7 +125,7 @@ namespace crawler
 
   /// True if there are too many small steps; sets the diagnosis then.
   bool
-  Simulation::leads_nowhere(const Step &step)
+  Simulation::stagnates(const Step &step)
   {
     const StretchAt &smallest = run_->stretch.min;
     const double tiny         = tiny_step * std::min(1., 10. * run_->limiter.longest_step(step.time));
@@ -169,7 +169,7 @@ namespace crawler
     run_->quadrature.begin_step(step.size);
     if (step.size == 0.)
       return true;
-    if (takes_looks_of_lanes(step))
+    if (samples_lanes(step))
     {
       const auto last = static_cast<unsigned int>(integrators_.present->stage_places().size()) - 1;
       for (unsigned int i = 0; i < last; ++i)

@@ -4,7 +4,7 @@
 #include "batch_scenes.h"
 #include "benchmarks.h"
 
-#include <crawler/accuracy/run_as_promised.h>
+#include <crawler/accuracy/run_to_accuracy.h>
 
 #include <benchmark/benchmark.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <crawler/accuracy/numerics_choice.h>
-#include <crawler/accuracy/run_as_promised.h>
+#include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/run/simulation.h>
 #include <crawler/studies/core/input.h>
@@ -110,7 +110,7 @@ namespace crawler::test
     outcome.choice = *choose_numerics(MPI_COMM_WORLD, parameters, scene);
     if (outcome.choice.is_of_several_runs())
     {
-      Answer answer = run_as_promised(MPI_COMM_SELF, parameters, scene, outcome.choice, {}, options, /*writes=*/false);
+      Answer answer = run_to_accuracy(MPI_COMM_SELF, parameters, scene, outcome.choice, {}, options, /*writes=*/false);
       return {std::move(answer.result), std::move(answer.choice)};
     }
     const bool stretch = outcome.choice.numerics.formulation == Formulation::stretch; // its cells are not shared

@@ -14,7 +14,7 @@
 #include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/graded_choice.h>
 #include <crawler/accuracy/mesh_family.h>
-#include <crawler/accuracy/run_as_promised.h>
+#include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/mpi_session.h>

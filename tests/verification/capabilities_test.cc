@@ -4,7 +4,7 @@
 // a run here; the guide must have the lines that come out.
 #include "../support/lane_runs.h"
 
-#include <crawler/accuracy/run_as_promised.h>
+#include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/run/cycle_stop.h>
 
 #include <gtest/gtest.h>

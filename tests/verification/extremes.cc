@@ -66,13 +66,12 @@ main(int argc, char **argv)
     else
     {
       const double reference = row["displacement"], error = std::abs(result.displacement - reference);
-      ok =
-        result.time.status == Status::finished && error <= outcome.choice.promised_error + row["error"].get<double>();
+      ok = result.time.status == Status::finished && error <= outcome.choice.wanted_error + row["error"].get<double>();
       verdict = fmt::format("{:.10g}, expected {:.10g}: error {:.1e}, reported {:.1e}",
                             result.displacement,
                             reference,
                             error,
-                            outcome.choice.promised_error);
+                            outcome.choice.wanted_error);
     }
     failures += !ok;
     fmt::print("{:<36} {:<9} {:<16} {} ({} cells, {} steps, {:.2f} s){}\n",

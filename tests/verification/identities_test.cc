@@ -60,7 +60,7 @@ TEST(Identities, LedgerWhereFrictionVanishes)
     EXPECT_LT(result.net_friction, 1e-10) << mesh;
     EXPECT_LT(result.energy_balance->residual(), 1e-2) << mesh;
     EXPECT_NEAR(result.energy_balance->stress_work, 0.129086, 1e-3) << mesh;
-    EXPECT_NEAR(result.displacement, -0.185838, outcome.choice.promised_error) << mesh;
+    EXPECT_NEAR(result.displacement, -0.185838, outcome.choice.wanted_error) << mesh;
   }
 }
 

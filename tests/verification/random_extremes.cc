@@ -33,7 +33,7 @@ namespace
   using namespace crawler;
   using test::Settings;
 
-  /// The promise.
+  /// What is required.
   constexpr double largest_failed_share = 0.005, largest_missed_share = 0.01, usual_seconds = 0.02, usual_share = 0.95,
                    max_seconds = 5.;
   /// Of fewer scenes only wrong answers count: shares and times say little.
@@ -507,10 +507,10 @@ namespace
     fmt::print("{} of {} answers compared: {}\n",
                all.compared,
                all.finished + all.inverted,
-               !kept            ? "THE PROMISE IS NOT KEPT"
+               !kept            ? "NOT KEPT"
                : !enough        ? "TOO FEW, THIS PROVES NOTHING"
                : all.n < fewest ? "no answer is wrong"
-                                : "the promise is kept");
+                                : "kept");
     return kept && enough;
   }
 } // namespace

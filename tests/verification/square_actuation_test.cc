@@ -5,7 +5,7 @@
 
 #include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/graded_choice.h>
-#include <crawler/accuracy/run_as_promised.h>
+#include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/accuracy/stress_scales.h>
 
 #include <gtest/gtest.h>

@@ -19,8 +19,11 @@ namespace crawler
   void
   end_before_inversion(SimulationResult &result);
 
-  constexpr unsigned int max_refinements = 3;
-
   /// Reason of a run whose displacement is known, but not as accurately as wanted.
   constexpr const char *accuracy_not_met = "accuracy_not_met";
+
+  /// Makes a result a failure, accuracy_not_met, if the error of its displacement is larger than @p wanted, or not
+  /// known since @p unknown. Returns true if so.
+  bool
+  fails_accuracy(SimulationResult &result, double wanted, const std::string &unknown);
 } // namespace crawler

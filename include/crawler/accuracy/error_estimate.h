@@ -11,17 +11,17 @@ namespace crawler
   /**
    * Sets the errors of @p result, which a Simulation with @p choice gave and which finished (collective). A second,
    * finer run gives that of the displacement (doc/numerics.md, "Error bounds"): with x the difference of both
-   * displacements and w the error that the choice promises,
+   * displacements and w the wanted error, if a rule chose the numerics,
    *
    *   total = 1.5 x + w/5   (w/2 on adaptive meshes, 0.15 w on graded ones),
    *
-   * and at least 1e-15 L, the error of round-off. Without a promise a third run with more cells only separates the
+   * and at least 1e-15 L, the error of round-off. Without a rule a third run with more cells only separates the
    * parts in space and time, and total is twice their sum.
    *
    * The rule that chose the numerics predicts the split into space and time. Where the stretch collapses the choice has
    * measured the error, and no second run is made. The error is unknown if the finer run did not finish or was stopped
-   * by @p keep_going. Other numbers have errors by number_errors(), with the same factors and Accuracy as the promised
-   * part, if there was a second run.
+   * by @p keep_going. Other numbers have errors by number_errors(), with the same factors and Accuracy as the wanted
+   * error, if there was a second run.
    */
   void
   estimate_errors(MPI_Comm communicator,

@@ -18,8 +18,6 @@ namespace crawler
   {
     Numerics numerics;
     std::string explanation;
-    /// Error of the displacement that Accuracy stands for [length]; not a number if the user chose the numerics.
-    double promised_error = std::numeric_limits<double>::quiet_NaN();
     /// Accuracy times the size of the displacement [length]; not a number if the user chose the numerics.
     double wanted_error = std::numeric_limits<double>::quiet_NaN();
     /// Share of the mesh in the error, as far as the rule can tell; not a number if it cannot [1].
@@ -32,8 +30,8 @@ namespace crawler
     bool is_steep = false;
     /// True if the user set cells or tolerances
     bool is_users = false;
-    /// True if the promised error was measured on successive meshes: jumps of the active stress move
-    bool is_measured = false;
+    /// Error of the displacement, if it was measured on successive meshes: jumps of the active stress move [length]
+    std::optional<double> measured_error;
     /// Stretch form: its runs on a family of meshes measure the error (mesh_family.h). They begin with `numerics`,
     /// whose time tolerance is meant for this strain [1].
     bool is_family = false;
@@ -46,6 +44,13 @@ namespace crawler
     double min_size = std::numeric_limits<double>::quiet_NaN();
     /// Advice for an Accuracy that is not met; empty if there is none.
     std::string advice;
+
+    /// True if a rule chose the numerics such that the error of one run is the wanted one.
+    bool
+    follows_rule() const
+    {
+      return std::isfinite(wanted_error) && !numerics.jumps_move;
+    }
 
     /// True if the answer is made of several runs, of which none is the answer.
     bool
@@ -64,8 +69,6 @@ namespace crawler
       if (!std::isfinite(min_size) || std::abs(wanted - wanted_error) <= near * wanted_error)
         return;
       wanted_error = wanted;
-      if (!is_measured)
-        promised_error = wanted;
     }
   };
 

@@ -148,7 +148,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     bool
-    is_hopeless() const
+    cannot_converge() const
     {
       return failures > max_failures || next < min_step ||
              (!job.is_last_resort && all_failures > many_failures && all_failures > large_part * steps);

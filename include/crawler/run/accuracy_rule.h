@@ -71,7 +71,7 @@ namespace crawler::accuracy_rule
     inline constexpr double moving_tolerance = 0.1, max_moving_work = 1e7;
     /// Smallest number of steps of a period for each cell.
     inline constexpr double moving_steps = 4.;
-    /// Factors on the last change, which is the remaining error of a first-order method: a larger part is promised.
+    /// Factors on the last change, which is the remaining error of a first-order method: the first one counts more.
     inline constexpr double moving_factor = 1.5, moving_factor_of_first = 4.;
     /// First steps, relative to the duration: methods that start with order 1 need small ones.
     inline constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
@@ -100,7 +100,7 @@ namespace crawler::accuracy_rule
     inline constexpr unsigned int max_runs = 40, max_cells = 96, max_cells_of_piece = 12;
     /// Factor on max_cells while cells times steps stay below max_work; the last change by more cells may then be
     /// last_part of the wanted error.
-    inline constexpr unsigned int more_cells_than_most = 4;
+    inline constexpr unsigned int cheap_mesh_factor = 4;
     inline constexpr double max_work = 3e5, last_part = 0.5;
     inline constexpr double smallest_cell = 1e-7, emptied = 1e-3;
     /// Thickness of layers, relative to the length, below which they do not count.
@@ -195,11 +195,11 @@ namespace crawler::accuracy_rule
   // tests/verification/calibration.cc.
   namespace finer_run
   {
-    inline constexpr double measured_factor = 1.5, promised_part = 0.2, factor_without_promise = 2.;
-    /// Promised part for adaptive meshes, two of which have more of their errors in common.
-    inline constexpr double promised_part_if_adaptive = 0.5;
-    /// Promised part for graded meshes, where each part of the error was measured beforehand.
-    inline constexpr double promised_part_if_graded = 0.15;
+    inline constexpr double measured_factor = 1.5, predicted_part = 0.2, factor_without_rule = 2.;
+    /// Predicted part for adaptive meshes, two of which have more of their errors in common.
+    inline constexpr double predicted_part_if_adaptive = 0.5;
+    /// Predicted part for graded meshes, where each part of the error was measured beforehand.
+    inline constexpr double predicted_part_if_graded = 0.15;
     /// Cells and tolerances of the finer run, relative to the run's.
     inline constexpr double more_cells = 1.1, finer_tolerance = 0.2, finer_mesh_tolerance = 0.1;
     /// Cells where the active stress is not smooth, so that errors fall with the cells by a small power.
@@ -207,7 +207,7 @@ namespace crawler::accuracy_rule
     /// Tolerance for runs not by radau 9, which is more accurate for the same tolerance than all others.
     inline constexpr double finer_tolerance_than_others = 4.;
     /// Cells and tolerance where the user chose the numerics: mesh and steps may both be the problem.
-    inline constexpr double more_cells_without_promise = 2., finer_tolerance_without_promise = 0.1;
+    inline constexpr double more_cells_without_rule = 2., finer_tolerance_without_rule = 0.1;
     inline constexpr const char *best_integrator = "radau 9";
     /// Exponent of the tolerance to which its steps are proportional.
     inline constexpr double steps_over_tolerances = 1. / 6.;
@@ -218,7 +218,8 @@ namespace crawler::accuracy_rule
     inline constexpr double soft = 1e-3, layer_cells = 3., layer_ratio = 0.25, max_layer_levels = 8.;
     /// Tolerance where one cycle stands for many: its error does not average out, so the finer run is more accurate.
     inline constexpr double finer_tolerance_of_cycles = 0.25;
-    /// Factors on cells and tolerance for the next try.
+    /// Number of next tries; factors on cells and tolerance.
+    inline constexpr unsigned int max_refinements = 3;
     inline constexpr double refined_cells = 1.2, max_refined_cells = 4., refined_tolerance = 0.1;
     /// Round-off of the displacement, as a part of the body length.
     inline constexpr double round_off = 1e-15;
@@ -242,8 +243,8 @@ namespace crawler::accuracy_rule
     /// Bound of a derivative: factor on its difference to the finer numerics; since both may agree by chance, multiples
     /// of Accuracy of the derivative and of D/p, for works of the relative error of the work and with factors of their
     /// own; and relative round-off of the differences that give dF/dp.
-    inline constexpr double measured_factor = 2., promised_factor = 16., promised_factor_of_works = 40.,
-                            promised_factor_of_positive_work = 160., round_off = 1e-10;
+    inline constexpr double measured_factor = 2., wanted_factor = 16., wanted_factor_of_works = 40.,
+                            wanted_factor_of_positive_work = 160., round_off = 1e-10;
     /// Relative steps of entries whose answers are compared where there is no adjoint; a slope is suspicious if it
     /// changes by more than this part, as a kink's does, and values closer by closer_answers decide.
     inline constexpr double min_step_of_answers = 1e-3, largest_step_of_answers = 0.01, suspicious = 0.1,

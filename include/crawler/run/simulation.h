@@ -137,7 +137,7 @@ namespace crawler
       StretchRange stretch{};     ///< range of the state under examination
       std::vector<double> breaks; ///< breaks in space
       CellIntegrals integrals{};
-      bool lanes_look              = false; ///< the extremes and rates that they see in the stages of steps are used
+      bool lane_samples            = false; ///< the extremes and rates that they see in the stages of steps are used
       bool lanes_gave_up           = false;
       RateQuadrature quadrature    = {}; ///< quadrature of works
       EnergyBalance balance_before = {}; ///< energy balance at the start of the latest step
@@ -175,7 +175,7 @@ namespace crawler
     void
     change();
     void
-    settle();
+    balance_state();
     bool
     stress_failed();
     Ending
@@ -191,7 +191,7 @@ namespace crawler
     void
     look_at_resolution(const Step &step, std::span<const double> y);
     bool
-    leads_nowhere(const Step &step);
+    stagnates(const Step &step);
     bool
     mesh_is_good(const Step &step, std::span<const double> y);
     bool
@@ -201,9 +201,9 @@ namespace crawler
     bool
     integrate_step(const Step &step, const Rates &at_end);
     bool
-    may_take_looks_of_lanes() const;
+    can_sample_lanes() const;
     bool
-    takes_looks_of_lanes(const Step &step) const;
+    samples_lanes(const Step &step) const;
     StretchRange
     stretch_of_lanes() const;
     void
@@ -211,7 +211,7 @@ namespace crawler
     void
     take_stage_of_lanes(const Step &step, unsigned int i);
     void
-    take_looks_of_lanes(const Step &step);
+    sample_lanes(const Step &step);
     void
     keep_history(const Step &step, std::span<const double> y);
     void

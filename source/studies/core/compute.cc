@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/model_choice.h>
-#include <crawler/accuracy/run_as_promised.h>
+#include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/base/clock.h>
 #include <crawler/run/batch.h>
 #include <crawler/run/reduced_model.h>
@@ -134,7 +134,7 @@ namespace crawler
       bool
       has_finer_run() const
       {
-        return task->parameters.error_estimate && std::isfinite(choice.promised_error) && !choice.is_measured &&
+        return task->parameters.error_estimate && choice.follows_rule() &&
                batch_method(*task->scene, finer_time, finer);
       }
     };
@@ -146,7 +146,7 @@ namespace crawler
       Task &task            = *member.task;
       NumericsChoice choice = member.choice;
       if (member.is_shared)
-        choice.promised_error = choice.wanted_error = task.parameters.accuracy * std::abs(result.displacement);
+        choice.wanted_error = task.parameters.accuracy * std::abs(result.displacement);
       choice.set_size(result.displacement, task.parameters.accuracy);
       set_errors(choice, result, &finer, task.parameters, *task.scene);
       check_identities(result, task.parameters);
@@ -234,7 +234,7 @@ namespace crawler
         return !task.is_out_of_time && !interrupted();
       };
       bool is_computed = task.computed.result.time.status != Status::none;
-      Answer answer    = run_as_promised(
+      Answer answer    = run_to_accuracy(
         MPI_COMM_SELF,
         task.parameters,
         *task.scene,

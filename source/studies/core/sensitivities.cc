@@ -227,12 +227,12 @@ namespace crawler
         const double scale = of_work ? std::max(number, result.energy_balance->exchanged_work) : number;
         const double of_number =
           i == 0 ? 0. : error_bound(result, differentiated_numbers[i].key).value_or(0.) / std::max(scale, 1e-300);
-        const double by_size  = entry.at != 0. ? scale / std::abs(entry.at) : scale;
-        const double promised = all_quantities[i] == Quantity::positive_work ? promised_factor_of_positive_work
-                                : of_work                                    ? promised_factor_of_works
-                                                                             : promised_factor;
-        const double error    = measured_factor * std::abs(*finer[i] - *values[i]) +
-                             promised * std::max(accuracy, of_number) * (size + by_size) + round_off * size;
+        const double by_size = entry.at != 0. ? scale / std::abs(entry.at) : scale;
+        const double factor  = all_quantities[i] == Quantity::positive_work ? wanted_factor_of_positive_work
+                               : of_work                                    ? wanted_factor_of_works
+                                                                            : wanted_factor;
+        const double error   = measured_factor * std::abs(*finer[i] - *values[i]) +
+                             factor * std::max(accuracy, of_number) * (size + by_size) + round_off * size;
         if (i == 0)
         {
           entry.value = values[i];

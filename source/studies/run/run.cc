@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/accuracy/numerics_choice.h>
-#include <crawler/accuracy/run_as_promised.h>
+#include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/accuracy/swept_error.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
@@ -296,7 +296,7 @@ namespace crawler
                                                .cycles = cycle_wish(parameters, input_.scene, output.has_snapshots()),
                                                .gait   = Simulation::GaitWish::any};
           const double setup                = result_.setup_seconds;
-          Answer answer                     = run_as_promised(
+          Answer answer                     = run_to_accuracy(
             sharing_.ranks,
             parameters,
             input_.scene,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/accuracy/run_as_promised.h>
+#include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/accuracy/swept_error.h>
 #include <crawler/base/clock.h>
 #include <crawler/output/kymograph_writer.h>
@@ -111,7 +111,7 @@ namespace crawler
         return Simulation(MPI_COMM_SELF, input.scene, parameters.time, choice.numerics)
           .run(pictures, options, observers, keep_going);
       };
-      Answer answer = run_as_promised(
+      Answer answer = run_to_accuracy(
         MPI_COMM_SELF, parameters, input.scene, *chosen, simulate, options, /*writes=*/true, keep_going);
       run.result                  = std::move(answer.result);
       run.result.estimate_seconds = answer.estimate_seconds;

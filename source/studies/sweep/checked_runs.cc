@@ -74,7 +74,7 @@ namespace crawler
     {
       const SimulationResult &result = task.computed.result;
       const PointStatus status       = status_of(task);
-      Claim claim{.run = name, .status = status.status, .promised_error = task.computed.choice.promised_error};
+      Claim claim{.run = name, .status = status.status, .promised_error = task.computed.choice.wanted_error};
       if (result.error && claim.promised_error < result.error->total)
         claim.promised_error = result.error->total;
       // Answers with a large error are answers: they claim that error.

@@ -166,12 +166,12 @@ namespace crawler
         row["most cells"]        = to_text(std::max(result.most_cells, run.numerics.n_cells));
       }
       // Levels that miss the requested accuracy have an answer all the same; its message says so.
-      const bool breaks_promise = result.time.reason == "accuracy_not_met" && std::isfinite(result.displacement);
-      if (result.time.status != Status::finished && !breaks_promise)
+      const bool misses_accuracy = result.time.reason == "accuracy_not_met" && std::isfinite(result.displacement);
+      if (result.time.status != Status::finished && !misses_accuracy)
         return row;
       row["status"]       = "finished";
       row["reason"]       = "";
-      row["message"]      = breaks_promise ? result.time.message : "";
+      row["message"]      = misses_accuracy ? result.time.message : "";
       row["displacement"] = to_text(result.displacement);
       row["memory"]       = to_text(max_heap - heap_before);
       return time_runs(row, run, first_seconds, interrupted) ? std::optional(row) : std::nullopt;

@@ -4,7 +4,7 @@
 #include "../../support/run_text.h"
 
 #include <crawler/accuracy/error_estimate.h>
-#include <crawler/accuracy/run_as_promised.h>
+#include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/petsc_object.h>
 #include <crawler/time/failure.h>
@@ -133,15 +133,14 @@ TEST(Failures, OfTheSecondRunLeaveTheAnswer)
                                                             HUGE_VAL,
                                                             /*max_points=*/44));
   NumericsChoice choice;
-  choice.numerics       = mesh;
-  choice.wanted_error   = 1e-9;
-  choice.promised_error = 1e-9;
-  const auto simulate   = [&](const NumericsChoice &chosen) {
+  choice.numerics     = mesh;
+  choice.wanted_error = 1e-9;
+  const auto simulate = [&](const NumericsChoice &chosen) {
     return Simulation(MPI_COMM_SELF, scene, parameters.time, chosen.numerics).run({}, {.energy_balance = true});
   };
   const SimulationResult first = simulate(choice);
   const Answer answer =
-    run_as_promised(MPI_COMM_SELF, parameters, scene, choice, simulate, {.energy_balance = true}, /*writes=*/false, {});
+    run_to_accuracy(MPI_COMM_SELF, parameters, scene, choice, simulate, {.energy_balance = true}, /*writes=*/false, {});
   EXPECT_EQ(answer.result.displacement, first.displacement);
   EXPECT_EQ(answer.result.time.steps, first.time.steps);
   EXPECT_EQ(answer.result.time.status, Status::failed);

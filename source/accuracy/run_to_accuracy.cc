@@ -3,7 +3,7 @@
 #include <crawler/accuracy/form_choice.h>
 #include <crawler/accuracy/mesh_family.h>
 #include <crawler/accuracy/moving_fronts.h>
-#include <crawler/accuracy/run_as_promised.h>
+#include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/run/accuracy_rule.h>
@@ -20,6 +20,7 @@ namespace crawler
   namespace
   {
     using accuracy_rule::finer_run::max_refined_cells, accuracy_rule::finer_run::refined_cells;
+    using accuracy_rule::finer_run::max_refinements;
 
     /**
      * Confirms an inversion where the user chose the numerics, since a coarse mesh or long steps can fake a stretch
@@ -94,7 +95,7 @@ namespace crawler
     {
       Simulation::Options own = options;
       own.cycles              = cycle_wish(parameters, scene, /*has_pictures=*/false);
-      return run_as_promised(
+      return run_to_accuracy(
         MPI_COMM_SELF,
         parameters,
         scene,
@@ -172,19 +173,6 @@ namespace crawler
     }
   } // namespace
 
-  void
-  end_before_inversion(SimulationResult &result)
-  {
-    const double later  = std::max(result.time.time - result.inversion->t, 0.);
-    result.inversion->t = std::max(result.inversion->t, result.time.time);
-    if (result.inversion_error)
-      *result.inversion_error += later;
-    result.time.message = fmt::format("the body inverted: its stretch reached 0 at s = {:.6g}, t = {:.9g}; the model "
-                                      "ends there",
-                                      result.inversion->s,
-                                      result.inversion->t);
-  }
-
   Answer
   answer_in_memory(const RunParameters &parameters,
                    const Scene &scene,
@@ -242,10 +230,10 @@ namespace crawler
       tries_again()
       {
         // Choices measured on successive meshes get no further tries.
-        const bool has_tries = !first_.is_measured && answer_.refinements < max_refinements;
+        const bool has_tries = !first_.measured_error && answer_.refinements < max_refinements;
         if (is_for_finer_numerics(result_.time))
         {
-          if (!std::isfinite(first_.promised_error) || !has_tries)
+          if (!first_.follows_rule() || !has_tries)
             return false;
           make_finer(refined_cells);
           return true;
@@ -313,15 +301,7 @@ namespace crawler
       void
       name_shortfall(const std::string &problem)
       {
-        const double total   = result_.error->total;
-        result_.time.status  = Status::failed;
-        result_.time.reason  = accuracy_not_met;
-        result_.time.message = std::isnan(total)
-                                 ? "the error of the displacement is not known: a finer run did not finish"
-                                 : fmt::format("the error of the displacement is about {:.2g}, but Accuracy asks for "
-                                               "{:.2g}",
-                                               total,
-                                               wanted());
+        fails_accuracy(result_, wanted(), "a finer run did not finish");
         result_.time.message += problem;
         if (!answer_.choice.advice.empty())
           result_.time.message += "; " + answer_.choice.advice;
@@ -365,7 +345,7 @@ namespace crawler
   } // namespace
 
   Answer
-  run_as_promised(MPI_Comm communicator,
+  run_to_accuracy(MPI_Comm communicator,
                   const RunParameters &parameters,
                   const Scene &scene,
                   const NumericsChoice &choice,

@@ -8,7 +8,7 @@
 namespace crawler
 {
   /**
-   * Runs until the promised error is met: repeats @p simulate with @p choice and estimates the error of the
+   * Runs until the wanted error is met: repeats @p simulate with @p choice and estimates the error of the
    * displacement if `Error estimate` is set, and as long as that is more than wanted, tries again with more cells and a
    * smaller tolerance, at most max_refinements times (collective). A final error that is too large or unknown is a
    * failure, `accuracy_not_met`: with all results and the error that was reached. If the user chose the numerics, their
@@ -16,7 +16,7 @@ namespace crawler
    * not meet Accuracy the position form may. Only the last run is by @p simulate then, if that @p writes.
    */
   Answer
-  run_as_promised(MPI_Comm communicator,
+  run_to_accuracy(MPI_Comm communicator,
                   const RunParameters &parameters,
                   const Scene &scene,
                   const NumericsChoice &choice,
