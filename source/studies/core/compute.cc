@@ -249,6 +249,28 @@ namespace crawler
         keep_going);
       task.computed = {std::move(answer.result), std::move(answer.choice)};
     }
+
+    bool
+    may_share(const Parameters &p)
+    {
+      return p.model == Model::nonlinear && p.error_estimate && p.time.engine == Engine::automatic &&
+             p.time.step_control == StepControl::adaptive;
+    }
+
+    void
+    create_scene(Task &task)
+    {
+      task.scene.emplace(task.parameters.create_scene());
+      choose_model(task.parameters, *task.scene); // refuses what the model cannot compute
+    }
+
+    void
+    forget(Task &task)
+    {
+      task.computed = {};
+      task.scene.reset();
+      task.error = nullptr;
+    }
   } // namespace
 
   std::string
@@ -286,31 +308,6 @@ namespace crawler
       check_identities(task.computed.result, task.parameters);
     }
   }
-
-  namespace
-  {
-    bool
-    may_share(const Parameters &p)
-    {
-      return p.model == Model::nonlinear && p.error_estimate && p.time.engine == Engine::automatic &&
-             p.time.step_control == StepControl::adaptive;
-    }
-
-    void
-    create_scene(Task &task)
-    {
-      task.scene.emplace(task.parameters.create_scene());
-      choose_model(task.parameters, *task.scene); // refuses what the model cannot compute
-    }
-
-    void
-    forget(Task &task)
-    {
-      task.computed = {};
-      task.scene.reset();
-      task.error = nullptr;
-    }
-  } // namespace
 
   std::optional<SharedChoice>
   shared_numerics(const std::span<Task> examples, const std::function<bool()> &keep_going)

@@ -82,12 +82,11 @@ namespace crawler
                            const std::vector<std::string> &entries,
                            const std::vector<std::string> &choosers,
                            const std::function<bool(const std::string &)> &fits) {
-        EntryRule rule;
+        EntryRule &rule = rules.emplace_back();
         for (const std::string &entry : entries)
           rule.entries.push_back(root + section + entry);
         for (const std::string &chooser : choosers)
           rule.choosers.push_back({root + section + chooser, fits});
-        rules.push_back(std::move(rule));
       };
       const std::string optimal = "Optimal wave/", travelling = "Travelling wave/", standing = "Standing wave/",
                         two_level = "Two-level wave/", feedback = "Strain feedback/", modes = "Modes/";
@@ -107,9 +106,9 @@ namespace crawler
       {
         add(wave, {"Duty cycle"}, {"Profile"}, any_of({"square", "smoothed square"}));
         add(wave, {"Front width"}, {"Profile"}, any_of({"smoothed square"}));
-      }
-      for (const std::string &wave : {travelling, standing, std::string("Pulse/")})
         add(wave, {"Window edge"}, {"Window start", "Window end"}, is_set);
+      }
+      add("Pulse/", {"Window edge"}, {"Window start", "Window end"}, is_set);
       add("Segments/", {"Front width"}, {"Switching"}, any_of({"smooth"}));
       add("Segments/", {"Phase lag", "Direction", "Gap"}, {"Number of segments"}, is_not(1.));
       add(strain, {"Strain", "Constants"}, {"Given by"}, any_of({"expression"}));
@@ -120,10 +119,9 @@ namespace crawler
       add(modes, {"Wave speed"}, {"In time"}, any_of({"travelling"}));
       add(modes, {"Period", "Time harmonics"}, {"In time"}, any_of({"harmonics"}));
       add(modes, {"Time cells"}, {"In time"}, any_of({"splines"}));
-      if (has_sum)
-        return;
       for (const char *x : {"s", "t"})
-        add("", {fmt::format("Edge width in {}", x)}, {fmt::format("Window in {}", x)}, is_set);
+        if (!has_sum)
+          add("", {fmt::format("Edge width in {}", x)}, {fmt::format("Window in {}", x)}, is_set);
     }
 
     /// Adds rules for constants none of which is in their formula, unless an axis varies it.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
+#include <crawler/parameters/axis.h>
 #include <crawler/parameters/slips.h>
 #include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/core/output_folder.h>
@@ -24,50 +25,20 @@ namespace crawler
   namespace
   {
     /// Files of runs and studies, except those that a run writes as it proceeds.
-    const std::vector<std::string> own_names = {"original.prm",
-                                                "parameters.prm",
-                                                "log.txt",
-                                                "summary.json",
-                                                "restart.dat",
-                                                "restart.dat.new",
-                                                "restart.old.dat",
-                                                "stop",
-                                                "segments.csv",
-                                                "segment_switching.csv",
-                                                "kymograph.png",
-                                                "sensitivity_body.csv",
-                                                "sensitivity_stress.csv",
-                                                "sensitivity.png",
-                                                "results.csv",
-                                                "results.h5",
-                                                "results.h5.part",
-                                                "results.png",
-                                                "results.svg",
-                                                "tradeoff.csv",
-                                                "tradeoff.h5",
-                                                "tradeoff.h5.part",
-                                                "tradeoff.png",
-                                                "tradeoff.svg",
-                                                "recommendations.prm",
-                                                "scaling.png",
-                                                "starts.csv",
-                                                "starts.h5",
-                                                "starts.h5.part",
-                                                "optimum.prm",
-                                                "optima.csv",
-                                                "optimize.png",
-                                                "reference.json",
-                                                crash_file,
-                                                report_name};
+    const std::vector<std::string> own_names =
+      split_parts("original.prm, parameters.prm, log.txt, summary.json, restart.dat, restart.dat.new, restart.old.dat, "
+                  "stop, segments.csv, segment_switching.csv, kymograph.png, sensitivity_body.csv, "
+                  "sensitivity_stress.csv, sensitivity.png, results.csv, results.h5, results.h5.part, results.png, "
+                  "results.svg, tradeoff.csv, tradeoff.h5, tradeoff.h5.part, tradeoff.png, tradeoff.svg, "
+                  "recommendations.prm, scaling.png, starts.csv, starts.h5, starts.h5.part, optimum.prm, optima.csv, "
+                  "optimize.png, reference.json, " +
+                    crash_file + ", " + report_name,
+                  ',');
     /// Files that a run writes as it proceeds: the fields and the statistics.
-    const std::vector<std::string> names_of_fields = {"statistics.csv",
-                                                      "solution.pvd",
-                                                      "line.pvd",
-                                                      "solution.xdmf",
-                                                      "line.xdmf",
-                                                      "solution.h5",
-                                                      "solution.h5.part",
-                                                      "kymograph.vts"};
+    const std::vector<std::string> names_of_fields =
+      split_parts("statistics.csv, solution.pvd, line.pvd, solution.xdmf, line.xdmf, solution.h5, solution.h5.part, "
+                  "kymograph.vts",
+                  ',');
 
     /// Refuses links, which would redirect writing and removal to other places.
     void

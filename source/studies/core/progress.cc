@@ -47,7 +47,6 @@ namespace crawler
                                : fmt::format("{:.1f} days", seconds / 86400.);
   }
 
-
   bool
   ProgressBar::is_due() const
   {
@@ -78,7 +77,6 @@ namespace crawler
     log_.show_status(line);
   }
 
-
   WaitProgress::WaitProgress(Log &log, std::string what)
     : log_(log)
     , what_(std::move(what))
@@ -97,42 +95,5 @@ namespace crawler
     }
     if (bar_.is_due())
       bar_.show(std::nullopt, what_);
-  }
-
-
-  RunProgress::RunProgress(Log &log, const Scene &scene)
-    : log_(log)
-    , end_time_(scene.end_time)
-    , length_(scene.body.length)
-    , bar_(log)
-  {
-  }
-
-  void
-  RunProgress::observe(const Snapshot &snapshot)
-  {
-    if (!snapshot.is_step_end || snapshot.step.number == 0)
-      return;
-    const double done = snapshot.step.time / end_time_;
-    if (bar_.is_due())
-      bar_.show(std::min(done, 1.),
-                fmt::format("t = {:.4g}  displacement {:.6g}  stretch {:.3g} to {:.3g}",
-                            snapshot.step.time,
-                            snapshot.integrals.displacement / length_,
-                            snapshot.stretch.min.value,
-                            snapshot.stretch.max.value));
-    if (10. * done < next_tenth_)
-      return;
-    while (next_tenth_ <= 10. * done)
-      ++next_tenth_;
-    log_.progress(
-      fmt::format("  {:3.0f} %  t = {:<10.4g} step {:<6} size {:<9.3g} displacement {:<14.8g} stretch {:.3g} to {:.3g}",
-                  100. * done,
-                  snapshot.step.time,
-                  snapshot.step.number,
-                  snapshot.step.size,
-                  snapshot.integrals.displacement / length_,
-                  snapshot.stretch.min.value,
-                  snapshot.stretch.max.value));
   }
 } // namespace crawler

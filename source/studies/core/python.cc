@@ -14,23 +14,14 @@
 
 namespace crawler
 {
-  namespace
-  {
-    /// Paths at which a script is looked for: where it is installed with the program, and in the build folder.
-    std::array<std::filesystem::path, 2>
-    places_of_script(const std::string &name, const std::filesystem::path &program)
-    {
-      const auto folder = program.parent_path();
-      return {{folder.parent_path() / CRAWLER_INSTALLED_PYTHON / name, folder / "python/crawler" / name}};
-    }
-  } // namespace
-
   PythonEnd
   call_python(const std::string &script, const std::vector<std::string> &arguments, const bool shown)
   {
     std::error_code ignored;
     const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
-    const auto places  = places_of_script(script, program);
+    const auto folder  = program.parent_path(); // of the build, or of the installed program
+    const std::array<std::filesystem::path, 2> places = {
+      {folder.parent_path() / CRAWLER_INSTALLED_PYTHON / script, folder / "python/crawler" / script}};
     setenv("CRAWLER_PROGRAM", program.c_str(), /*overwrite=*/1);
     const auto *const path =
       std::ranges::find_if(places, [&](const auto &place) { return std::filesystem::exists(place, ignored); });

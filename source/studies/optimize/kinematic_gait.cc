@@ -33,7 +33,6 @@ namespace crawler
     class KinematicGait : public GaitModel
     {
     public:
-      /// Throws InputError if the start does not make a scene with a given strain.
       KinematicGait(SceneFamily &family, const GaitWishes wishes, const std::vector<double> &start)
         : family_(family)
         , wishes_(wishes)
@@ -436,10 +435,8 @@ namespace crawler
         {
           std::vector<double> rows(values.strain.values.size() * x.size());
           for (std::size_t i = 0; i < x.size(); ++i)
-          {
             for (std::size_t p = 0; p < values.strain.values.size(); ++p)
               rows[p * x.size() + i] = slopes[i].limited[p];
-          }
           jacobian_ = std::make_shared<const std::vector<double>>(std::move(rows));
         }
         values.strain.jacobian = jacobian_;

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace crawler
 {
@@ -52,15 +51,6 @@ namespace crawler
       else if (is_better(i, best.back()))
         best.back() = i;
     }
-  }
-
-  std::size_t
-  OptimizeResults::n_evaluations() const
-  {
-    return std::accumulate(starts.begin(),
-                           starts.end(),
-                           std::size_t(0),
-                           [](const std::size_t n, const StartResult &one) { return n + one.records.size(); });
   }
 
   Table

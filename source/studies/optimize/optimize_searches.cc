@@ -66,14 +66,9 @@ namespace crawler
       }
     };
 
-    /**
-     * Searches of an optimisation, which the ranks share (collective, except where rank 0 is named). Rank 0 keeps their
-     * results.
-     */
     class OptimizeSearches
     {
     public:
-      /// @p memory is that of rank 0.
       OptimizeSearches(MPI_Comm communicator,
                        OptimizeCases &cases,
                        OptimizeMemory *memory,
@@ -92,8 +87,7 @@ namespace crawler
             parts_.push_back({{number, start}});
       }
 
-      /// Runs the searches that have not ended yet: from all starts, then from the best gaits of neighbours as long as
-      /// these are better. Returns false if it was interrupted. Throws FileError, on all ranks.
+      /// Returns false if it was interrupted.
       bool
       go_on()
       {

@@ -237,7 +237,6 @@ namespace crawler
         }
       }
 
-      /// True if the gait moves in the wanted direction.
       bool
       moves() const
       {
@@ -271,7 +270,6 @@ namespace crawler
         return at(admitted);
       }
 
-      /// Updates the state for the progress display.
       void
       see(const GaitProblem &problem)
       {

@@ -3,7 +3,6 @@
 #include <crawler/adjoint/run_gradient.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/output/kymograph_writer.h>
-#include <crawler/output/observer.h>
 #include <crawler/run/simulation.h>
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/sensitivities.h>
@@ -30,25 +29,6 @@ namespace crawler
       return task.computed.result.model != Model::kinematic && !task.computed.choice.has_fronts;
     }
 
-    class ExtremesOfPictures : public Observer
-    {
-    public:
-      explicit ExtremesOfPictures(std::pair<double, double> &extremes)
-        : extremes_(extremes)
-      {
-      }
-
-      void
-      observe(const Snapshot &snapshot) override
-      {
-        extremes_.first  = std::min(extremes_.first, snapshot.stretch.min.value - 1.);
-        extremes_.second = std::max(extremes_.second, snapshot.stretch.max.value - 1.);
-      }
-
-    private:
-      std::pair<double, double> &extremes_;
-    };
-
     /**
      * Gaits of the levels that are simulated: answers of `crawler run` for the values of the variables, and derivatives
      * by the adjoint of a run with the same numerics (adjoint/run_gradient.h). Where there is no adjoint they are
@@ -57,7 +37,6 @@ namespace crawler
     class SimulatedGait : public GaitModel
     {
     public:
-      /// @p interrupted is called after every step.
       SimulatedGait(SceneFamily &family, const GaitWishes wishes, std::function<bool()> interrupted)
         : family_(family)
         , wishes_(wishes)
@@ -147,10 +126,14 @@ namespace crawler
         std::pair<double, double> extremes{task.computed.result.min_stretch.value - 1.,
                                            task.computed.result.max_stretch.value - 1.};
         if (has_pictures(task))
-          seen_by(std::make_unique<ExtremesOfPictures>(extremes),
-                  task,
-                  equal_parts(static_cast<std::size_t>(
-                    std::min(pictures_of_stride * std::max(strides_of(*task.scene), 1.), max_pictures))));
+          repeat(
+            task,
+            [&](const Snapshot &snapshot) {
+              extremes.first  = std::min(extremes.first, snapshot.stretch.min.value - 1.);
+              extremes.second = std::max(extremes.second, snapshot.stretch.max.value - 1.);
+            },
+            equal_parts(static_cast<std::size_t>(
+              std::min(pictures_of_stride * std::max(strides_of(*task.scene), 1.), max_pictures))));
         return extremes;
       }
 
@@ -203,9 +186,9 @@ namespace crawler
         return list;
       }
 
-      /// Repeats the run of a task with an observer at some times, parts of the duration.
-      std::unique_ptr<Observer>
-      seen_by(std::unique_ptr<Observer> observer, const Task &task, const std::vector<double> &times) const
+      /// Repeats the run of a task to see its states at some times, parts of the duration.
+      void
+      repeat(const Task &task, const std::function<void(const Snapshot &)> &see, const std::vector<double> &times) const
       {
         const Scene &scene = *task.scene;
         std::vector<double> rows;
@@ -214,14 +197,13 @@ namespace crawler
         TimeParameters time = task.parameters.time;
         time.cycle_stop     = CycleStopMode::off;
         std::vector<std::unique_ptr<Observer>> observers;
-        observers.push_back(std::move(observer));
+        observers.push_back(std::make_unique<ObservingFunction>(see));
         Simulation(MPI_COMM_SELF, scene, time, task.computed.choice.numerics)
           .run(PictureTimes({}, rows, scene.end_time), {.energy_balance = false}, observers, [&]() {
             return !interrupted_();
           });
         if (interrupted_())
           throw Interrupted();
-        return std::move(observers.front());
       }
 
       std::vector<StretchPlace>
@@ -234,8 +216,10 @@ namespace crawler
           *n_boxes_in_time_, strides_of(scene), {breaks_in_space_of(scene), breaks_in_time_of(scene)});
         if (has_pictures(task))
         {
-          const auto seen                    = seen_by(std::make_unique<Kymograph>(boxes.points), task, boxes.times);
-          const std::vector<double> &stretch = static_cast<const Kymograph &>(*seen).rows().stretch;
+          Kymograph seen(boxes.points);
+          repeat(
+            task, [&](const Snapshot &snapshot) { seen.observe(snapshot); }, boxes.times);
+          const std::vector<double> &stretch = seen.rows().stretch;
           if (stretch.size() == boxes.points.size() * boxes.times.size())
             return boxes.find(stretch);
         }
@@ -246,8 +230,8 @@ namespace crawler
         return boxes.place(place_of(result.min_stretch), place_of(result.max_stretch));
       }
 
-      /// Adds the smallest and the largest of the latest extremes to @p places.
-      /// Adds the two extremes only: each derivative costs a sweep.
+      /// Adds the smallest and the largest of the latest extremes to @p places, no others: each derivative costs a
+      /// sweep.
       std::vector<std::size_t>
       with_extremes(std::vector<std::size_t> places) const
       {
@@ -260,32 +244,45 @@ namespace crawler
         return places;
       }
 
-      /// Adds gradients by the adjoint; of the strains, those of @p near.
-      /// Adds gradients for the variables for which all wanted numbers have derivatives.
-      void
-      add_adjoint_gradients(const std::vector<double> &x,
-                            const Task &task,
-                            const std::vector<std::size_t> &near,
-                            GaitValues &values)
+      std::vector<StretchPlace>
+      extremes_at(const std::vector<std::size_t> &indices) const
       {
-        constexpr double step        = 1e-3;
-        const Parameters &parameters = task.parameters;
-        const NumericsChoice &choice = task.computed.choice;
-        if (task.computed.result.model == Model::kinematic || choice.is_of_several_runs() ||
-            !RecordedRun::is_possible(*task.scene, parameters.time, choice.numerics))
-          return;
+        std::vector<StretchPlace> places;
+        for (const std::size_t e : indices)
+          places.push_back(latest_extremes_[e]);
+        return places;
+      }
+
+      std::vector<Quantity>
+      wanted_quantities() const
+      {
         std::vector<Quantity> wanted;
         for (std::size_t k = 0; k < gait_numbers.size(); ++k)
           if (wishes_.numbers[k] && gait_numbers[k].quantity && *gait_numbers[k].quantity != Quantity::speed)
             wanted.push_back(*gait_numbers[k].quantity);
         if (wishes_.numbers[GaitNumber::speed])
           wanted.push_back(Quantity::stride); // the speed comes with it
+        return wanted;
+      }
+
+      /// Adds gradients by the adjoint, of the strains those of @p near, for the variables for which all wanted numbers
+      /// have derivatives.
+      void
+      add_adjoint_gradients(const std::vector<double> &x,
+                            const Task &task,
+                            const std::vector<std::size_t> &near,
+                            GaitValues &values)
+      {
+        const NumericsChoice &choice = task.computed.choice;
+        if (task.computed.result.model == Model::kinematic || choice.is_of_several_runs() ||
+            !RecordedRun::is_possible(*task.scene, task.parameters.time, choice.numerics))
+          return;
         std::vector<std::vector<Scene>> scenes(x.size());
         std::vector<Variation> variations;
         std::vector<std::size_t> own;
         for (std::size_t i = 0; i < x.size(); ++i)
         {
-          const auto around = family_.stencil(x, i, step);
+          const auto around = family_.stencil(x, i, /*relative_step=*/1e-3);
           bool is_similar   = true;
           for (const double place : around.places)
             if (place != 0.)
@@ -298,19 +295,16 @@ namespace crawler
           if (!is_similar)
             continue;
           const bool is_one_sided = around.places[0] == 0.;
-          variations.push_back({{{scenes[i].data(), &scenes[i][1], &scenes[i][2], &scenes[i][3]}},
-                                around.places[is_one_sided ? 1 : 2],
-                                is_one_sided});
+          const double apart      = around.places[is_one_sided ? 1 : 2];
+          const auto &its         = scenes[i];
+          variations.push_back({{{its.data(), &its[1], &its[2], &its[3]}}, apart, is_one_sided});
           own.push_back(i);
         }
         try
         {
-          const RecordedRun run(*task.scene, parameters.time, choice.numerics, [&]() { return !interrupted_(); });
-          std::vector<StretchPlace> places;
-          for (const std::size_t e : near)
-            places.push_back(latest_extremes_[e]);
+          const RecordedRun run(*task.scene, task.parameters.time, choice.numerics, [&]() { return !interrupted_(); });
           RunGradient gradient(run);
-          const auto derivatives = gradient.derivatives(variations, wanted, places);
+          const auto derivatives = gradient.derivatives(variations, wanted_quantities(), extremes_at(near));
           for (std::size_t v = 0; v < own.size(); ++v)
           {
             const std::size_t i = own[v];
@@ -360,11 +354,10 @@ namespace crawler
         if (places.empty())
           return;
         const std::vector<Task> tasks = answers(places);
-        const std::size_t n           = x.size();
         // Gaits on one side may be impossible, e.g. near inversion: those on the other side give a derivative of first
         // order.
-        std::vector<std::size_t> nearest(n, tasks.size());
-        std::vector<std::string> problems(n);
+        std::vector<std::size_t> nearest(x.size(), tasks.size());
+        std::vector<std::string> problems(x.size());
         const auto distance = [&](const std::size_t j) {
           return std::abs(places[j][weights[j].first] - x[weights[j].first]);
         };
@@ -376,7 +369,7 @@ namespace crawler
           else if (distance(j) > 0. && (nearest[i] == tasks.size() || distance(j) < distance(nearest[i])))
             nearest[i] = j;
         }
-        for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t i = 0; i < x.size(); ++i)
         {
           if (values.by_differences[i])
             for (auto &gradient : values.gradients)
@@ -402,7 +395,7 @@ namespace crawler
             continue;
           const std::vector<StretchPlace> extremes_there = extremes(tasks[j]);
           for (std::size_t e = 0; e < latest_extremes_.size(); ++e)
-            strain_jacobian_[e * n + i] += change(extremes_there[e].value, latest_extremes_[e].value);
+            strain_jacobian_[e * x.size() + i] += change(extremes_there[e].value, latest_extremes_[e].value);
         }
       }
 

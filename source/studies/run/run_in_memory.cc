@@ -7,6 +7,7 @@
 #include <crawler/run/reduced_model.h>
 #include <crawler/run/self_check.h>
 #include <crawler/run/simulation.h>
+#include <crawler/studies/core/compute.h>
 #include <crawler/studies/run/reduced_pictures.h>
 #include <crawler/studies/run/run_in_memory.h>
 #include <crawler/studies/run/run_stops.h>
@@ -21,24 +22,6 @@ namespace crawler
 {
   namespace
   {
-    /// Observer that passes the states on to another one.
-    class Forward : public Observer
-    {
-    public:
-      explicit Forward(Observer &to)
-        : to_(to)
-      {
-      }
-      void
-      observe(const Snapshot &snapshot) override
-      {
-        to_.observe(snapshot);
-      }
-
-    private:
-      Observer &to_;
-    };
-
     /// Makes new tables for a run, or for the next attempt.
     void
     begin_tables(const OutputParameters &output, const Scene &scene, const WantedFields &wanted, RunInMemory &run)
@@ -104,10 +87,13 @@ namespace crawler
       const auto simulate               = [&](const NumericsChoice &choice) {
         begin_tables(parameters.output, input.scene, wanted, run);
         std::vector<std::unique_ptr<Observer>> observers;
-        if (run.kymograph)
-          observers.push_back(std::make_unique<Forward>(*run.kymograph));
-        if (run.statistics)
-          observers.push_back(std::make_unique<Forward>(*run.statistics));
+        if (run.kymograph || run.statistics)
+          observers.push_back(std::make_unique<ObservingFunction>([&](const Snapshot &snapshot) {
+            if (run.kymograph)
+              run.kymograph->observe(snapshot);
+            if (run.statistics)
+              run.statistics->observe(snapshot);
+          }));
         return Simulation(MPI_COMM_SELF, input.scene, parameters.time, choice.numerics)
           .run(pictures, options, observers, keep_going);
       };

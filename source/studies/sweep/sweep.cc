@@ -183,6 +183,14 @@ namespace crawler
       log.line(fmt::format("Results are in {0}/results.h5 and {0}/results.csv; draw them with: crawler plot {0}",
                            folder.string()));
     }
+
+    std::string
+    size_in_words(const double bytes)
+    {
+      return bytes < 1e6   ? fmt::format("{:.3g} kB", bytes / 1e3)
+             : bytes < 1e9 ? fmt::format("{:.3g} MB", bytes / 1e6)
+                           : fmt::format("{:.3g} GB", bytes / 1e9);
+    }
   } // namespace
 
   ExitCode
@@ -253,17 +261,6 @@ namespace crawler
                       /*on_all_ranks=*/true);
     }
   }
-
-  namespace
-  {
-    std::string
-    size_in_words(const double bytes)
-    {
-      return bytes < 1e6   ? fmt::format("{:.3g} kB", bytes / 1e3)
-             : bytes < 1e9 ? fmt::format("{:.3g} MB", bytes / 1e6)
-                           : fmt::format("{:.3g} GB", bytes / 1e9);
-    }
-  } // namespace
 
   bool
   check_sweep(MPI_Comm communicator, const ParameterFile &file, Log &log)

@@ -25,8 +25,52 @@ namespace crawler
       return !axis.is_file() && axis.entry != "Accuracy" && axis.entry != "Time/End time" &&
              std::ranges::all_of(axis.values, [](const std::string &value) { return to_number(value).has_value(); });
     }
-  } // namespace
 
+    /// Unknowns times steps of the run; 0 on levels without a mesh, infinite where unknown.
+    double
+    work_of(const Task &task)
+    {
+      const SimulationResult &result = task.computed.result;
+      if (task.error || result.time.status != Status::finished)
+        return HUGE_VAL;
+      return result.mesh ? static_cast<double>(result.mesh->n_unknowns) * result.time.steps : 0.;
+    }
+
+    /// Result in place of the answer at a point that killed its process twice.
+    Task
+    crashed_task()
+    {
+      Task task;
+      TimeOutcome &time = task.computed.result.time;
+      time.status       = Status::failed;
+      time.reason       = "crashed";
+      time.message      = crash_message;
+      return task;
+    }
+
+    /// Writes the rows of these points, consecutive ones together.
+    template <typename Point>
+    void
+    write_rows(const std::vector<Point> &points,
+               const std::vector<SensitivityEntry> &sensitivities,
+               const SweepWork::WriteRows &write,
+               const std::function<void(unsigned long n, unsigned long failed)> &see)
+    {
+      std::vector<RowFile::Row> rows;
+      unsigned long failed = 0;
+      for (std::size_t i = 0; i < points.size(); ++i)
+      {
+        rows.push_back(sweep_row(points[i].task, sensitivities, points[i].checked));
+        failed += status_of(points[i].task).status != "finished";
+        if (i + 1 < points.size() && points[i + 1].number == points[i].number + 1)
+          continue;
+        write(points[i].number + 1 - rows.size(), rows);
+        rows.clear();
+      }
+      if (!points.empty())
+        see(points.size(), failed);
+    }
+  } // namespace
 
   unsigned long
   golden_stride(const unsigned long n)
@@ -87,54 +131,6 @@ namespace crawler
     Task task;
     RowFile::Row checked = {}; ///< row of a cross-check
   };
-
-  namespace
-  {
-    /// Unknowns times steps of the run; 0 on levels without a mesh, infinite where unknown.
-    double
-    work_of(const Task &task)
-    {
-      const SimulationResult &result = task.computed.result;
-      if (task.error || result.time.status != Status::finished)
-        return HUGE_VAL;
-      return result.mesh ? static_cast<double>(result.mesh->n_unknowns) * result.time.steps : 0.;
-    }
-
-    /// Result in place of the answer at a point that killed its process twice.
-    Task
-    crashed_task()
-    {
-      Task task;
-      TimeOutcome &time = task.computed.result.time;
-      time.status       = Status::failed;
-      time.reason       = "crashed";
-      time.message      = crash_message;
-      return task;
-    }
-
-    /// Writes the rows of these points, consecutive ones together.
-    template <typename Point>
-    void
-    write_rows(const std::vector<Point> &points,
-               const std::vector<SensitivityEntry> &sensitivities,
-               const SweepWork::WriteRows &write,
-               const std::function<void(unsigned long n, unsigned long failed)> &see)
-    {
-      std::vector<RowFile::Row> rows;
-      unsigned long failed = 0;
-      for (std::size_t i = 0; i < points.size(); ++i)
-      {
-        rows.push_back(sweep_row(points[i].task, sensitivities, points[i].checked));
-        failed += status_of(points[i].task).status != "finished";
-        if (i + 1 < points.size() && points[i + 1].number == points[i].number + 1)
-          continue;
-        write(points[i].number + 1 - rows.size(), rows);
-        rows.clear();
-      }
-      if (!points.empty())
-        see(points.size(), failed);
-    }
-  } // namespace
 
   SweepWork::SweepWork(SweepPoints &points, const unsigned int n_ranks, CrashNote *const note)
     : points_(points)

@@ -46,15 +46,6 @@ namespace crawler
     }
   } // namespace
 
-  Task
-  SweepNumerics::task(const unsigned long point) const
-  {
-    Task one;
-    one.parameters = points_.parameters(point);
-    one.gait       = true;
-    return one;
-  }
-
   /// Coordinates of a point on axes of numbers; other axes have none.
   std::vector<double>
   SweepNumerics::place(const unsigned long point) const

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
-#include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/base/plain_numbers.h>
 #include <crawler/base/short_text.h>

@@ -158,13 +158,6 @@ namespace crawler
     return columns;
   }
 
-  std::string
-  TradeoffSetting::operator[](const std::string &column) const
-  {
-    const auto found = values.find(column);
-    return found == values.end() ? "" : found->second;
-  }
-
   bool
   same_mesh(TradeoffSetting a, TradeoffSetting b)
   {

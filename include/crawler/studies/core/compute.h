@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/accuracy/shared_choice.h>
+#include <crawler/output/observer.h>
 #include <crawler/run/simulation.h>
 #include <crawler/studies/core/parameters.h>
 
@@ -33,6 +34,25 @@ namespace crawler
     std::exception_ptr error;    ///< exception thrown instead of a result
     double seconds      = 0.;    ///< wall time [s]; runs of a batch share its time
     bool is_out_of_time = false; ///< stopped by the time limit
+  };
+
+  /// Observer that passes the states of a run to a function.
+  class ObservingFunction : public Observer
+  {
+  public:
+    explicit ObservingFunction(std::function<void(const Snapshot &)> see)
+      : see_(std::move(see))
+    {
+    }
+
+    void
+    observe(const Snapshot &snapshot) override
+    {
+      see_(snapshot);
+    }
+
+  private:
+    const std::function<void(const Snapshot &)> see_;
   };
 
   /// Reason in words why a task has no answer; empty if it has one.

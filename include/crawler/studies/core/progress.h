@@ -2,7 +2,6 @@
 #pragma once
 
 #include <crawler/base/clock.h>
-#include <crawler/output/observer.h>
 #include <crawler/studies/core/log.h>
 
 #include <optional>
@@ -71,20 +70,4 @@ namespace crawler
   };
 
   inline constexpr const char *pilot_runs = "pilot runs choose mesh and time steps";
-
-  /// Progress of a run: a bar, or a line at every tenth of the duration.
-  class RunProgress : public Observer
-  {
-  public:
-    RunProgress(Log &log, const Scene &scene);
-
-    void
-    observe(const Snapshot &snapshot) override;
-
-  private:
-    Log &log_;
-    const double end_time_, length_;
-    ProgressBar bar_;
-    unsigned int next_tenth_ = 1;
-  };
 } // namespace crawler

@@ -21,7 +21,13 @@ namespace crawler
     OptimizeResults(const OptimizeNames &names, std::vector<StartResult> starts);
 
     std::size_t
-    n_evaluations() const;
+    n_evaluations() const
+    {
+      std::size_t n = 0;
+      for (const StartResult &start : starts)
+        n += start.records.size();
+      return n;
+    }
   };
 
   /// Table with a row for each optimum: the row of its start in the @p folder, and the results of its run from @p

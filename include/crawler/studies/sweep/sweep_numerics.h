@@ -56,7 +56,13 @@ namespace crawler
 
     /// Task of a point.
     Task
-    task(unsigned long point) const;
+    task(const unsigned long point) const
+    {
+      Task one;
+      one.parameters = points_.parameters(point);
+      one.gait       = true;
+      return one;
+    }
 
   private:
     struct Known

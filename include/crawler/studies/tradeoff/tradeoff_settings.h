@@ -32,7 +32,11 @@ namespace crawler
 
     /// Value in the column; empty if there is none.
     std::string
-    operator[](const std::string &column) const;
+    operator[](const std::string &column) const
+    {
+      const auto found = values.find(column);
+      return found == values.end() ? "" : found->second;
+    }
   };
 
   /// Returns true if two settings differ by the tolerance alone.
