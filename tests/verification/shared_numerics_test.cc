@@ -112,6 +112,42 @@ TEST(SharedNumerics, BoundsCoverTheErrors)
   }
 }
 
+/// Without bounds no finer run finds those whose error is larger than Accuracy allows, so there must be none; and a
+/// displacement far below what the examples make one expect is none of theirs.
+TEST(SharedNumerics, WithoutBoundsErrorsAreWithinAccuracy)
+{
+  const std::string scene = "set Error estimate = false\n" + set_by_speed,
+                    chi   = "; Active stress/Optimal wave/Perturbation parameter : uniform(0.05, 0.4)";
+  for (const double accuracy : {1e-3, 1e-5})
+    for (const char *axis : {"Body/Anchoring exponent : uniform(1.5, 4)",
+                             "Body/Elastic modulus : loguniform(0.1, 100)",
+                             "Active stress/Optimal wave/Wave speed : uniform(0.5, 3)"})
+    {
+      SweepPoints points = points_of(scene, axis + chi, accuracy),
+                  exact  = points_of(scene, axis + chi, 0.01 * accuracy);
+      SweepNumerics numerics(points), others(exact);
+      const SweepBlock all = {0, n_points};
+      unsigned long n      = 0;
+      for (unsigned long i = 0; i < n_points; i += 2)
+      {
+        const auto shared = numerics.at(all, i, always);
+        if (shared.choice == nullptr)
+          continue;
+        const double size = numerics.size_at(shared, i);
+        Task task = numerics.task(i), small = numerics.task(i), finer = others.task(i);
+        if (!compute_similar({&task, 1}, *shared.choice, {size}, HUGE_VAL, never).front())
+          continue;
+        ++n;
+        compute_all({&finer, 1}, HUGE_VAL, never);
+        const double D = task.computed.result.displacement, true_D = finer.computed.result.displacement;
+        EXPECT_FALSE(task.computed.result.error);
+        EXPECT_LE(std::abs(D - true_D), accuracy * std::abs(true_D)) << axis << ", point " << i;
+        EXPECT_FALSE(compute_similar({&small, 1}, *shared.choice, {2.1 * std::abs(D)}, HUGE_VAL, never).front());
+      }
+      EXPECT_GE(n, n_points / 3) << axis;
+    }
+}
+
 /// Whoever asks, and in which order, gets the same.
 TEST(SharedNumerics, DependOnTheBlockAlone)
 {

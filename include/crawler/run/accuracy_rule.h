@@ -121,6 +121,8 @@ namespace crawler::accuracy_rule
     /// Parts of the wanted error by which space and time may each change the displacement of an example, and by which
     /// the extrapolation of cycles may.
     inline constexpr double part = 0.12, part_of_cycles = 0.1;
+    /// Factor on Accuracy where no finer run finds the scenes that need more than the examples, and the least result.
+    inline constexpr double unchecked = 0.3, min_accuracy = 1e-12;
     /// Tolerances tried, relative to the displacement: from the loosest, smaller by next_tolerance each time.
     inline constexpr double loosest_tolerance = 3e-2, next_tolerance = 0.316;
   } // namespace shared

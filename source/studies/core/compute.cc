@@ -3,6 +3,7 @@
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/base/clock.h>
+#include <crawler/run/accuracy_rule.h>
 #include <crawler/run/batch.h>
 #include <crawler/run/reduced_model.h>
 #include <crawler/run/self_check.h>
@@ -117,15 +118,15 @@ namespace crawler
     {
       Task *task;
       NumericsChoice choice;
-      bool is_shared; ///< choice made for other scenes, without knowledge of the size of this displacement
+      double expected_size; ///< of the displacement, where the choice was made for other scenes; else 0 [length]
       std::optional<CycleWish> cycles;
       TimeParameters finer_time;
       Numerics finer = {}; ///< set once the run has finished
 
-      Member(Task &its_task, const NumericsChoice &its_choice, const bool choice_is_shared)
+      Member(Task &its_task, const NumericsChoice &its_choice, const double its_expected_size)
         : task(&its_task)
         , choice(its_choice)
-        , is_shared(choice_is_shared)
+        , expected_size(its_expected_size)
         , cycles(cycle_wish(its_task.parameters, *its_task.scene, /*has_pictures=*/false))
         , finer_time(time_of_finer_run(its_task.parameters.time))
       {
@@ -139,24 +140,32 @@ namespace crawler
       }
     };
 
-    /// Stores the answer of a member if it is as accurate as requested.
+    /// Stores the answer of a member if it is as accurate as requested. Without a finer run, since no error is to be
+    /// estimated, the numerics of other scenes are good for a displacement that is not smaller than expected of it.
     void
-    take_answer(const Member &member, SimulationResult result, const SimulationResult &finer)
+    take_answer(const Member &member, SimulationResult result, const SimulationResult *const finer)
     {
-      Task &task            = *member.task;
-      NumericsChoice choice = member.choice;
-      if (member.is_shared)
-        choice.wanted_error = task.parameters.accuracy * std::abs(result.displacement);
+      constexpr double least_part = 0.5;
+      Task &task                  = *member.task;
+      NumericsChoice choice       = member.choice;
+      const double size           = std::abs(result.displacement);
+      if (member.expected_size > 0.)
+        choice.wanted_error = task.parameters.accuracy * size;
       choice.set_size(result.displacement, task.parameters.accuracy);
-      set_errors(choice, result, &finer, task.parameters, *task.scene);
+      if (finer != nullptr)
+        set_errors(choice, result, finer, task.parameters, *task.scene);
       check_identities(result, task.parameters);
-      if (result.time.status == Status::finished && result.error->total <= choice.wanted_error)
+      const bool is_good =
+        finer != nullptr ? result.error->total <= choice.wanted_error : size >= least_part * member.expected_size;
+      task.has_answer = result.time.status == Status::finished && is_good;
+      if (task.has_answer)
         task.computed = {std::move(result), std::move(choice)};
     }
 
     /**
      * Computes the runs, and the finer runs of those that finish, side by side; all have the same options. Tasks whose
-     * answer is as accurate as requested have it with its errors, other runs that finished without.
+     * answer is as accurate as requested have it with its errors, if these are to be estimated; other runs that
+     * finished without.
      */
     void
     compute_members(std::vector<Member> members,
@@ -177,7 +186,11 @@ namespace crawler
         const bool repeats    = results[i]->cycles.has_value();
         member.finer          = numerics_of_finer_run(member.choice, task.parameters.time, *task.scene, repeats);
         member.task->computed = {*results[i], member.choice};
-        if (results[i]->time.status != Status::finished || !member.has_finer_run())
+        if (results[i]->time.status != Status::finished)
+          continue;
+        if (!task.parameters.error_estimate)
+          take_answer(member, std::move(*results[i]), nullptr);
+        if (!member.has_finer_run())
           continue;
         finished.push_back(i);
         finer_runs.push_back({&*task.scene, &member.finer_time, &member.finer, member.cycles});
@@ -185,7 +198,7 @@ namespace crawler
       const auto finer_results = run_batch(finer_runs, options, is_in_time);
       for (std::size_t j = 0; j < finished.size(); ++j)
         if (finer_results[j] && finer_results[j]->time.status == Status::finished)
-          take_answer(members[finished[j]], std::move(*results[finished[j]]), *finer_results[j]);
+          take_answer(members[finished[j]], std::move(*results[finished[j]]), &*finer_results[j]);
     }
 
     Simulation::Options
@@ -204,7 +217,7 @@ namespace crawler
         for (Task &task : tasks)
           if (is_ready(task) && task.parameters.output.energy_balance == energy_balance &&
               may_share_lanes(task, task.computed.choice))
-            members.emplace_back(task, task.computed.choice, /*choice_is_shared=*/false);
+            members.emplace_back(task, task.computed.choice, /*its_expected_size=*/0.);
         if (members.empty())
           continue;
         const auto n = static_cast<double>(members.size());
@@ -253,7 +266,7 @@ namespace crawler
     bool
     may_share(const Parameters &p)
     {
-      return p.model == Model::nonlinear && p.error_estimate && p.time.engine == Engine::automatic &&
+      return p.model == Model::nonlinear && p.time.engine == Engine::automatic &&
              p.time.step_control == StepControl::adaptive;
     }
 
@@ -300,7 +313,7 @@ namespace crawler
     for (Task &task : tasks)
     {
       if (task.scene && !task.error && task.computed.result.time.status != Status::stopped &&
-          !task.computed.result.error)
+          !task.computed.result.error && !task.has_answer)
         guarded(task, [&]() { finish(task, time_limit, interrupted); });
       if (task.error)
         continue;
@@ -312,6 +325,7 @@ namespace crawler
   std::optional<SharedChoice>
   shared_numerics(const std::span<Task> examples, const std::function<bool()> &keep_going)
   {
+    using namespace accuracy_rule::shared;
     try
     {
       std::vector<SceneToCompute> scenes;
@@ -319,6 +333,8 @@ namespace crawler
       {
         if (!may_share(task.parameters))
           return std::nullopt;
+        if (!task.parameters.error_estimate)
+          task.parameters.accuracy = std::max(min_accuracy, unchecked * task.parameters.accuracy);
         create_scene(task);
         scenes.push_back({&task.parameters, &*task.scene});
       }
@@ -351,12 +367,12 @@ namespace crawler
           continue;
         create_scene(task);
         if (may_share_lanes(task, shared.choice))
-          members.emplace_back(task, shared.choice_for(*task.scene, sizes[i]), /*choice_is_shared=*/true);
+          members.emplace_back(task, shared.choice_for(*task.scene, sizes[i]), sizes[i]);
       }
       if (!members.empty())
         compute_members(members, options_of_batch(tasks.front()), is_in_time);
       for (std::size_t i = 0; i < tasks.size(); ++i)
-        done[i] = tasks[i].computed.result.error.has_value();
+        done[i] = tasks[i].has_answer;
     }
     catch (const std::exception &) // the one-by-one computation finds the faulty run
     {

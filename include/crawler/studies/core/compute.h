@@ -34,6 +34,7 @@ namespace crawler
     std::exception_ptr error;    ///< exception thrown instead of a result
     double seconds      = 0.;    ///< wall time [s]; runs of a batch share its time
     bool is_out_of_time = false; ///< stopped by the time limit
+    bool has_answer     = false; ///< the answer was found in the lanes, and is as accurate as requested
   };
 
   /// Observer that passes the states of a run to a function.
@@ -77,9 +78,9 @@ namespace crawler
 
   /**
    * Computes scenes with the numerics that they share. Runs, and the finer runs that measure their errors, share the
-   * lanes of the fused engine, so a point costs a hundredth of a run alone. Each answer has an error bound as always;
-   * scenes that miss their Accuracy with these numerics, or do not fit the fused engine, are left out. @p sizes are
-   * estimates of the displacements [length].
+   * lanes of the fused engine, so a point costs a hundredth of a run alone. Each answer has an error bound as always,
+   * if errors are to be estimated; scenes that miss their Accuracy with these numerics, whose displacement is far below
+   * its size in @p sizes (an estimate) [length], or that do not fit the fused engine, are left out.
    *
    * Returns true for each scene that has been computed. Nothing is thrown. All runs end when @p interrupted returns
    * true or when @p time_limit [s] has passed for all together, so that none takes longer.
