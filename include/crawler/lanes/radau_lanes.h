@@ -142,7 +142,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       if (any)
         advance(accepted > 0.);
       for (int l = 0; l < lanes; ++l)
-        if (step_.bodies[l].busy && !step_.bodies[l].accepted && step_.bodies[l].is_hopeless())
+        if (step_.bodies[l].busy && !step_.bodies[l].accepted && step_.bodies[l].cannot_converge())
           end(l, LaneOutcome::gave_up);
     }
 
