@@ -51,10 +51,10 @@ class Check:
     within: float = 0.0  # relative, of what is measured
 
 
-def optimum(name, phrase, part="table", minutes=0.5):
-    """An optimisation, whose numbers are in its tables."""
+def optimum(name, phrase="", minutes=0.5):
+    """An optimisation, whose numbers are in the table behind the phrase."""
     return Check(name, minutes, f"{{mpi}} {{build}}/crawler optimize {{root}}/prm/studies/{name}.prm --overwrite --output {{out}}/{name}",
-                 OPTIMIZE, phrase, part, (f"{name}/optima.csv", f"{name}/summary.json"), 2e-3)
+                 OPTIMIZE if phrase else "", phrase, "table", (f"{name}/optima.csv", f"{name}/summary.json"), 2e-3)
 
 
 CHECKS = (
@@ -82,6 +82,8 @@ CHECKS = (
           NUMERICS, "**The map of outcomes**", "text", ("map/summary.json", "map/log.txt"), 3e-3),
     optimum("optimize_segments", "| segments | periodic merit"),
     optimum("optimize_actuators", "| segments | p = 2: displacement"),
+    optimum("optimize_uneven", minutes=3),
+    optimum("optimize_grounds", minutes=1.5),
     # Statistics of errors: scenes that nobody has looked at.
     Check("fresh_scenes", 8, "{mpi} {build}/tests/calibration {scenes} {out}/fresh_scenes.csv"),
     Check("fresh_jumps", 6, "{mpi} {build}/tests/calibration {jumps} {out}/fresh_jumps.csv 1e-3 1e-6"),
