@@ -52,9 +52,9 @@ class Check:
 
 
 def optimum(name, phrase="", minutes=0.5):
-    """An optimisation, whose numbers are in the table behind the phrase."""
+    """An optimisation, whose numbers are in the paragraph behind the phrase."""
     return Check(name, minutes, f"{{mpi}} {{build}}/crawler optimize {{root}}/prm/studies/{name}.prm --overwrite --output {{out}}/{name}",
-                 OPTIMIZE if phrase else "", phrase, "table", (f"{name}/optima.csv", f"{name}/summary.json"), 2e-3)
+                 OPTIMIZE if phrase else "", phrase, "text", (f"{name}/optima.csv", f"{name}/summary.json"), 2e-3)
 
 
 CHECKS = (
@@ -80,8 +80,8 @@ CHECKS = (
     Check("levels", 0.5, "{build}/tests/ladder_study 300"),
     Check("map_of_outcomes", 10, "{mpi} {build}/crawler sweep {root}/prm/studies/outcomes_chi_p.prm --overwrite --output {out}/map",
           NUMERICS, "**The map of outcomes**", "text", ("map/summary.json", "map/log.txt"), 3e-3),
-    optimum("optimize_segments", "| segments | periodic merit"),
-    optimum("optimize_actuators", "| segments | p = 2: displacement"),
+    optimum("optimize_segments", "4, 8, 16 and 32 segments reach"),
+    optimum("optimize_actuators", "With 2, 4, 8 and 16 segments worms go"),
     optimum("optimize_uneven", minutes=3),
     optimum("optimize_grounds", minutes=1.5),
     # Statistics of errors: scenes that nobody has looked at.
