@@ -5,7 +5,7 @@
     contrib/paper/make_figures.py BUILD [OUT]
 
 BUILD is the build folder, or the program crawler itself. Into OUT (default: BUILD/paper) come fig_*.png, movie.gif, the
-runs, and numbers.md, the tables of doc/paper.md. Ends with 7 if a number is off. Takes about 20 s on 2 cores; needs
+runs, and numbers.md, the tables that are printed. Ends with 7 if a number is off. Takes about 20 s on 2 cores; needs
 numpy and matplotlib. doc/images/paper has the pictures of doc/paper.md:
 
     contrib/paper/make_figures.py build && cp build/paper/*.png build/paper/movie.gif doc/images/paper/

@@ -32,7 +32,7 @@ namespace crawler
     {
       report_plan(log, input, model, nullptr);
       log.line("No mesh and no time steps are needed.");
-      log.line(input.file.name() + " is valid; nothing was run and nothing was written.");
+      log.line(input.file.name() + " is valid; no files were written.");
       return ExitCode::finished;
     }
     WaitProgress pilots(log, pilot_runs);

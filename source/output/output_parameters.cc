@@ -26,9 +26,9 @@ namespace crawler
     declarations.flag("Ledger", energy_balance)
       .means("Whether to compute works, energies and the net friction in every step, and to check that they balance.");
     declarations.number("Ledger tolerance", energy_balance_tolerance, positive(), "1")
-      .means("Largest admissible ledger residual, relative to the work that the active stress exchanges with the body; "
-             "beyond it the run fails its self-check. Automatic: ten times Accuracy (300 times in the stretch form), "
-             "at least 1e-8 (0.1 if Tolerance or integrator is set).");
+      .means("Largest admissible residual of the energy balance, relative to the work that the active stress exchanges "
+             "with the body; beyond it the run fails its self-check. Automatic: ten times Accuracy (300 times in the "
+             "stretch form), at least 1e-8 (0.1 if Tolerance or integrator is set).");
     declarations.numbers("Active stress table", active_stress_table, "")
       .means("Numbers of samples over s and over t, like 65, 129, of the active stress that are written to "
              "active_stress.csv, which the generator table reads. Empty: no such file.");

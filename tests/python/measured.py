@@ -157,6 +157,33 @@ class Preparation(unittest.TestCase):
         self.assertLess(error(33, 0.2), 0.03)  # smoothing flattens it, most at the ends
         self.assertLess(error(33, 0.1), 0.01)
 
+    def test_lost_points_of_tracks(self):
+        """A point lost between measured ones is filled, also beside an end; only frames before a marker appears, or after it
+        has vanished, are left out; both are counted in words, and a longer gap is refused with its place."""
+        tracks = samples_of(lambda s, t: 2 * s + 0.01 * t**3, 5, 12, 11, "x")
+        settings = Settings(gap=2, markers_at="0,0.5,1,1.5,2")
+
+        def prepared(*lost):
+            cut = Samples("x", tracks.s, tracks.t, tracks.values.copy(), tracks.names)
+            for marker, frames in lost:
+                cut.values[frames, marker] = np.nan
+            return prepare(cut, settings)
+
+        for lost, times, words in (([(2, [5])], tracks.t, "1 gap filled, up to 1 in a row"),
+                                   ([(0, [0]), (2, [1, 5, 6])], tracks.t[1:], "3 gaps filled, up to 2 in a row"),
+                                   ([(4, [10, 11]), (1, [9, 5])], tracks.t[:10], "2 gaps filled, up to 1 in a row")):
+            table = prepared(*lost)
+            np.testing.assert_array_equal(table.t, times)
+            np.testing.assert_allclose(table.values, 0, atol=1e-12)
+            n = len(tracks.t) - len(times)
+            left_out = [word for word in table.words if "left out" in word]
+            self.assertEqual(left_out, [f"{n} frame{'s' if n > 1 else ''} at the beginning or end left out, in which markers are missing"] if n else [])
+            self.assertIn(words, table.words)
+        with self.assertRaisesRegex(InputError, "marker 2 from t = 1 to 3, 3 samples in a row"):
+            prepared((2, [1, 2, 3]))
+        with self.assertRaisesRegex(InputError, "marker 2 from t = 0 to 2, the beginning"):
+            prepared((2, [0, 1, 2]))
+
     def test_extrapolates_strain_as_stated(self):
         """The strain 0.2 t s of a body from 0 to 1, with markers from 0.2 to 0.8."""
         tracks = samples_of(lambda part, t: 0.2 + 0.6 * part + 0.1 * t * (0.2 + 0.6 * part)**2, 7, 5, 1, "x")

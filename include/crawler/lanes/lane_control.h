@@ -106,9 +106,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return error >= 1. && steps - first_step < radau::settling_steps;
     }
 
-    /// Settles an error that had to be filtered twice: the step must not grow.
+    /// Takes an error that was filtered twice; the step must not grow.
     void
-    settle(const double filtered, const int n_stages)
+    forbid_growth(const double filtered, const int n_stages)
     {
       const double least = radau::error_without_growth(n_stages);
       error              = filtered < least ? least : filtered;

@@ -144,7 +144,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           if (round == 0)
             lane.error = filtered;
           else if (lane.is_settling())
-            lane.settle(filtered, s);
+            lane.forbid_growth(filtered, s);
           again = again || (lane.busy && !lane.failed && lane.is_settling());
         }
         if (!again)

@@ -40,7 +40,7 @@ namespace crawler
     static ParameterFile
     from_text(const std::string &text, const std::string &name);
 
-    /// Adds an override "Section/Entry=value", stronger than the file and all earlier overrides.
+    /// Adds an override "Section/Entry=value", which replaces the value of the file and of earlier overrides.
     void
     add_override(const std::string &assignment);
 

@@ -47,8 +47,8 @@ namespace crawler
       .means("Active stress at the centre of the pulse.");
     declarations.number("Width", width, positive(), "length").means("Width of the pulse, see Shape.");
     declarations.number("Start position", start_position, any_number(), "length")
-      .means("Place of the centre of the pulse at t = 0, which may be outside the body. Automatic: so far outside that "
-             "the pulse enters the body without a jump.");
+      .means("Place of the centre of the pulse at t = 0, which may be outside the body. Automatic: far enough outside "
+             "that the pulse enters the body without a jump.");
     declare_direction(direction, declarations);
     declarations.number("Speed", speed, not_negative, "length/time")
       .means("Speed of the pulse; with 0 it stays in place.");

@@ -12,7 +12,7 @@ BIASED = 0.2          # least bias that is reported, relative to the deviation
 SHARE = 0.1           # largest numerical error, relative to the statistical one
 NEAR = 1e-3           # distance to a limit that is near, in ranges
 UNLIKELY = 1e-3       # probability of chi-square below which the scene does not fit
-HOPELESS = 1e-6       # probability below which undetermined combinations are not reported either
+RULED_OUT = 1e-6       # probability below which undetermined combinations are not reported either
 OUTLYING = 1e-4       # probability of a residual as large as the largest
 MUCH = 100            # chi-square per degree of freedom beyond any noise
 UNITS = 'units? see "--unit-of-s" and "--unit-of-t"'
@@ -107,7 +107,7 @@ def described(problem, best, starts):
     likelihood = goodness["chi_square"] if data.is_weighed else n * math.log(max(float(residual @ residual), 1e-300) * problem.scale ** 2 / n)
     matrix = covariance(best.jacobian)
     found = {"status": "finished", "reason": "converged", "message": "", "variables": variables,
-             "undetermined": [] if _is_hopeless(goodness) else list(_untold(problem, best, variables, values)),
+             "undetermined": [] if _is_ruled_out(goodness) else list(_untold(problem, best, variables, values)),
              "notes": list(_notes(best, variables, goodness, data, model)),
              "correlation": (matrix / np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))).tolist(), "goodness": goodness,
              "information": {"aic": likelihood + 2 * k, "bic": likelihood + k * math.log(n)},
@@ -175,8 +175,8 @@ def _largest(series, grid):
     return {"deviations": float(grid[j, i]), "t": float(series.t[j]), "place": place, "kind": series.kind}
 
 
-def _is_hopeless(goodness):
-    return goodness["probability"] is not None and goodness["probability"] < HOPELESS
+def _is_ruled_out(goodness):
+    return goodness["probability"] is not None and goodness["probability"] < RULED_OUT
 
 
 def _does_not_fit(goodness):
@@ -211,7 +211,7 @@ def _notes(best, variables, goodness, data, model):
     if (goodness["probability"] or 0) < UNLIKELY:
         yield from model.far_units
     missing = [name for name, one in variables.items() if not one["determined"]]
-    if missing and _is_hopeless(goodness):
+    if missing and _is_ruled_out(goodness):
         yield (f"there is no deviation of {', '.join(missing)}: derivatives of a scene that does not fit cannot tell whether the data determine "
                f"{'it' if len(missing) == 1 else 'them'}")
     if (goodness["probability"] or 0) > 1 - UNLIKELY:

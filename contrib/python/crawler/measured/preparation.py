@@ -88,10 +88,12 @@ def prepare(samples, settings, period=None):
     _require_steps(samples.t, settings.gap)
     measured, is_tracks = samples, samples.quantity == "x"
     if is_tracks:
-        of_tracks = _Filled()
-        complete = _without_gaps(_without_ragged_ends(measured, settings.gap, words), 0, settings.gap, of_tracks, is_smoothed=False)
-        samples = strain_of_tracks(complete, settings, words)
-        filled.n, filled.longest = of_tracks.n, of_tracks.longest
+        tracks = _filled_in_time(measured, 0, settings.gap, _Filled(), is_smoothed=False)
+        frames = _frames_without_ragged_ends(tracks, settings.gap, words)
+        tracks = dataclasses.replace(tracks, t=tracks.t[frames], values=tracks.values[frames])
+        samples = strain_of_tracks(_filled_along_body(tracks, measured, settings.gap, _Filled()), settings, words)
+        for marker in measured.values[frames].T:
+            filled.count([end - begin for begin, end in _gaps_in(~np.isnan(marker))])
     spread = estimated_noise(samples) if is_tracks or settings.noise is None else settings.noise
     noise = settings.noise if settings.noise is not None else estimated_noise(measured)
     if settings.period:
@@ -217,8 +219,13 @@ class _Series:
         return y
 
 
-def _without_gaps(samples, width, most, filled, is_smoothed=True):
-    """Samples with all gaps filled, those in time first; smoothed with the width if requested."""
+def _without_gaps(samples, width, most, filled):
+    """Samples with all gaps filled, those in time first, and smoothed with the width."""
+    return _filled_along_body(_filled_in_time(samples, width, most, filled), samples, most, filled)
+
+
+def _filled_in_time(samples, width, most, filled, is_smoothed=True):
+    """Samples with gaps filled from the times before and after; smoothed with the width if requested."""
     values = samples.values.copy()
     whole = ~np.any(np.isnan(values), axis=0)
     if whole.any() and is_smoothed:
@@ -227,7 +234,7 @@ def _without_gaps(samples, width, most, filled, is_smoothed=True):
     for i in np.flatnonzero(~whole):
         found = _Series(samples.t, samples.values[:, i], width, most, filled)(samples.t)
         values[:, i] = np.where(~np.isnan(found) & (is_smoothed | np.isnan(values[:, i])), found, values[:, i])
-    return _filled_along_body(dataclasses.replace(samples, values=values), samples, most, filled)
+    return dataclasses.replace(samples, values=values)
 
 
 def _filled_along_body(samples, measured, most, filled):
@@ -257,8 +264,8 @@ def _refuse_gap(samples, i, t, most):
                      'are filled ("--gap"), in time or else along the body')
 
 
-def _without_ragged_ends(tracks, most, words):
-    """Tracks from the first to the last frame with all markers, leaving out at most @p most at an end."""
+def _frames_without_ragged_ends(tracks, most, words):
+    """Frames from the first to the last one with all markers, as a slice; it leaves out at most @p most at an end."""
     complete = ~np.any(np.isnan(tracks.values), axis=1)
     begin, end = 0, len(tracks.t)
     while begin + LEAST < end and begin < most and not complete[begin]:
@@ -268,7 +275,7 @@ def _without_ragged_ends(tracks, most, words):
     n = len(tracks.t) - (end - begin)
     if n:
         words.append(f"{n} frame{'s' if n > 1 else ''} at the beginning or end left out, in which markers are missing")
-    return dataclasses.replace(tracks, t=tracks.t[begin:end], values=tracks.values[begin:end])
+    return slice(begin, end)
 
 
 def find_period(samples):

@@ -215,7 +215,7 @@ function frameOfBest(explorer, {x, y}) {
 function showOptimum(box, one, folder, unit) {
   const rows = (object, value) => Object.entries(object ?? {}).map(([name, x]) => el('tr', {}, el('td', {class: 'entry'}, ...brokenAtSlashes(name)), ...value(x)));
   box.append(el('p', {}, wordsOfCase(one) ? `With ${wordsOfCase(one)} t` : 'T', `he best ${summary.optimize.objective} is `, el('b', {'data-key': 'optimum'}, exactly(one.objective)), ` ${unitText(unit)}`.trimEnd(),
-    known(one.efficiency) ? `, ${show(100 * one.efficiency, 3)} % of what any gait with this work and these strains could` : '',
+    known(one.efficiency) ? `, ${show(100 * one.efficiency, 3)} % of the upper bound for this work and these strains` : '',
     summary.optimize.objective === 'periodic merit' && known(one.stride_efficiency) ? ` (the last stride ${show(100 * one.stride_efficiency, 3)} % with its dissipation)` : '', '. ',
     one.is_admissible ? 'It is within all limits. ' : el('b', {}, `It exceeds a limit, by ${show(one.violation, 2)} of it. `), one.has_converged ? '' : el('b', {}, `The optimiser did not converge${one.message ? ': ' + one.message : ''}. `),
     'Its files are in ', el('a', {href: `${folder}/`}, `${folder}/`), ', its parameter file is ', el('a', {href: folder.replace('best', 'optimum') + '.prm'}, folder.replace('best', 'optimum') + '.prm'), '.'));
