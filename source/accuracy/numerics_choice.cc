@@ -155,16 +155,23 @@ namespace crawler
         numerics.degree       = degree;
         numerics.n_cells      = n_cells;
         numerics.tolerance    = tolerance;
-        numerics.initial_step = first_step(pilot_time_);
+        numerics.initial_step = first_step();
         return numerics;
       }
 
-      /// The automatic size of the first step of a run with these parameters.
-      double
-      first_step(const TimeParameters &time) const
+      /// The user's integrator, or the chosen one; empty if that is not known yet.
+      const std::string &
+      integrator_name() const
       {
-        const std::string &name = time.integrator == "automatic" ? choice_.numerics.integrator : time.integrator;
-        return (name.starts_with("radau") ? one_step_start : multistep_start) * T_;
+        const std::string &own = parameters_.time.integrator;
+        return own == "automatic" ? choice_.numerics.integrator : own;
+      }
+
+      /// The automatic size of the first step.
+      double
+      first_step() const
+      {
+        return (integrator_name().starts_with("radau") ? one_step_start : multistep_start) * T_;
       }
 
       /// Number of steps of the last pilot to the end, whether it went there or its cycles were extrapolated.
@@ -591,9 +598,7 @@ namespace crawler
       unsigned int
       estimated_order() const
       {
-        const std::string &own = parameters_.time.integrator;
-        const Integrator &method =
-          integrator(own == "automatic" && !choice_.numerics.integrator.empty() ? choice_.numerics.integrator : own);
+        const Integrator &method = integrator(integrator_name().empty() ? "automatic" : integrator_name());
         return method.petsc_type == "radau" ? method.n_stages : parameters_.time.order;
       }
 
@@ -615,8 +620,7 @@ namespace crawler
       double
       superconvergence() const
       {
-        const std::string &own  = parameters_.time.integrator;
-        const std::string &name = own == "automatic" ? choice_.numerics.integrator : own;
+        const std::string &name = integrator_name();
         if (choice_.numerics.mesh.tolerance > 0. || pilot_.min_stretch.value < emptied || kinks_move())
           return 1.;
         return name == "radau 9" ? radau_9_superconvergence : name == "radau 5" ? radau_5_superconvergence : 1.;
@@ -635,7 +639,7 @@ namespace crawler
             accuracy_ < radau_9_accuracy)
           n.integrator = "radau 9";
         if (!parameters_.time.initial_step && !is_graded)
-          n.initial_step = first_step(parameters_.time);
+          n.initial_step = first_step();
         // Number of steps grows as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy * size.
         const double r      = 1. / (1. + estimated_order());
         const double wanted = accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
