@@ -121,8 +121,8 @@ namespace crawler::accuracy_rule
     /// Parts of the wanted error by which space and time may each change the displacement of an example, and by which
     /// the extrapolation of cycles may.
     inline constexpr double part = 0.12, part_of_cycles = 0.1;
-    /// Factor on Accuracy where no finer run finds the scenes that need more than the examples, and the least result.
-    inline constexpr double unchecked = 0.3, min_accuracy = 1e-12;
+    /// Factor on Accuracy where no finer run finds the scenes that need more than the examples.
+    inline constexpr double unchecked = 0.3;
     /// Tolerances tried, relative to the displacement: from the loosest, smaller by next_tolerance each time.
     inline constexpr double loosest_tolerance = 3e-2, next_tolerance = 0.316;
   } // namespace shared
@@ -197,11 +197,10 @@ namespace crawler::accuracy_rule
   // tests/verification/calibration.cc.
   namespace finer_run
   {
-    inline constexpr double measured_factor = 1.5, predicted_part = 0.2, factor_without_rule = 2.;
-    /// Predicted part for adaptive meshes, two of which have more of their errors in common.
-    inline constexpr double predicted_part_if_adaptive = 0.5;
-    /// Predicted part for graded meshes, where each part of the error was measured beforehand.
-    inline constexpr double predicted_part_if_graded = 0.15;
+    inline constexpr double measured_factor = 1.5, factor_without_rule = 2.;
+    /// Parts of the wanted error in the bound: adaptive meshes have more of their errors in common than others, and for
+    /// graded ones each part was measured beforehand.
+    inline constexpr double predicted_part = 0.2, predicted_part_if_adaptive = 0.5, predicted_part_if_graded = 0.15;
     /// Cells and tolerances of the finer run, relative to the run's.
     inline constexpr double more_cells = 1.1, finer_tolerance = 0.2, finer_mesh_tolerance = 0.1;
     /// Cells where the active stress is not smooth, so that errors fall with the cells by a small power.
@@ -211,10 +210,8 @@ namespace crawler::accuracy_rule
     /// Cells and tolerance where the user chose the numerics: mesh and steps may both be the problem.
     inline constexpr double more_cells_without_rule = 2., finer_tolerance_without_rule = 0.1;
     inline constexpr const char *best_integrator = "radau 9";
-    /// Exponent of the tolerance to which its steps are proportional.
-    inline constexpr double steps_over_tolerances = 1. / 6.;
-    /// Smallest first step, relative to the duration: other methods start with smaller ones.
-    inline constexpr double first_step = 1e-3;
+    /// Exponent of the tolerance to which its steps are proportional; its smallest first step over the duration.
+    inline constexpr double steps_over_tolerances = 1. / 6., first_step = 1e-3;
     /// Layers at the ends of bodies softer than soft, in natural units, about as thick as the softness; the finer run
     /// has cells as small as the softness times layer_cells there, graded by layer_ratio.
     inline constexpr double soft = 1e-3, layer_cells = 3., layer_ratio = 0.25, max_layer_levels = 8.;

@@ -325,7 +325,6 @@ namespace crawler
   std::optional<SharedChoice>
   shared_numerics(const std::span<Task> examples, const std::function<bool()> &keep_going)
   {
-    using namespace accuracy_rule::shared;
     try
     {
       std::vector<SceneToCompute> scenes;
@@ -334,7 +333,7 @@ namespace crawler
         if (!may_share(task.parameters))
           return std::nullopt;
         if (!task.parameters.error_estimate)
-          task.parameters.accuracy = std::max(min_accuracy, unchecked * task.parameters.accuracy);
+          task.parameters.accuracy *= accuracy_rule::shared::unchecked;
         create_scene(task);
         scenes.push_back({&task.parameters, &*task.scene});
       }
