@@ -173,6 +173,47 @@ class Values(unittest.TestCase):
                 held = fit({**STRESS, P: end}, data, K, AMPLITUDE, standard_deviation=0.03)
                 self.assertAlmostEqual(held.goodness.chi_square - found.goodness.chi_square, rise, delta=0.1 * rise)
 
+    def test_interval_along_a_curved_valley(self):
+        """The path of the centre tells the product of exponent and amplitude: where the derivatives at the best values lead
+        beyond the range, the profile goes on from its last points."""
+        scene = {**STRESS, BODY + "Length": 1, K: 1, AMPLITUDE: 0.25, "Time/End time": 3}
+        data = self.path_of_centre(scene, np.linspace(0, 3, 61), 0.001, 3)
+        variables = {P: (0.5, 5), AMPLITUDE: (0.02, 1)}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = crawler.fit({**scene, P: 1.7, AMPLITUDE: 0.2}, data, variables, standard_deviation=0.001)
+            for end in found.variables[P]["interval_95"]:
+                held = crawler.fit({**scene, P: end, AMPLITUDE: 0.5 if end < 2 else 0.15}, data, {AMPLITUDE: (0.02, 1)}, standard_deviation=0.001)
+                self.assertAlmostEqual(held.goodness.chi_square - found.goodness.chi_square, 3.8415, delta=0.2)
+
+    def test_leaves_a_minimum_beside_which_a_profile_is_lower(self):
+        """Of chi-square 84 at a frequency of 0.91; it is 64 at 1.05, and the truth is 1.06."""
+        scene = {**STRESS, BODY + "Length": 1.4, P: 2.18, K: 1.43, GAMMA: 0.25, AMPLITUDE: 0.29, WAVE + "Frequency": 1.06, WAVE + "Wave number": 0.87,
+                 "Time/End time": 3.82}
+        data = self.path_of_centre(scene, np.linspace(0, 3.82, 70), 0.001, 4)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = crawler.fit({**scene, P: 2.26, WAVE + "Frequency": 0.9}, data, {P: (-3, 6), WAVE + "Frequency": (0.5, 1.5)}, standard_deviation=0.001)
+        self.assertLess(found.starts[0]["values"][WAVE + "Frequency"], 0.95)
+        self.assertLess(abs(found.variables[WAVE + "Frequency"]["value"] - 1.06), 3 * found.variables[WAVE + "Frequency"]["deviation"])
+        self.assertIn("chi-square has another minimum", " ".join(found.notes))
+
+    def test_names_starts_that_end_at_a_rival(self):
+        """A phase fits as well a cycle later."""
+        found = crawler.fit(STRESS, tracks(STRESS), {WAVE + "Phase": (-7, 7)}, standard_deviation=NOISE, markers_at=S, starts=5)
+        rivals = [note for note in found.notes if "another minimum that fits nearly as well" in note]
+        low, high = found.variables[WAVE + "Phase"]["interval_95"]
+        outside = [one for one in found.starts if one["residuals"] < 1.01 * NOISE and not low <= one["values"][WAVE + "Phase"] <= high]
+        self.assertGreater(len(outside), 0)
+        self.assertEqual([int(re.search(r"start (\d+)", note)[1]) for note in rivals], [one["start"] + 1 for one in outside])
+
+    @staticmethod
+    def path_of_centre(scene, t, noise, seed):
+        """Path of the centre of mass of a run, as Samples with noise."""
+        s = np.linspace(0, scene[BODY + "Length"], 401)
+        x = np.trapz(crawler.run(scene, fields=t, places=s, accuracy=1e-8, check=True).fields.position, dx=1 / 400, axis=1)[:, None]
+        return Samples("centre", np.zeros(1), t, x + noise * np.random.default_rng(seed).standard_normal(x.shape))
+
     def test_numerical_error_is_a_tenth(self):
         for noise in (1e-3, 1e-6, 1e-8):
             found = fit(STRESS, tracks(STRESS, noise), P, K, AMPLITUDE, standard_deviation=noise)
@@ -607,6 +648,7 @@ class Refusals(unittest.TestCase):
                 ("times their distance on the body", {"data": micrometres, "markers_at": S}),
                 ("Switching velocity is automatic, but a velocity", {"scene": STRESS, "variables": {"Ground/Backward ratio": (0.5, 2)}, "markers_at": S}),
                 ("the path of the centre of mass varies by 15", {"scene": STRESS, "data": scaled(path(STRESS), 1000), "standard_deviation": 1}),
+                ("varies by 0 in the data (root mean square), beside the", {"scene": STRESS, "data": Samples("centre", np.zeros(1), T, np.ones((41, 1))), "variables": {K: (1, 2)}}),
                 ("its speed is 1.5", {"scene": STRESS, "data": scaled(path(STRESS, kind="speed"), 60), "variables": {K: (1, 2), AMPLITUDE: (0.2, 0.4)}}),
                 ("no run within the ranges of Fit/Variables comes near", {"scene": STRESS, "data": scaled(path(STRESS, 1e-4), 1e-3), "variables": {K: (1, 2)}}),
                 ("cannot be run", {"scene": inverted, "variables": {AMPLITUDE: (4, 6)}})):

@@ -18,8 +18,6 @@ from .result import value_in_words
 DESCRIPTION = """Finds numbers of a parameter file, with their uncertainty, from measured data (section Fit; doc/fit.md). With several
 files all are fitted to the same data, and a table says which of them the data prefer."""
 
-GOOD = 0.01  # probability of chi-square above which another minimum could hardly fit better
-
 
 def command_line():
     """Parses the options."""
@@ -59,8 +57,7 @@ def lines_of(found):
     yield f"data: {goodness.n_data}, variables: {len(found.variables)}, further unknowns for origin and places: {goodness.n_constants}; {fits}"
     for one in goodness.series if len(goodness.series) > 1 else ():
         yield f"of {one['kind']}: {one['n_data']} data, chi-square {one['chi_square']:.5g}"
-    is_open = len(found.starts) == 1 and (goodness.probability or 0) < GOOD
-    alone = ["1 start: the minimum may be local (Fit/Starts)"] if is_open else []
+    alone = ["1 start: the minimum may be local (Fit/Starts)"] if len(found.starts) == 1 else []
     for sentence in [*found.notes, *found.undetermined, *alone]:
         yield f"{sentence[0].upper()}{sentence[1:]}."
 

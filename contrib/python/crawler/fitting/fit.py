@@ -13,6 +13,8 @@ from .units import require_units
 
 LARGEST_ACCURACY, LEAST_ACCURACY = 1e-4, 3e-11  # accuracies of runs whose differences are derivatives
 MOST_REFINEMENTS = 4
+MOST_DESCENTS = 10    # most searches from lower values of chi-square that its profiles have
+LOWER = 0.1           # fall of chi-square, or of its mean for a scene that does not fit, beside a minimum that is none of round-off
 MOST_STEPS = 1000     # most steps of a search, which takes some hundred along a curved valley
 CHANGE = 1e-3         # change of chi-square, with data of known deviation, that ends a search
 MOST_MOVES, FAR_PLACE = 6, 1e-3  # for unknown places of markers; the latter in lengths of the body
@@ -152,24 +154,43 @@ def find(model, progress=lambda text: None, kept=None, workers=1):
         for note in model.far_units:
             progress(note)
         z, why = best_of_starts(problem, kept, workers, progress)
-        for refinement in range(MOST_REFINEMENTS + 1):
-            try:
-                best = _looked_at(problem, z) if not why else None
-            except Failed as error:
-                why = str(error)
+        for descent in range(MOST_DESCENTS + 1):
+            best, why = (None, why) if why else _refined(problem, z, progress)
             if why:
                 problem.go_to_least()
                 return unfinished(problem, table_of_starts(problem, kept), why)
-            if best.worst <= SHARE or refinement == MOST_REFINEMENTS or model.accuracy <= LEAST_ACCURACY:
-                break
-            model.accuracy = max(model.accuracy * min(0.3, 0.3 * SHARE / best.worst), LEAST_ACCURACY)
-            progress(f"accuracy {model.accuracy:.1g}, so that the numerical error is small compared with the statistical one")
-            problem.last = None
-            _, z, why = problem.search(z)
-        return described(problem, best, table_of_starts(problem, kept))
+            problem.least = (math.inf, None, problem.data.places)
+            residuals = problem.residuals(best.z)  # the least so far
+            found = described(problem, best, table_of_starts(problem, kept), descent)
+            if residuals @ residuals - problem.least[0] < LOWER * max(best.deviation ** 2, residuals @ residuals / len(residuals)):
+                return found
+            progress("a lower minimum beside the profiles of chi-square: the search goes on there")
+            problem.go_to_least()
+            _, z, why = problem.search(problem.least[1])
+            why = why or ("chi-square falls again and again beside its profiles" if descent == MOST_DESCENTS - 1 else "")
     except KeyboardInterrupt:
         starts = table_of_starts(problem, kept)
         raise Interrupted(unfinished(problem, starts) if problem.go_to_least() else None) from None
+
+
+def _refined(problem, z, progress):
+    """(Best of a search from its end, "") with runs so accurate that the statistical error is larger than theirs; (None,
+    why) if the search does not end in order."""
+    model = problem.model
+    for refinement in range(MOST_REFINEMENTS + 1):
+        try:
+            best = _looked_at(problem, z)
+        except Failed as error:
+            return None, str(error)
+        if best.worst <= SHARE or refinement == MOST_REFINEMENTS or model.accuracy <= LEAST_ACCURACY:
+            return best, ""
+        model.accuracy = max(model.accuracy * min(0.3, 0.3 * SHARE / best.worst), LEAST_ACCURACY)
+        progress(f"accuracy {model.accuracy:.1g}, so that the numerical error is small compared with the statistical one")
+        problem.last = None
+        _, z, why = problem.search(z)
+        if why:
+            return None, why
+    return None, why
 
 
 def _looked_at(problem, z):

@@ -98,8 +98,8 @@ def unfinished(problem, starts, why=""):
     return Fit(found, data, -residual * problem.scales, dict(one.split("=", 1) for one in model.overrides(values)), None)
 
 
-def described(problem, best, starts):
-    """Fit with all its entries."""
+def described(problem, best, starts, n_left):
+    """Fit with all its entries. n_left: number of minima from which profiles of chi-square led to lower ones."""
     model, data = problem.model, problem.data
     values, residual = problem.real(best.z), problem.residuals(best.z)
     variables, goodness = _variables(problem, best, values), _goodness(problem, best, residual)
@@ -108,7 +108,8 @@ def described(problem, best, starts):
     matrix = covariance(best.jacobian)
     found = {"status": "finished", "reason": "converged", "message": "", "variables": variables,
              "undetermined": [] if _is_ruled_out(goodness) else list(_untold(problem, best, variables, values)),
-             "notes": list(_notes(best, variables, goodness, data, model)),
+             "notes": [*_notes(best, variables, goodness, data, model), *_of_other_minima(n_left),
+                       *_of_rivals(problem, best, variables, starts, goodness["chi_square"])],
              "correlation": (matrix / np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))).tolist(), "goodness": goodness,
              "information": {"aic": likelihood + 2 * k, "bic": likelihood + k * math.log(n)},
              "accuracy": model.accuracy, "n_runs": model.n_runs, "starts": starts}
@@ -202,6 +203,26 @@ def _of_cut_runs(model):
     if model.n_cut:
         yield (f"{model.n_cut} of {model.n_runs} runs needed more than {model.most_steps} steps and count as failed: narrower ranges, or another "
                '"Time/Maximum number of steps", may be better')
+
+
+def _of_other_minima(n):
+    """Sentence on minima that the search has left."""
+    if n:
+        yield (f"chi-square has {'other minima' if n > 1 else 'another minimum'}, where the search ended first, and from which {'their' if n > 1 else 'its'} "
+               "profiles led to the values given here: more starts (Fit/Starts) tell whether there are lower ones")
+
+
+def _of_rivals(problem, best, variables, starts, chi_square):
+    """Sentences on starts that ended at values outside of the intervals with nearly the least chi-square."""
+    for one in starts:
+        if one["residuals"] is None or one["reason"]:
+            continue
+        rise = (one["residuals"] / problem.scale / best.deviation) ** 2 * problem.data.n - chi_square
+        outside = [f"{name} = {one['values'][name]:.6g}" for name, its in variables.items() if its["determined"] and any(
+            end is not None and sign * (one["values"][name] - end) > 0 for sign, end in zip((-1, 1), its["interval_95"]))]
+        if rise < LEVELS["interval_95"] ** 2 and outside:
+            yield (f"start {one['start'] + 1} ended at another minimum that fits nearly as well (chi-square is larger by {max(rise, 0):.2g}), with {', '.join(outside)}: "
+                   "the intervals do not have these values")
 
 
 def _notes(best, variables, goodness, data, model):

@@ -149,13 +149,21 @@ class Profile:
             x, residual = after, self.residuals(after)
         return math.sqrt(max(best - self.least, 0.0))
 
+    def _guess_between(self, points, j, at, z):
+        """Best guess of the variables with number j fixed: by the derivatives, by those of the nearest point, or on a line
+        through the two nearest points."""
+        (z_near, _, near), *further = sorted(points, key=lambda point: abs(point[0] - z))[:2]
+        (by_slopes, others), kept = self._guess(j, at, near), near.copy()
+        guesses = [by_slopes, kept, *(near + (near - x) * (z - z_near) / (z_near - other) for other, _, x in further)]
+        for guess in guesses:
+            guess[j] = at
+        guesses = [np.clip(guess, 0, 1) for guess in guesses]
+        sums = [float(np.sum(self.residuals(guess) ** 2)) for guess in guesses]
+        return guesses[int(np.argmin(np.where(np.isfinite(sums), sums, math.inf)))], others
+
     def _look(self, points, j, unit, z):
         """Evaluates the profile there, from the nearest point, and adds it; returns its root of the rise."""
-        near = min(points, key=lambda point: abs(point[0] - z))[2]
-        x, others = self._guess(j, self.x[j] + z * unit, near)
-        if not np.all(np.isfinite(self.residuals(x))):
-            x = near.copy()
-            x[j] = self.x[j] + z * unit
+        x, others = self._guess_between(points, j, self.x[j] + z * unit, z)
         root = math.inf
         if np.all(np.isfinite(self.residuals(x))):
             def whole(y):
@@ -184,7 +192,7 @@ class Profile:
                 continue
             if above[0] - below[0] < 0.02 * above[0]:
                 break
-            part = (level - below[1]) / (above[1] - below[1]) if above[1] < math.inf else 0.5
+            part = (level - below[1]) / (min(above[1], 2 * level) - below[1]) if above[1] < math.inf else 0.5
             z = below[0] + (above[0] - below[0]) * min(max(part, 0.1), 0.9)
             if abs(self._look(points, j, unit, z) - level) < 0.02 * level:
                 return z

@@ -60,4 +60,6 @@ def _noise(one):
 
 
 def _times(ratio):
-    return f"about {ratio:.2g} times the" if ratio > 1 else f"about 1/{1 / ratio:.2g} of the"
+    if ratio > 1:
+        return f"about {ratio:.2g} times the"
+    return f"about 1/{1 / ratio:.2g} of the" if ratio > 0 else "beside the"
