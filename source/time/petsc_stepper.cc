@@ -6,7 +6,6 @@
 #include <crawler/time/petsc_stepper.h>
 #include <crawler/time/radau.h>
 #include <crawler/time/radau_loops.h>
-#include <crawler/time/radau_tableau.h>
 #include <crawler/time/vec_access.h>
 
 #include <algorithm>
@@ -41,11 +40,6 @@ namespace crawler
 
   struct PetscStepper::Implementation
   {
-    Implementation(PetscStepper &owner,
-                   MPI_Comm communicator,
-                   ImplicitSystem &system,
-                   const TimeParameters &parameters);
-
     PetscStepper &owner;
     ImplicitSystem &system;
     const TimeParameters parameters;
@@ -77,462 +71,372 @@ namespace crawler
     std::size_t n_unknowns      = 0;
     PetscGuard guarded;
 
-    void
-    set_options();
-    void
-    set_newton();
-    void
-    apply_user_options();
-    void
-    use_krylov_method();
-    void
-    choose_step();
-    PetscErrorCode
-    make_step();
-    const Step *
-    arrive();
-    void
-    show();
-    TimeOutcome
-    counts() const;
-    TimeOutcome
-    failure(PetscErrorCode code);
-
-    static PetscErrorCode
-    function(TS ts, PetscReal t, Vec y, Vec y_dot, Vec F, void *context);
-    static PetscErrorCode
-    jacobian_function(TS, PetscReal t, Vec y, Vec y_dot, PetscReal shift, Mat A, Mat, void *context);
-    static PetscErrorCode
-    multiply(Mat A, Vec x, Vec y);
-    static PetscErrorCode
-    set_up_preconditioner(PC pc);
-    static PetscErrorCode
-    precondition(PC pc, Vec x, Vec y);
-    static PetscErrorCode
-    newton_converged(SNES snes,
-                     PetscInt it,
-                     PetscReal x_norm,
-                     PetscReal dx_norm,
-                     PetscReal F_norm,
-                     SNESConvergedReason *reason,
-                     void *context);
-  };
-
-  PetscStepper::Implementation::Implementation(PetscStepper &owner,
-                                               MPI_Comm communicator,
-                                               ImplicitSystem &system,
-                                               const TimeParameters &parameters)
-    : owner(owner)
-    , system(system)
-    , parameters(parameters)
-  {
-    keep_duplicate(communicator);
-    Vec vec = nullptr;
-    petsc(VecCreate(communicator, &vec));
-    solution.reset(vec);
-    petsc(VecSetSizes(vec, static_cast<PetscInt>(system.n_owned()), PETSC_DECIDE));
-    petsc(VecSetType(vec, VECSTANDARD));
-    PetscInt n = 0;
-    petsc(VecGetSize(vec, &n));
-    n_unknowns = static_cast<std::size_t>(n);
-    petsc(VecDuplicate(solution.get(), &vec));
-    residual.reset(vec);
-    Mat mat          = nullptr;
-    const auto local = static_cast<PetscInt>(system.n_owned());
-    petsc(MatCreateShell(communicator, local, local, PETSC_DECIDE, PETSC_DECIDE, this, &mat));
-    jacobian.reset(mat);
-    petsc(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<ShellOperation>(multiply)));
-
-    petsc(register_radau());
-    TS stepper = nullptr;
-    petsc(TSCreate(communicator, &stepper));
-    ts.reset(stepper);
-    petsc(TSSetApplicationContext(stepper, this));
-    petsc(TSSetIFunction(stepper, residual.get(), function, this));
-    petsc(TSSetIJacobian(stepper, mat, mat, jacobian_function, this));
-    petsc(TSSetSolution(stepper, solution.get()));
-    set_options();
-  }
-
-  /// Sets the choices of the program, then the user's options after "--".
-  void
-  PetscStepper::Implementation::set_options()
-  {
-    const Integrator &method = integrator(parameters.integrator);
-    TS stepper               = ts.get();
-    petsc(TSSetOptionsPrefix(stepper, parameters.petsc_prefix.c_str()));
-    petsc(TSSetProblemType(stepper, TS_NONLINEAR));
-    petsc(TSSetType(stepper, method.petsc_type.c_str()));
-    if (method.petsc_type == "bdf")
-      petsc(TSBDFSetOrder(stepper, static_cast<PetscInt>(parameters.order)));
-    if (method.petsc_type == radau_type)
-      petsc(radau_set_stages(stepper, method.n_stages));
-    TSAdapt adapt = nullptr;
-    petsc(TSGetAdapt(stepper, &adapt));
-    petsc(TSAdaptSetType(adapt, parameters.step_control == StepControl::fixed ? TSADAPTNONE : TSADAPTBASIC));
-    if (method.petsc_type == radau_type)
-      petsc(TSAdaptSetClip(adapt, radau::min_change, radau::max_change));
-    petsc(TSSetExactFinalTime(stepper, TS_EXACTFINALTIME_STEPOVER)); // choose_step() sets the ends of steps
-    petsc(TSSetMaxSNESFailures(stepper, -1));
-    petsc(TSSetMaxStepRejections(stepper, 30));
-    petsc(TSSetErrorIfStepFails(stepper, PETSC_FALSE));
-    petsc(TSSetMaxSteps(stepper, static_cast<PetscInt>(parameters.max_steps)));
-
-    set_newton();
-    apply_user_options();
-  }
-
-  /// Newton's method with exact elimination.
-  void
-  PetscStepper::Implementation::set_newton()
-  {
-    TS stepper                 = ts.get();
-    SNES snes                  = nullptr;
-    SNESLineSearch line_search = nullptr;
-    KSP ksp                    = nullptr;
-    PC pc                      = nullptr;
-    petsc(TSGetSNES(stepper, &snes));
-    petsc(SNESSetType(snes, SNESNEWTONLS));
-    petsc(SNESGetLineSearch(snes, &line_search));
-    petsc(SNESLineSearchSetType(line_search, SNESLINESEARCHBASIC));
-    // No tolerance of the correction: a line search that fails after a small one would count as converged.
-    petsc(SNESSetTolerances(snes, PETSC_DEFAULT, PETSC_DEFAULT, /*correction=*/0., /*iterations=*/10, PETSC_DEFAULT));
-    petsc(SNESSetConvergenceTest(snes, newton_converged, this, nullptr));
-    petsc(SNESGetKSP(snes, &ksp));
-    petsc(KSPSetType(ksp, KSPPREONLY)); // the elimination is exact
-    petsc(KSPSetPCSide(ksp, PC_RIGHT));
-    petsc(KSPGetPC(ksp, &pc));
-    petsc(PCSetType(pc, PCSHELL));
-    petsc(PCShellSetContext(pc, this));
-    petsc(PCShellSetName(pc, "block-tridiagonal elimination"));
-    petsc(PCShellSetSetUp(pc, set_up_preconditioner));
-    petsc(PCShellSetApply(pc, precondition));
-  }
-
-  /// Applies the user's options after "--"; the integrator must be among those offered.
-  void
-  PetscStepper::Implementation::apply_user_options()
-  {
-    TS stepper          = ts.get();
-    PetscErrorCode code = 0;
-    std::string words;
+    Implementation(PetscStepper &owner, MPI_Comm communicator, ImplicitSystem &system, const TimeParameters &parameters)
+      : owner(owner)
+      , system(system)
+      , parameters(parameters)
     {
-      PetscErrorWords error;
-      code  = TSSetFromOptions(stepper);
-      words = error.text;
+      keep_duplicate(communicator);
+      Vec vec = nullptr;
+      petsc(VecCreate(communicator, &vec));
+      solution.reset(vec);
+      petsc(VecSetSizes(vec, static_cast<PetscInt>(system.n_owned()), PETSC_DECIDE));
+      petsc(VecSetType(vec, VECSTANDARD));
+      PetscInt n = 0;
+      petsc(VecGetSize(vec, &n));
+      n_unknowns = static_cast<std::size_t>(n);
+      petsc(VecDuplicate(solution.get(), &vec));
+      residual.reset(vec);
+      Mat mat          = nullptr;
+      const auto local = static_cast<PetscInt>(system.n_owned());
+      petsc(MatCreateShell(communicator, local, local, PETSC_DECIDE, PETSC_DECIDE, this, &mat));
+      jacobian.reset(mat);
+      petsc(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<ShellOperation>(multiply)));
+
+      petsc(register_radau());
+      TS stepper = nullptr;
+      petsc(TSCreate(communicator, &stepper));
+      ts.reset(stepper);
+      petsc(TSSetApplicationContext(stepper, this));
+      petsc(TSSetIFunction(stepper, residual.get(), function, this));
+      petsc(TSSetIJacobian(stepper, mat, mat, jacobian_function, this));
+      petsc(TSSetSolution(stepper, solution.get()));
+      set_options();
     }
-    if (code != 0)
-      throw InputError("PETSc refuses an option after \"--\": " + words);
 
-    // Options that begin() resets each time.
-    const auto option = [&](const char *option_name) {
-      PetscReal value = 0.;
-      PetscBool found = PETSC_FALSE;
-      petsc(PetscOptionsGetReal(nullptr, parameters.petsc_prefix.c_str(), option_name, &value, &found));
-      return found ? std::optional<double>(value) : std::nullopt;
-    };
-    user_tolerance     = option("-ts_atol");
-    user_step          = option("-ts_dt");
-    relative_tolerance = option("-ts_rtol").value_or(0.);
-    if (option("-ts_max_time"))
-      throw InputError("the PETSc option -ts_max_time is refused: Time/End time is expected to say when the run ends");
-
-    TSType type = nullptr;
-    petsc(TSGetType(stepper, &type));
-    std::string name = type;
-    if (name == radau_type)
+    /// Sets the choices of the program, then the user's options after "--".
+    void
+    set_options()
     {
-      unsigned int n_stages = 0;
-      radau_get_stages(stepper, &n_stages);
-      name += " " + std::to_string(2 * n_stages - 1);
-      petsc(radau_set_system(stepper, &system, &guarded));
-      const RadauTableau &tableau = radau_tableau(n_stages);
-      for (unsigned int i = 0; i < n_stages; ++i)
-        owner.stage_places_.push_back(tableau.c[i]);
+      const Integrator &method = integrator(parameters.integrator);
+      TS stepper               = ts.get();
+      petsc(TSSetOptionsPrefix(stepper, parameters.petsc_prefix.c_str()));
+      petsc(TSSetProblemType(stepper, TS_NONLINEAR));
+      petsc(TSSetType(stepper, method.petsc_type.c_str()));
+      if (method.petsc_type == "bdf")
+        petsc(TSBDFSetOrder(stepper, static_cast<PetscInt>(parameters.order)));
+      if (method.petsc_type == radau_type)
+        radau_set_stages(stepper, method.n_stages);
+      TSAdapt adapt = nullptr;
+      petsc(TSGetAdapt(stepper, &adapt));
+      petsc(TSAdaptSetType(adapt, parameters.step_control == StepControl::fixed ? TSADAPTNONE : TSADAPTBASIC));
+      if (method.petsc_type == radau_type)
+        petsc(TSAdaptSetClip(adapt, radau::min_change, radau::max_change));
+      petsc(TSSetExactFinalTime(stepper, TS_EXACTFINALTIME_STEPOVER)); // choose_step() sets the ends of steps
+      petsc(TSSetMaxSNESFailures(stepper, -1));
+      petsc(TSSetMaxStepRejections(stepper, 30));
+      petsc(TSSetErrorIfStepFails(stepper, PETSC_FALSE));
+      petsc(TSSetMaxSteps(stepper, static_cast<PetscInt>(parameters.max_steps)));
+
+      set_newton();
+      apply_user_options();
     }
-    if (is_offered(name))
-      return;
-    const std::string reason = reason_against(name);
-    throw InputError("the PETSc integrator \"" + name + "\" (option -ts_type) is refused: " +
-                     (reason.empty() ? "it is not tested for a mass matrix that depends on the state" : reason) +
-                     "; \"bdf\" or \"radau\" is expected");
-  }
 
-  /// Makes the elimination a right preconditioner, so that residuals are the true ones.
-  void
-  PetscStepper::Implementation::use_krylov_method()
-  {
-    constexpr double relative_tolerance_of_krylov = 1e-6;
-    PetscBool chosen                              = PETSC_FALSE;
-    petsc(PetscOptionsHasName(nullptr, parameters.petsc_prefix.c_str(), "-ksp_type", &chosen));
-    if (chosen)
-      return;
-    SNES snes = nullptr;
-    KSP ksp   = nullptr;
-    petsc(TSGetSNES(ts.get(), &snes));
-    petsc(SNESGetKSP(snes, &ksp));
-    petsc(KSPSetType(ksp, KSPGMRES));
-    petsc(KSPSetPCSide(ksp, PC_RIGHT));
-    petsc(KSPSetTolerances(ksp, relative_tolerance_of_krylov, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
-  }
-
-  PetscErrorCode
-  PetscStepper::Implementation::function(TS ts, const PetscReal t, Vec y, Vec y_dot, Vec F, void *context)
-  {
-    auto &self                = *static_cast<Implementation *>(context);
-    bool accepted             = true;
-    const PetscErrorCode code = self.guarded([&]() {
-      const ReadAccess y_access(y), y_dot_access(y_dot);
-      const WriteAccess F_access(F);
-      if (self.owner.stage_rates)
-        self.owner.stage_rates(t, y_dot_access.span);
-      accepted   = self.system.residual(t, y_access.span, y_dot_access.span, F_access.span);
-      double sum = 0.;
-      for (const double value : F_access.span)
-        sum += value;
-      if (accepted && !std::isfinite(sum))
-        self.nonfinite_at = t;
-    });
-    if (code == 0 && !accepted)
+    /// Newton's method with exact elimination.
+    void
+    set_newton()
     {
-      self.refused_at = t;
-      SNES snes       = nullptr;
-      TSGetSNES(ts, &snes);
-      return SNESSetFunctionDomainError(snes);
+      TS stepper                 = ts.get();
+      SNES snes                  = nullptr;
+      SNESLineSearch line_search = nullptr;
+      KSP ksp                    = nullptr;
+      PC pc                      = nullptr;
+      petsc(TSGetSNES(stepper, &snes));
+      petsc(SNESSetType(snes, SNESNEWTONLS));
+      petsc(SNESGetLineSearch(snes, &line_search));
+      petsc(SNESLineSearchSetType(line_search, SNESLINESEARCHBASIC));
+      // No tolerance of the correction: a line search that fails after a small one would count as converged.
+      petsc(SNESSetTolerances(snes, PETSC_DEFAULT, PETSC_DEFAULT, /*correction=*/0., /*iterations=*/10, PETSC_DEFAULT));
+      petsc(SNESSetConvergenceTest(snes, newton_converged, this, nullptr));
+      petsc(SNESGetKSP(snes, &ksp));
+      petsc(KSPSetType(ksp, KSPPREONLY)); // the elimination is exact
+      petsc(KSPSetPCSide(ksp, PC_RIGHT));
+      petsc(KSPGetPC(ksp, &pc));
+      petsc(PCSetType(pc, PCSHELL));
+      petsc(PCShellSetContext(pc, this));
+      petsc(PCShellSetName(pc, "block-tridiagonal elimination"));
+      petsc(PCShellSetSetUp(pc, set_up_preconditioner));
+      petsc(PCShellSetApply(pc, precondition));
     }
-    return code;
-  }
 
-  PetscErrorCode
-  PetscStepper::Implementation::jacobian_function(
-    TS, const PetscReal t, Vec y, Vec y_dot, const PetscReal shift, Mat A, Mat, void *context)
-  {
-    auto &self                = *static_cast<Implementation *>(context);
-    const PetscErrorCode code = self.guarded([&]() {
-      const ReadAccess y_access(y), y_dot_access(y_dot);
-      self.jacobian_ok = self.system.setup_jacobian(t, y_access.span, y_dot_access.span, shift);
-    });
-    if (code != 0)
+    /// Applies the user's options after "--"; the integrator must be among those offered.
+    void
+    apply_user_options()
+    {
+      TS stepper          = ts.get();
+      PetscErrorCode code = 0;
+      std::string words;
+      {
+        PetscErrorWords error;
+        code  = TSSetFromOptions(stepper);
+        words = error.text;
+      }
+      if (code != 0)
+        throw InputError("PETSc refuses an option after \"--\": " + words);
+
+      // Options that begin() resets each time.
+      const auto option = [&](const char *option_name) {
+        PetscReal value = 0.;
+        PetscBool found = PETSC_FALSE;
+        petsc(PetscOptionsGetReal(nullptr, parameters.petsc_prefix.c_str(), option_name, &value, &found));
+        return found ? std::optional<double>(value) : std::nullopt;
+      };
+      user_tolerance     = option("-ts_atol");
+      user_step          = option("-ts_dt");
+      relative_tolerance = option("-ts_rtol").value_or(0.);
+      if (option("-ts_max_time"))
+        throw InputError(
+          "the PETSc option -ts_max_time is refused: Time/End time is expected to say when the run ends");
+
+      TSType type = nullptr;
+      petsc(TSGetType(stepper, &type));
+      std::string name = type;
+      if (name == radau_type)
+      {
+        owner.stage_places_ = radau_set_system(stepper, &system, &guarded).c;
+        name += " " + std::to_string(2 * owner.stage_places_.size() - 1);
+      }
+      if (is_offered(name))
+        return;
+      const std::string reason = reason_against(name);
+      throw InputError("the PETSc integrator \"" + name + "\" (option -ts_type) is refused: " +
+                       (reason.empty() ? "it is not tested for a mass matrix that depends on the state" : reason) +
+                       "; \"bdf\" or \"radau\" is expected");
+    }
+
+    /// Makes the elimination a right preconditioner, so that residuals are the true ones.
+    void
+    use_krylov_method()
+    {
+      constexpr double relative_tolerance_of_krylov = 1e-6;
+      PetscBool chosen                              = PETSC_FALSE;
+      petsc(PetscOptionsHasName(nullptr, parameters.petsc_prefix.c_str(), "-ksp_type", &chosen));
+      if (chosen)
+        return;
+      KSP ksp = nullptr;
+      petsc(SNESGetKSP(ts->snes, &ksp));
+      petsc(KSPSetType(ksp, KSPGMRES));
+      petsc(KSPSetPCSide(ksp, PC_RIGHT));
+      petsc(KSPSetTolerances(ksp, relative_tolerance_of_krylov, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
+    }
+
+    static PetscErrorCode
+    function(TS ts, const PetscReal t, Vec y, Vec y_dot, Vec F, void *context)
+    {
+      auto &self                = *static_cast<Implementation *>(context);
+      bool accepted             = true;
+      const PetscErrorCode code = self.guarded([&]() {
+        const ReadAccess y_access(y), y_dot_access(y_dot);
+        const WriteAccess F_access(F);
+        if (self.owner.stage_rates)
+          self.owner.stage_rates(t, y_dot_access.span);
+        accepted   = self.system.residual(t, y_access.span, y_dot_access.span, F_access.span);
+        double sum = 0.;
+        for (const double value : F_access.span)
+          sum += value;
+        if (accepted && !std::isfinite(sum))
+          self.nonfinite_at = t;
+      });
+      if (code == 0 && !accepted)
+      {
+        self.refused_at = t;
+        return SNESSetFunctionDomainError(ts->snes);
+      }
       return code;
-    MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY); // tells PETSc that the matrix has changed
-    return MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY);
-  }
+    }
 
-  PetscErrorCode
-  PetscStepper::Implementation::multiply(Mat A, Vec x, Vec y)
-  {
-    void *context = nullptr;
-    MatShellGetContext(A, &context);
-    auto &self = *static_cast<Implementation *>(context);
-    return self.guarded([&]() {
-      const ReadAccess x_access(x);
-      const WriteAccess y_access(y);
-      self.system.jacobian_vmult(x_access.span, y_access.span);
-    });
-  }
-
-  PetscErrorCode
-  PetscStepper::Implementation::set_up_preconditioner(PC pc)
-  {
-    void *context = nullptr;
-    PCShellGetContext(pc, &context);
-    const bool ok = static_cast<Implementation *>(context)->jacobian_ok;
-    return PCSetFailedReason(pc, ok ? PC_NOERROR : PC_FACTOR_NUMERIC_ZEROPIVOT);
-  }
-
-  PetscErrorCode
-  PetscStepper::Implementation::precondition(PC pc, Vec x, Vec y)
-  {
-    void *context = nullptr;
-    PCShellGetContext(pc, &context);
-    auto &self = *static_cast<Implementation *>(context);
-    return self.guarded([&]() {
-      const ReadAccess x_access(x);
-      const WriteAccess y_access(y);
-      self.system.solve_with_jacobian(x_access.span, y_access.span);
-    });
-  }
-
-  /**
-   * Convergence test of Newton's method, which converges quadratically with an exact Jacobian: after a correction d the
-   * remaining error is about C d^2. C is taken from the last solve that needed two corrections; before the first, two
-   * are made.
-   */
-  PetscErrorCode
-  PetscStepper::Implementation::newton_converged(SNES,
-                                                 const PetscInt it,
-                                                 const PetscReal x_norm,
-                                                 const PetscReal dx_norm,
-                                                 const PetscReal F_norm,
-                                                 SNESConvergedReason *reason,
-                                                 void *context)
-  {
-    auto &self = *static_cast<Implementation *>(context);
-    *reason    = SNES_CONVERGED_ITERATING;
-    if (!std::isfinite(F_norm) || !std::isfinite(dx_norm))
+    static PetscErrorCode
+    jacobian_function(TS, const PetscReal t, Vec y, Vec y_dot, const PetscReal shift, Mat A, Mat, void *context)
     {
-      *reason = newton_not_finite;
+      auto &self                = *static_cast<Implementation *>(context);
+      const PetscErrorCode code = self.guarded([&]() {
+        const ReadAccess y_access(y), y_dot_access(y_dot);
+        self.jacobian_ok = self.system.setup_jacobian(t, y_access.span, y_dot_access.span, shift);
+      });
+      if (code != 0)
+        return code;
+      MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY); // tells PETSc that the matrix has changed
+      return MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY);
+    }
+
+    static PetscErrorCode
+    multiply(Mat A, Vec x, Vec y)
+    {
+      auto &self = context_of<Implementation>(A);
+      return self.guarded([&]() {
+        const ReadAccess x_access(x);
+        const WriteAccess y_access(y);
+        self.system.jacobian_vmult(x_access.span, y_access.span);
+      });
+    }
+
+    static PetscErrorCode
+    set_up_preconditioner(PC pc)
+    {
+      return PCSetFailedReason(pc,
+                               context_of<Implementation>(pc).jacobian_ok ? PC_NOERROR : PC_FACTOR_NUMERIC_ZEROPIVOT);
+    }
+
+    static PetscErrorCode
+    precondition(PC pc, Vec x, Vec y)
+    {
+      auto &self = context_of<Implementation>(pc);
+      return self.guarded([&]() {
+        const ReadAccess x_access(x);
+        const WriteAccess y_access(y);
+        self.system.solve_with_jacobian(x_access.span, y_access.span);
+      });
+    }
+
+    /**
+     * Convergence test of Newton's method, which converges quadratically with an exact Jacobian: after a correction d
+     * the remaining error is about C d^2. C is taken from the last solve that needed two corrections; before the first,
+     * two are made.
+     */
+    static PetscErrorCode
+    newton_converged(SNES,
+                     const PetscInt it,
+                     const PetscReal x_norm,
+                     const PetscReal dx_norm,
+                     const PetscReal F_norm,
+                     SNESConvergedReason *reason,
+                     void *context)
+    {
+      auto &self = *static_cast<Implementation *>(context);
+      *reason    = SNES_CONVERGED_ITERATING;
+      if (!std::isfinite(F_norm) || !std::isfinite(dx_norm))
+      {
+        *reason = newton_not_finite;
+        return 0;
+      }
+      if (it == 0)
+      {
+        if (F_norm == 0.)
+          *reason = SNES_CONVERGED_FNORM_ABS;
+        return 0;
+      }
+      // Norms in units of the admissible error.
+      const double rms = 1. / std::sqrt(static_cast<double>(self.n_unknowns));
+      const double d = dx_norm / self.tolerance * rms, rounding = 1e-15 * (x_norm / self.tolerance) * rms;
+      if (it >= 2 && self.last_correction > 0.)
+        self.convergence_constant = d / (self.last_correction * self.last_correction);
+      self.last_correction = d;
+      const bool small     = d <= newton_fraction || self.convergence_constant * d * d <= predicted_fraction;
+      if (small || d <= rounding)
+        *reason = SNES_CONVERGED_SNORM_RELATIVE;
       return 0;
     }
-    if (it == 0)
-    {
-      if (F_norm == 0.)
-        *reason = SNES_CONVERGED_FNORM_ABS;
-      return 0;
-    }
-    // Norms in units of the admissible error.
-    double d = dx_norm / self.tolerance, x = x_norm / self.tolerance;
-    const double rms = 1. / std::sqrt(static_cast<double>(self.n_unknowns));
-    d *= rms;
-    const double rounding = 1e-15 * x * rms;
-    if (it >= 2 && self.last_correction > 0.)
-      self.convergence_constant = d / (self.last_correction * self.last_correction);
-    self.last_correction = d;
-    const bool small     = d <= newton_fraction || self.convergence_constant * d * d <= predicted_fraction;
-    if (small || d <= rounding)
-      *reason = SNES_CONVERGED_SNORM_RELATIVE;
-    return 0;
-  }
 
-  /// Shortens the step so that it, or the next one, ends at a required time.
-  void
-  PetscStepper::Implementation::choose_step()
-  {
-    PetscReal time = 0., size = 0.;
-    petsc(TSGetTime(ts.get(), &time));
-    petsc(TSGetTimeStep(ts.get(), &size));
-    if (fixed_step > 0.)
-      size = fixed_step;
-    else
-      size = admitted_step(limits.data(), static_cast<unsigned int>(limits.size()), limit, time, size);
-    const double remaining = ends[next_end] - time;
-    if (size >= remaining * (1. - 1e-9))
-      size = remaining;
-    else if (fixed_step == 0. && size > 0.5 * remaining)
-      size = 0.5 * remaining;
-    petsc(TSSetTimeStep(ts.get(), size));
-  }
+    /// Shortens the step so that it, or the next one, ends at a required time.
+    void
+    choose_step()
+    {
+      double size = fixed_step;
+      if (fixed_step == 0.)
+        size = admitted_step(limits.data(), static_cast<unsigned int>(limits.size()), limit, ts->ptime, ts->time_step);
+      const double remaining = ends[next_end] - ts->ptime;
+      if (size >= remaining * (1. - 1e-9))
+        size = remaining;
+      else if (fixed_step == 0. && size > 0.5 * remaining)
+        size = 0.5 * remaining;
+      petsc(TSSetTimeStep(ts.get(), size));
+    }
 
-  /// Makes a step; errors are returned as codes, not printed.
-  PetscErrorCode
-  PetscStepper::Implementation::make_step()
-  {
-    petsc(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
-    const PetscErrorCode code = TSStep(ts.get());
-    petsc(PetscPopErrorHandler());
-    return code;
-  }
+    /// Makes a step; errors are returned as codes, not printed.
+    PetscErrorCode
+    make_step()
+    {
+      petsc(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
+      const PetscErrorCode code = TSStep(ts.get());
+      petsc(PetscPopErrorHandler());
+      return code;
+    }
 
-  /// Completes an accepted step; null if there was none.
-  const Step *
-  PetscStepper::Implementation::arrive()
-  {
-    PetscReal time = 0., previous = 0.;
-    petsc(TSGetTime(ts.get(), &time));
-    petsc(TSGetPrevTime(ts.get(), &previous));
-    const bool is_end = std::abs(time - ends[next_end]) <= 1e-13 * std::max(ends[next_end] - previous, ends[next_end]);
-    if (is_end)
+    /// Completes an accepted step; null if there was none.
+    const Step *
+    arrive()
     {
-      time = ends[next_end++];
-      petsc(TSSetTime(ts.get(), time));
+      double time           = ts->ptime;
+      const double previous = ts->ptime_prev;
+      const bool is_end =
+        std::abs(time - ends[next_end]) <= 1e-13 * std::max(ends[next_end] - previous, ends[next_end]);
+      if (is_end)
+      {
+        time = ends[next_end++];
+        petsc(TSSetTime(ts.get(), time));
+      }
+      const double size = time - previous;
+      if (!(size > 4. * std::numeric_limits<double>::epsilon() * time))
+      {
+        underflow = true; // shorter steps do not help, and `size` cannot be a divisor
+        return nullptr;
+      }
+      const TimeOutcome so_far = counts();
+      step                     = {time, size, so_far.steps, is_end, so_far.rejected_steps, so_far.newton_iterations};
+      const ReadAccess access(solution.get());
+      std::copy(access.span.begin(), access.span.end(), y.begin());
+      return &step;
     }
-    const double size = time - previous;
-    if (!(size > 4. * std::numeric_limits<double>::epsilon() * time))
-    {
-      underflow = true; // shorter steps do not help, and `size` cannot be a divisor
-      return nullptr;
-    }
-    const TimeOutcome so_far = counts();
-    step                     = {time, size, so_far.steps, is_end, so_far.rejected_steps, so_far.newton_iterations};
-    const ReadAccess access(solution.get());
-    std::copy(access.span.begin(), access.span.end(), y.begin());
-    return &step;
-  }
 
-  /// Shows the state to the monitors of PETSc's options.
-  void
-  PetscStepper::Implementation::show()
-  {
-    PetscInt steps = 0;
-    PetscReal time = 0.;
-    petsc(TSGetStepNumber(ts.get(), &steps));
-    petsc(TSGetTime(ts.get(), &time));
-    petsc(TSMonitor(ts.get(), steps, time, solution.get()));
-  }
+    /// Shows the state to the monitors of PETSc's options.
+    void
+    show()
+    {
+      petsc(TSMonitor(ts.get(), ts->steps, ts->ptime, solution.get()));
+    }
 
-  TimeOutcome
-  PetscStepper::Implementation::counts() const
-  {
-    TimeOutcome result;
-    PetscInt steps = 0, rejected = 0, newton = 0, linear = 0;
-    PetscReal time = 0., size = 0.;
-    TSGetStepNumber(ts.get(), &steps);
-    TSGetStepRejections(ts.get(), &rejected);
-    TSGetSNESIterations(ts.get(), &newton);
-    TSGetKSPIterations(ts.get(), &linear);
-    TSGetTime(ts.get(), &time);
-    TSGetTimeStep(ts.get(), &size);
-    result.time              = time;
-    result.step_size         = size;
-    result.steps             = static_cast<unsigned int>(steps);
-    result.rejected_steps    = static_cast<unsigned int>(rejected);
-    result.newton_iterations = static_cast<unsigned long>(newton);
-    result.linear_iterations = static_cast<unsigned long>(linear);
-    return result;
-  }
+    TimeOutcome
+    counts() const
+    {
+      TimeOutcome result;
+      result.time              = ts->ptime;
+      result.step_size         = ts->time_step;
+      result.steps             = static_cast<unsigned int>(ts->steps);
+      result.rejected_steps    = static_cast<unsigned int>(ts->reject);
+      result.newton_iterations = static_cast<unsigned long>(ts->snes_its);
+      result.linear_iterations = static_cast<unsigned long>(ts->ksp_its);
+      return result;
+    }
 
-  /// Names the failure that PETSc reports.
-  TimeOutcome
-  PetscStepper::Implementation::failure(const PetscErrorCode code)
-  {
-    TimeOutcome result = counts();
-    TS stepper         = ts.get();
-    SNES snes          = nullptr;
-    SNESConvergedReason newton_reason;
-    TSGetSNES(stepper, &snes);
-    SNESGetConvergedReason(snes, &newton_reason);
-    // Refused states and residuals count if their times were close: they made the steps small. Each rank knows its own.
-    double latest[2] = {refused_at, nonfinite_at};
-    MPI_Allreduce(
-      MPI_IN_PLACE, latest, 2, MPI_DOUBLE, MPI_MAX, PetscObjectComm(reinterpret_cast<PetscObject>(stepper)));
-    const double close  = result.time - 1e-6 * parameters.end_time;
-    result.status       = Status::failed;
-    result.domain_error = latest[0] >= close;
-    if (code != 0)
+    /// Names the failure that PETSc reports.
+    TimeOutcome
+    failure(const PetscErrorCode code)
     {
-      const char *text = nullptr;
-      PetscErrorMessage(code, &text, nullptr);
-      result.reason  = "petsc_error";
-      result.message = std::string("PETSc stopped with the error: ") + (text != nullptr ? text : "unknown");
+      TimeOutcome result = counts();
+      SNESConvergedReason newton_reason;
+      SNESGetConvergedReason(ts->snes, &newton_reason);
+      // Refused states and residuals count if their times were close: they made the steps small. Each rank knows its
+      // own.
+      double latest[2] = {refused_at, nonfinite_at};
+      MPI_Allreduce(
+        MPI_IN_PLACE, latest, 2, MPI_DOUBLE, MPI_MAX, PetscObjectComm(reinterpret_cast<PetscObject>(ts.get())));
+      const double close  = result.time - 1e-6 * parameters.end_time;
+      result.status       = Status::failed;
+      result.domain_error = latest[0] >= close;
+      const auto named    = [&](const char *reason, const std::string &message) {
+        result.reason  = reason;
+        result.message = message;
+        return result;
+      };
+      if (code != 0)
+      {
+        const char *text = nullptr;
+        PetscErrorMessage(code, &text, nullptr);
+        return named("petsc_error",
+                     std::string("PETSc stopped with the error: ") + (text != nullptr ? text : "unknown"));
+      }
+      if (latest[1] >= close)
+        return named("nonfinite", "the residual is not a finite number");
+      if (newton_reason == SNES_DIVERGED_LINEAR_SOLVE)
+        return named("linear_failed", "the linear system of Newton's method is singular or could not be solved");
+      if (underflow || result.step_size < 1e-13 * parameters.end_time)
+        return named("step_underflow", "the step size fell below the resolution of the time");
+      if (newton_reason < 0)
+        return named("newton_diverged",
+                     std::string("Newton's method did not converge (") + SNESConvergedReasons[newton_reason] + ")");
+      return named("rejection_limit", "a step was rejected too many times: its error stays above the tolerance");
     }
-    else if (latest[1] >= close)
-    {
-      result.reason  = "nonfinite";
-      result.message = "the residual is not a finite number";
-    }
-    else if (newton_reason == SNES_DIVERGED_LINEAR_SOLVE)
-    {
-      result.reason  = "linear_failed";
-      result.message = "the linear system of Newton's method is singular or could not be solved";
-    }
-    else if (underflow || result.step_size < 1e-13 * parameters.end_time)
-    {
-      result.reason  = "step_underflow";
-      result.message = "the step size fell below the resolution of the time";
-    }
-    else if (newton_reason < 0)
-    {
-      result.reason  = "newton_diverged";
-      result.message = std::string("Newton's method did not converge (") + SNESConvergedReasons[newton_reason] + ")";
-    }
-    else
-    {
-      result.reason  = "rejection_limit";
-      result.message = "a step was rejected too many times: its error stays above the tolerance";
-    }
-    return result;
-  }
-
+  };
 
   PetscStepper::PetscStepper(MPI_Comm communicator, ImplicitSystem &system, const TimeParameters &parameters)
     : implementation_(std::make_unique<Implementation>(*this, communicator, system, parameters))
@@ -645,9 +549,7 @@ namespace crawler
       return true;
     }
     Archive own;
-    PetscReal time = 0.;
-    TSGetTime(self.ts.get(), &time);
-    own(time, self.next_end, self.limit, self.refused_at, self.nonfinite_at);
+    own(self.ts->ptime, self.next_end, self.limit, self.refused_at, self.nonfinite_at);
     radau_exchange(self.ts.get(), own);
     std::string bytes = own.bytes();
     archive(bytes);
@@ -665,10 +567,8 @@ namespace crawler
     }
     // Times outside of the step are refused by PETSc, even by a last bit: it takes the start of a step as its end less
     // its size.
-    TS ts          = implementation_->ts.get();
-    PetscReal from = 0., to = 0.;
-    petsc(TSGetPrevTime(ts, &from));
-    petsc(TSGetTime(ts, &to));
+    TS ts             = implementation_->ts.get();
+    const double from = ts->ptime_prev, to = ts->ptime;
     const double inside = std::clamp(time, from, to);
     const bool is_there = std::abs(inside - time) <= 1e-12 * std::abs(to);
     petsc(TSInterpolate(ts, is_there ? inside : time, implementation_->interpolated.get()));

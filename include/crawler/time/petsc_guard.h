@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <petscsys.h>
+#include <petscpc.h>
 
 #include <exception>
 #include <utility>
@@ -38,4 +38,22 @@ namespace crawler
   private:
     std::exception_ptr exception_;
   };
+
+  /// The context of a shell matrix, or of a shell preconditioner.
+  template <typename Context>
+  Context &
+  context_of(Mat matrix)
+  {
+    void *context = nullptr;
+    MatShellGetContext(matrix, &context);
+    return *static_cast<Context *>(context);
+  }
+  template <typename Context>
+  Context &
+  context_of(PC preconditioner)
+  {
+    void *context = nullptr;
+    PCShellGetContext(preconditioner, &context);
+    return *static_cast<Context *>(context);
+  }
 } // namespace crawler

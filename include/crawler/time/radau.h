@@ -4,6 +4,7 @@
 #include <crawler/base/archive.h>
 #include <crawler/time/implicit_system.h>
 #include <crawler/time/petsc_guard.h>
+#include <crawler/time/radau_tableau.h>
 
 #include <petscts.h>
 
@@ -24,12 +25,10 @@ namespace crawler
   register_radau();
 
   /// Sets the system, whose residual is that of TSSetIFunction. @p system and @p guard must outlive the stepper.
-  PetscErrorCode
+  const RadauTableau &
   radau_set_system(TS ts, ImplicitSystem *system, PetscGuard *guard);
-  PetscErrorCode
+  void
   radau_set_stages(TS ts, unsigned int n_stages);
-  PetscErrorCode
-  radau_get_stages(TS ts, unsigned int *n_stages);
 
   /// Exchanges the data that the type keeps between two steps besides the solution, for Stepper::exchange().
   void
