@@ -65,15 +65,13 @@ namespace crawler
     const Discretization &d = snapshot.assembler.discretization();
     if (!sampler_ || mesh_number_ != snapshot.mesh_number)
       sampler_ = std::make_unique<FieldSampler>(snapshot.assembler, snapshot.units, own_points(d));
-    mesh_number_         = snapshot.mesh_number;
-    const Fields &fields = sampler_->sample(snapshot.computed_time, snapshot.y, snapshot.v);
-    times_.push_back(snapshot.step.time);
+    mesh_number_      = snapshot.mesh_number;
+    const Fields &own = sampler_->sample(snapshot.computed_time, snapshot.y, snapshot.v);
+    Fields all; // empty except on rank 0
     for (const FieldName &field : field_names)
       if (field.in_kymograph)
-      {
-        const std::vector<double> all = gather(fields.*field.values, d.communicator());
-        (rows_.*field.values).insert((rows_.*field.values).end(), all.begin(), all.end()); // empty except on rank 0
-      }
+        all.*field.values = gather(own.*field.values, d.communicator());
+    add(snapshot.step.time, all);
   }
 
   void
@@ -91,8 +89,8 @@ namespace crawler
     for (const FieldName &field : field_names)
       if (field.in_kymograph)
       {
-        const std::vector<double> &all = fields.*field.values;
-        (rows_.*field.values).insert((rows_.*field.values).end(), all.begin(), all.end());
+        const std::vector<double> &row = fields.*field.values;
+        (rows_.*field.values).insert((rows_.*field.values).end(), row.begin(), row.end());
       }
   }
 
@@ -100,14 +98,12 @@ namespace crawler
   Kymograph::shown(const FieldName &field) const
   {
     const std::vector<double> &values = rows_.*field.values;
-    FieldRange all                    = {0., 0.};
-    bool is_first                     = true;
+    FieldRange all                    = {HUGE_VAL, -HUGE_VAL};
     for (const double value : values)
       if (std::isfinite(value))
-      {
-        all = is_first ? FieldRange(value, value) : FieldRange(std::min(all.first, value), std::max(all.second, value));
-        is_first = false;
-      }
+        all = {std::min(all.first, value), std::max(all.second, value)};
+    if (all.first > all.second)
+      all = {0., 0.};
     if (!field.has_peaks)
       return all;
     UsualSize size;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
 #include <crawler/output/snapshot_writer.h>
-#include <crawler/output/vtu_files.h>
-#include <crawler/output/xdmf_files.h>
 
 namespace crawler
 {
@@ -18,17 +16,6 @@ namespace crawler
           points.push_back({c, static_cast<double>(i) / q});
       return points;
     }
-
-    std::unique_ptr<SnapshotFiles>
-    new_files(const SnapshotFormat format,
-              const std::filesystem::path &folder,
-              const double length,
-              const std::size_t n_frames)
-    {
-      if (format == SnapshotFormat::xdmf)
-        return std::make_unique<XdmfFiles>(folder, length, n_frames);
-      return std::make_unique<VtuFiles>(folder, length);
-    }
   } // namespace
 
   std::string
@@ -42,7 +29,7 @@ namespace crawler
                                  const double length,
                                  const std::size_t n_frames)
     : scenery_(length)
-    , files_(new_files(format, folder, length, n_frames))
+    , files_(format == SnapshotFormat::xdmf ? xdmf_files(folder, length, n_frames) : vtu_files(folder, length))
   {
   }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/files.h>
+#include <crawler/base/growing_text.h>
+#include <crawler/output/snapshot_files.h>
 #include <crawler/output/vtk_xml.h>
-#include <crawler/output/vtu_files.h>
 
 #include <fmt/format.h>
 
@@ -136,62 +137,77 @@ namespace crawler
       return fmt::format(
         "    <DataSet timestep=\"{}\" part=\"{}\" name=\"{}\" file=\"solution/{}.vtu\"/>\n", time, part, name, file);
     }
+    class VtuFiles : public SnapshotFiles
+    {
+    public:
+      VtuFiles(const std::filesystem::path &folder, const double length)
+        : folder_(folder)
+        , length_(length)
+        , body_(folder / "solution.pvd", list_begin, list_end)
+        , line_(folder / "line.pvd", list_begin, list_end)
+      {
+      }
+
+      void
+      add(const Frame &frame, const Scenery &scenery, const bool scenery_changed) override
+      {
+        const std::filesystem::path files = folder_ / "solution";
+        const std::string number          = fmt::format("{:06}", n_frames_++);
+        if (scenery_changed)
+          write_scenery(scenery);
+        write_file(files / (number + ".vtu"), body_file(frame, length_));
+        write_file(files / ("grip_" + number + ".vtu"), grip_file(frame, scenery, length_));
+        write_file(files / ("line_" + number + ".vtu"), line_file(frame));
+        body_.add(entry(frame.time, 0, "body", number) + entry(frame.time, 1, "grip", "grip_" + number) +
+                  entry(frame.time, 2, "ground", "ground") + entry(frame.time, 3, "scale", "scale"));
+        line_.add(entry(frame.time, 0, "line", "line_" + number));
+      }
+
+      void
+      end(const Scenery &scenery) override
+      {
+        if (n_frames_ > 0)
+          write_scenery(scenery);
+      }
+
+      void
+      exchange(Archive &archive) override
+      {
+        archive(n_frames_, body_, line_);
+      }
+
+    private:
+      void
+      write_scenery(const Scenery &scenery) const
+      {
+        const Corners ground = scenery.ground(), scale = scenery.scale();
+        write_file(folder_ / "solution" / "ground.vtu",
+                   vtu_file(CellType::quadrilateral,
+                            vtk_array("tick_distance", std::vector<double>{scenery.tick_distance()}, 1, "length"),
+                            ">\n",
+                            ground,
+                            in_order(ground)));
+        std::string fields = " Scalars=\"stretch\">\n";
+        for (std::size_t f = 0; f < scenery.ranges().size(); ++f)
+        {
+          const auto [smallest, largest] = scenery.ranges()[f];
+          fields += vtk_array(
+            field_names[f].name, std::vector<double>{smallest, largest, largest, smallest}, 1, field_names[f].unit);
+        }
+        write_file(folder_ / "solution" / "scale.vtu",
+                   vtu_file(CellType::quadrilateral, "", fields, scale, in_order(scale)));
+      }
+
+      const std::filesystem::path folder_;
+      const double length_;
+      unsigned int n_frames_ = 0;
+      GrowingText body_, line_; ///< the lists of files
+    };
   } // namespace
 
-  VtuFiles::VtuFiles(const std::filesystem::path &folder, const double length)
-    : folder_(folder)
-    , length_(length)
-    , body_(folder / "solution.pvd", list_begin, list_end)
-    , line_(folder / "line.pvd", list_begin, list_end)
+  std::unique_ptr<SnapshotFiles>
+  vtu_files(const std::filesystem::path &folder, const double length)
   {
-  }
-
-  void
-  VtuFiles::add(const Frame &frame, const Scenery &scenery, const bool scenery_changed)
-  {
-    const std::filesystem::path files = folder_ / "solution";
-    const std::string number          = fmt::format("{:06}", n_frames_++);
-    if (scenery_changed)
-      write_scenery(scenery);
-    write_file(files / (number + ".vtu"), body_file(frame, length_));
-    write_file(files / ("grip_" + number + ".vtu"), grip_file(frame, scenery, length_));
-    write_file(files / ("line_" + number + ".vtu"), line_file(frame));
-    body_.add(entry(frame.time, 0, "body", number) + entry(frame.time, 1, "grip", "grip_" + number) +
-              entry(frame.time, 2, "ground", "ground") + entry(frame.time, 3, "scale", "scale"));
-    line_.add(entry(frame.time, 0, "line", "line_" + number));
-  }
-
-  void
-  VtuFiles::end(const Scenery &scenery)
-  {
-    if (n_frames_ > 0)
-      write_scenery(scenery);
-  }
-
-  void
-  VtuFiles::exchange(Archive &archive)
-  {
-    archive(n_frames_, body_, line_);
-  }
-
-  void
-  VtuFiles::write_scenery(const Scenery &scenery) const
-  {
-    const Corners ground = scenery.ground(), scale = scenery.scale();
-    write_file(folder_ / "solution" / "ground.vtu",
-               vtu_file(CellType::quadrilateral,
-                        vtk_array("tick_distance", std::vector<double>{scenery.tick_distance()}, 1, "length"),
-                        ">\n",
-                        ground,
-                        in_order(ground)));
-    std::string fields = " Scalars=\"stretch\">\n";
-    for (std::size_t f = 0; f < scenery.ranges().size(); ++f)
-    {
-      const auto [smallest, largest] = scenery.ranges()[f];
-      fields += vtk_array(
-        field_names[f].name, std::vector<double>{smallest, largest, largest, smallest}, 1, field_names[f].unit);
-    }
-    write_file(folder_ / "solution" / "scale.vtu",
-               vtu_file(CellType::quadrilateral, "", fields, scale, in_order(scale)));
+    return std::make_unique<VtuFiles>(folder, length);
   }
 } // namespace crawler

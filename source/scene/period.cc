@@ -346,10 +346,7 @@ namespace crawler
       double largest_ = 0., step_ = 0., mean_step_ = 0.; ///< |m|; change over a step of the grid
       double rate_ = 0.;                                 ///< a bound of |m_t|, if known
     };
-  } // namespace
 
-  namespace
-  {
     std::optional<double>
     find_period(const ActiveStress &stress, const double length, const double begin, const double end_time)
     {
@@ -434,29 +431,18 @@ namespace crawler
   double
   shortest_period(const ActiveStress &stress, const double length, const double period, const double from)
   {
-    constexpr unsigned int n         = 256;
-    const std::vector<double> points = {0., 0.1837 * length, 0.4142 * length, 0.7321 * length, length};
-    const auto at                    = stress.at(points);
-    std::vector<double> now(points.size()), later(points.size());
-    double largest           = 0.;
+    constexpr unsigned int n = 256;
+    StressAtPlaces m(stress, length);
+    const auto time = [&](const unsigned int i) { return from + (i + 0.381966) / n * period; };
+    double largest  = 0.;
+    for (unsigned int i = 0; i < n; ++i)
+      largest = std::max(largest, StressAtPlaces::size(m.at(time(i))));
     const auto repeats_after = [&](const double P) {
       for (unsigned int i = 0; i < n; ++i)
-      {
-        const double t = from + (i + 0.381966) / n * period;
-        at->values(t, now);
-        at->values(t + P, later);
-        for (std::size_t p = 0; p < points.size(); ++p)
-          if (!(std::abs(later[p] - now[p]) <= same * largest))
-            return false;
-      }
+        if (StressAtPlaces::difference(m.at(time(i) + P), m.at(time(i))) > same * largest)
+          return false;
       return true;
     };
-    for (unsigned int i = 0; i < n; ++i)
-    {
-      at->values(from + (i + 0.381966) / n * period, now);
-      for (std::size_t p = 0; p < points.size(); ++p)
-        largest = std::max(largest, std::abs(now[p]));
-    }
     constexpr unsigned int most = 10; // times each factor
     double shortest             = period;
     for (const unsigned int factor : {2, 3, 5, 7})

@@ -3,6 +3,9 @@
 
 #include <crawler/output/scenery.h>
 
+#include <filesystem>
+#include <memory>
+
 namespace crawler
 {
   /// Files of one format for all snapshots of a run, a complete animation after each snapshot.
@@ -23,4 +26,13 @@ namespace crawler
     virtual void
     exchange(Archive &archive) = 0;
   };
+
+  /// Makes files solution.pvd (body, ground, grip and scale of each frame) and line.pvd (the body as a line with s on
+  /// the x axis). Both name files in solution/.
+  std::unique_ptr<SnapshotFiles>
+  vtu_files(const std::filesystem::path &folder, double length);
+
+  /// Makes solution.h5, described by solution.xdmf and line.xdmf as above, for @p n_frames expected frames.
+  std::unique_ptr<SnapshotFiles>
+  xdmf_files(const std::filesystem::path &folder, double length, std::size_t n_frames);
 } // namespace crawler
