@@ -58,12 +58,6 @@ namespace crawler
     return n > 0 ? static_cast<std::size_t>(n) - 1 : 0;
   }
 
-  double
-  PictureTimes::natural(const std::size_t i) const
-  {
-    return times_[i].value == end_time_ ? 1. : times_[i].value / end_time_;
-  }
-
   PictureTimes
   picture_times(const OutputParameters &output, const Scene &scene)
   {

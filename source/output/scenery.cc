@@ -138,12 +138,6 @@ namespace crawler
     return grow(path_, seen_path_, seen_path_.second - seen_path_.first) || changed;
   }
 
-  FieldRange
-  Scenery::shown(const std::size_t field) const
-  {
-    return field_names[field].has_peaks ? sizes_[field].within(seen_[field]) : seen_[field];
-  }
-
   void
   Scenery::finish()
   {

@@ -59,17 +59,4 @@ namespace crawler
       files_->end(scenery_);
     });
   }
-
-  void
-  SnapshotWriter::exchange(Archive &archive)
-  {
-    archive(scenery_, *files_);
-  }
-
-  void
-  SnapshotWriter::write(const Frame &frame)
-  {
-    const bool changed = scenery_.include(frame);
-    files_->add(frame, scenery_, changed);
-  }
 } // namespace crawler

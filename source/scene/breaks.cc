@@ -53,20 +53,6 @@ namespace crawler
     set_limits();
   }
 
-  void
-  TimeSegments::restart()
-  {
-    piece_ = 0;
-    set_limits();
-  }
-
-  void
-  TimeSegments::go_on()
-  {
-    ++piece_;
-    set_limits();
-  }
-
   /// Sets the limits of the present piece; merged breaks are at most d later than the one kept.
   void
   TimeSegments::set_limits()

@@ -71,12 +71,6 @@ namespace crawler
       w_dg[i] = a_ == 0. ? 0. : a_ * g[i];
   }
 
-  std::unique_ptr<FrictionLaw>
-  PowerFriction::scaled(const double factor) const
-  {
-    return std::make_unique<PowerFriction>(gamma_ * factor, a_);
-  }
-
   double
   largest_merit(const FrictionLaw &friction, const double from, const double to)
   {

@@ -207,31 +207,12 @@ namespace crawler
     }
   } // namespace
 
-  bool
-  Scene::keeps_its_centre() const
-  {
-    return is_plain() && body.friction_exponent() == 0.;
-  }
-
   /// Compares types, which is faster than dynamic_cast: called in every residual.
   bool
   Scene::has_power_law() const
   {
     const FrictionLaw &law = *friction;
     return typeid(law) == typeid(PowerFriction);
-  }
-
-  bool
-  Scene::is_plain() const
-  {
-    return profiles.is_plain() && ground.is_plain() && active_stress->feedback() == nullptr && has_power_law();
-  }
-
-  bool
-  Scene::is_alike_everywhere() const
-  {
-    const StretchFeedback *feedback = active_stress->feedback();
-    return !ground.profile && (feedback == nullptr || feedback->delay() == 0.);
   }
 
   std::string
@@ -250,13 +231,6 @@ namespace crawler
                    {ground.profile != nullptr, "Ground/Profile"},
                    {ground.direction.is_uneven(), "Ground/Backward ratio"},
                    {active_stress && active_stress->feedback() != nullptr, "an active stress with feedback"}});
-  }
-
-  double
-  Scene::friction_exponent() const
-  {
-    constexpr double small = 1e-3;
-    return friction->exponent(small);
   }
 
   std::pair<double, double>

@@ -34,13 +34,6 @@ namespace crawler
           std::string("Units/") + entry);
   }
 
-  bool
-  UnitNames::is_general() const
-  {
-    const UnitNames general;
-    return length == general.length && time == general.time && force == general.force;
-  }
-
   std::string
   UnitNames::of(const std::string &unit) const
   {
@@ -75,11 +68,5 @@ namespace crawler
       done = close;
     }
     return named + text.substr(done);
-  }
-
-  std::string
-  UnitNames::behind(const std::string &unit) const
-  {
-    return is_general() || unit == "1" ? "" : " " + of(unit);
   }
 } // namespace crawler

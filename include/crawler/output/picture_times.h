@@ -49,7 +49,10 @@ namespace crawler
 
     /// Time number @p i in units of the duration; 1 is the end, exactly.
     double
-    natural(std::size_t i) const;
+    natural(const std::size_t i) const
+    {
+      return times_[i].value == end_time_ ? 1. : times_[i].value / end_time_;
+    }
 
   private:
     std::vector<Time> times_;

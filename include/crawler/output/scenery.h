@@ -104,6 +104,9 @@ namespace crawler
 
     /// Range drawn of a field.
     FieldRange
-    shown(std::size_t field) const;
+    shown(const std::size_t field) const
+    {
+      return field_names[field].has_peaks ? sizes_[field].within(seen_[field]) : seen_[field];
+    }
   };
 } // namespace crawler

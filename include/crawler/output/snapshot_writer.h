@@ -30,11 +30,18 @@ namespace crawler
     void
     end() override;
     void
-    exchange(Archive &archive) override;
+    exchange(Archive &archive) override
+    {
+      archive(scenery_, *files_);
+    }
 
     /// Writes a frame (this rank alone). Throws FileError.
     void
-    write(const Frame &frame);
+    write(const Frame &frame)
+    {
+      const bool changed = scenery_.include(frame);
+      files_->add(frame, scenery_, changed);
+    }
 
   private:
     std::unique_ptr<FieldSampler> sampler_; ///< for the mesh mesh_number_

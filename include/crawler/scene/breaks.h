@@ -52,11 +52,19 @@ namespace crawler
 
     /// Goes to the first piece.
     void
-    restart();
+    restart()
+    {
+      piece_ = 0;
+      set_limits();
+    }
 
     /// Goes to the next piece, which must exist.
     void
-    go_on();
+    go_on()
+    {
+      ++piece_;
+      set_limits();
+    }
 
     bool
     is_last() const

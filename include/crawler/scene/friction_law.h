@@ -46,7 +46,10 @@ namespace crawler
     void
     values_and_log_derivatives(std::span<const double> w, std::span<double> g, std::span<double> w_dg) const override;
     std::unique_ptr<FrictionLaw>
-    scaled(double factor) const override;
+    scaled(const double factor) const override
+    {
+      return std::make_unique<PowerFriction>(gamma_ * factor, a_);
+    }
     double
     exponent(double) const override
     {

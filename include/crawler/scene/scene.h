@@ -28,12 +28,18 @@ namespace crawler
     /// True if the scene is only the numbers of the body, the power law and an active stress m(s,t). Other scenes are
     /// general: they have the equation of doc/theory.md, "General bodies and grounds".
     bool
-    is_plain() const;
+    is_plain() const
+    {
+      return profiles.is_plain() && ground.is_plain() && active_stress->feedback() == nullptr && has_power_law();
+    }
 
     /// True if the centre of mass stays in place, whatever the active stress: at a = 0, where friction does not depend
     /// on the stretch.
     bool
-    keeps_its_centre() const;
+    keeps_its_centre() const
+    {
+      return is_plain() && body.friction_exponent() == 0.;
+    }
 
     /// True if the friction law is the power law.
     bool
@@ -41,7 +47,11 @@ namespace crawler
 
     /// True if the motion of a body depends on its shape alone, not on its place or its past; then strides may repeat.
     bool
-    is_alike_everywhere() const;
+    is_alike_everywhere() const
+    {
+      const StretchFeedback *feedback = active_stress->feedback();
+      return !ground.profile && (feedback == nullptr || feedback->delay() == 0.);
+    }
 
     /// Features that is_plain() excludes, in words; empty if none.
     std::string
@@ -53,7 +63,11 @@ namespace crawler
 
     /// Exponent w g'/g of the friction law at small stretch, which decides what is lost there: a of the power law.
     double
-    friction_exponent() const;
+    friction_exponent() const
+    {
+      constexpr double small = 1e-3;
+      return friction->exponent(small);
+    }
 
     /// The elastic modulus at s = 0 and s = L [force].
     std::pair<double, double>

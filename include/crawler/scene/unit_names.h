@@ -32,11 +32,18 @@ namespace crawler
 
     /// The unit to follow a number, with a blank before it; empty if the user has named no unit.
     std::string
-    behind(const std::string &unit) const;
+    behind(const std::string &unit) const
+    {
+      return is_general() || unit == "1" ? "" : " " + of(unit);
+    }
 
   private:
     /// True if the user has named no unit.
     bool
-    is_general() const;
+    is_general() const
+    {
+      const UnitNames general;
+      return length == general.length && time == general.time && force == general.force;
+    }
   };
 } // namespace crawler

@@ -158,12 +158,6 @@ namespace crawler
   }
 
   std::vector<double>
-  Window::breaks() const
-  {
-    return edge_ == 0. ? ends() : std::vector<double>();
-  }
-
-  std::vector<double>
   Window::ends() const
   {
     return is_everywhere_ ? std::vector<double>() : within({from_, to_}, end_);
@@ -176,12 +170,6 @@ namespace crawler
       return 0.;
     const bool lasts = to_ - edge_ >= end_ || (edge_ == 0. && to_ >= end_);
     return std::clamp(lasts ? from_ + edge_ : to_, 0., end_);
-  }
-
-  bool
-  Window::is_whole() const
-  {
-    return is_everywhere_ || (from_ + edge_ <= 0. && to_ - edge_ >= end_);
   }
 
   std::string

@@ -147,12 +147,6 @@ namespace crawler
     }
   } // namespace
 
-  bool
-  PrescribedStrainParameters::is_generated() const
-  {
-    return given_by != "expression" && given_by != "wave" && given_by != "table";
-  }
-
   void
   PrescribedStrainParameters::add_parameters(Declarations &declarations, const std::vector<std::string> &generators)
   {
@@ -252,18 +246,6 @@ namespace crawler
           refuse("s", s);
       }
     }
-  }
-
-  std::optional<ActiveStress::Repetition>
-  PrescribedStrain::search_repetition() const
-  {
-    return generator_ ? generator_->repetition() : facts_.repetition;
-  }
-
-  const StressFailures *
-  PrescribedStrain::failures() const
-  {
-    return generator_ ? generator_->failures() : nullptr;
   }
 
   void

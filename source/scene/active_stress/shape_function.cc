@@ -181,13 +181,6 @@ namespace crawler
   }
 
   double
-  ShapeFunction::local(const double x, const std::size_t panel) const
-  {
-    const double left = left_[panel], right = left_[panel + 1];
-    return ((x - left) - (right - x)) / (right - left);
-  }
-
-  double
   ShapeFunction::value(const double x, std::size_t &panel) const
   {
     panel = find(x, panel);

@@ -156,12 +156,6 @@ namespace crawler
     return within(std::move(times), end_time);
   }
 
-  bool
-  TravellingWave::has_moving_jumps() const
-  {
-    return profile_.jumps() && phase_rate_ != 0. && wave_number_ > 0. && amplitude_ != 0.;
-  }
-
   std::unique_ptr<const ActiveStress>
   TravellingWave::with_fronts(const double part) const
   {

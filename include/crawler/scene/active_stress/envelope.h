@@ -99,7 +99,10 @@ namespace crawler
 
     /// Places in (0, end) where it jumps.
     std::vector<double>
-    breaks() const;
+    breaks() const
+    {
+      return edge_ == 0. ? ends() : std::vector<double>();
+    }
 
     /// Places in (0, end) where it begins and ends, with or without edges; between them nothing can be missed.
     std::vector<double>
@@ -111,7 +114,10 @@ namespace crawler
 
     /// True if it is 1 on the whole range.
     bool
-    is_whole() const;
+    is_whole() const
+    {
+      return is_everywhere_ || (from_ + edge_ <= 0. && to_ - edge_ >= end_);
+    }
 
     /// Description for the log; empty if it is whole.
     std::string

@@ -31,7 +31,10 @@ namespace crawler
 
     /// True if another generator gives the strain.
     bool
-    is_generated() const;
+    is_generated() const
+    {
+      return given_by != "expression" && given_by != "wave" && given_by != "table";
+    }
   };
 
   /**
@@ -62,7 +65,10 @@ namespace crawler
 
     /// Failures of the generator, if the strain is generated.
     const StressFailures *
-    failures() const override;
+    failures() const override
+    {
+      return generator_ ? generator_->failures() : nullptr;
+    }
 
     void
     report(std::ostream &out) const override;
@@ -71,7 +77,10 @@ namespace crawler
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
     std::optional<Repetition>
-    search_repetition() const override;
+    search_repetition() const override
+    {
+      return generator_ ? generator_->repetition() : facts_.repetition;
+    }
 
     void
     require_usable_generator(double end_time) const;

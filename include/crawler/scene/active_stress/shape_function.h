@@ -72,7 +72,11 @@ namespace crawler
     std::size_t
     find(double x, std::size_t panel) const;
     double
-    local(double x, std::size_t panel) const;
+    local(const double x, const std::size_t panel) const
+    {
+      const double left = left_[panel], right = left_[panel + 1];
+      return ((x - left) - (right - x)) / (right - left);
+    }
 
     const unsigned int degree_;
     std::vector<double> left_;     ///< ends of the panels, one more than panels

@@ -56,7 +56,10 @@ namespace crawler
 
   private:
     bool
-    has_moving_jumps() const;
+    has_moving_jumps() const
+    {
+      return profile_.jumps() && phase_rate_ != 0. && wave_number_ > 0. && amplitude_ != 0.;
+    }
 
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
