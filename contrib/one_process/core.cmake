@@ -15,7 +15,7 @@ foreach(room accuracy adjoint equation formula lanes mesh reduced_models run sce
   list(APPEND ONE_PROCESS_SOURCES ${of_room})
 endforeach()
 foreach(left_out formula/formula run/summary scene/active_stress/formula_input scene/active_stress/library lanes/lanes
-        time/radau time/petsc_stepper)
+        time/radau time/radau_stages time/petsc_stepper)
   list(REMOVE_ITEM ONE_PROCESS_SOURCES ${CRAWLER}/source/${left_out}.cc)
 endforeach()
 foreach(one base/archive base/clock base/communication base/csv_numbers base/cubic_spline base/files base/gauss_panels base/gauss_rule
