@@ -91,7 +91,7 @@ CHECKS = (
     Check("random_extremes", 25, "{build}/tests/random_extremes {extremes} {out}/random_extremes.csv"),
     Check("soft_bodies", 30, "{root}/tests/long/soft_bodies.py {crawler} mpirun 1000 {seed}"),
     Check("kinds", 22, "{root}/tests/long/kinds.py {build}/python 100 {seed}"),
-    Check("fits", 20, "{root}/tests/python/fit_coverage.py {build}/python 200 1", "doc/fit.md", "`contrib/verify.sh --only fits`", "text", within=0.02),
+    Check("fits", 20, "{root}/tests/python/fit_coverage.py {build}/python 200 1", "doc/fit.md", "`contrib/verify.sh --only fits`", within=0.02),
     Check("fit_profiles", 2, "{root}/tests/python/fit_coverage.py {build}/python 40 1 profiles"),
     # Interruptions and faults.
     Check("kills_of_runs", 10, "{root}/tests/long/run_kills.py {crawler} mpirun 6 {seed}"),

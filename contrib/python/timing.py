@@ -4,7 +4,9 @@
 
     PYTHONPATH=build/python contrib/python/timing.py [--build build] [--file prm/paper/fig_s1.prm] [--repeat 50]
 
-Prints wall and processor time [ms]: medians, but for what happens once.
+Prints wall and processor time [ms]: medians, but for what happens once. Then the runs that searches of fits need: of
+Gauss and Newton with differences of runs, as they are, and of L-BFGS by the gradient of chi-square alone, where each run
+would have a sweep of the adjoint beside it.
 """
 import argparse
 import os
@@ -42,16 +44,53 @@ def load():
     return crawler
 
 
-def fit_of_tracks(crawler):
-    """The fit of a worm whose tracks a run makes."""
+def tracks_of(crawler, scene, settings, duration, places, noise):
+    """Tracks of 13 markers in 300 frames, from a run, and a setting with their places."""
     import numpy
     from crawler.measured import Samples
-    scene = str(SOURCE / "prm/studies/fit_worm.prm")
-    t, s = numpy.linspace(0, 12, 300), numpy.linspace(0, 3, 13)
-    set_truth = {"Fit/Variables": "", "Body/Elastic modulus": 1.3, "Body/Anchoring exponent": 2.4, "Active stress/Travelling wave/Amplitude": 0.25}
-    x = crawler.run(scene, set=set_truth, fields=t, places=s).fields.position
-    tracks = Samples("x", numpy.arange(13.), t, x + 0.01 * numpy.random.default_rng(1).standard_normal(x.shape), [str(i) for i in range(13)])
-    return lambda: crawler.fit(scene, tracks, markers_at=s)
+    t = numpy.linspace(0, duration, 300)
+    x = crawler.run(scene, set=settings, fields=t, places=places).fields.position
+    x += noise * numpy.random.default_rng(1).standard_normal(x.shape)
+    return Samples("x", numpy.arange(13.), t, x, [str(i) for i in range(13)]), {"Fit/Markers at": ", ".join(map(repr, places.tolist()))}
+
+
+def fits(crawler):
+    """Fits of three numbers, and of 16, 15 of which are a stress that starts at nothing: [(scene, tracks, settings)]."""
+    import numpy
+    worm, exponent, modes = str(SOURCE / "prm/studies/fit_worm.prm"), "Body/Anchoring exponent", "Active stress/Modes/"
+    truth = {"Fit/Variables": "", "Body/Elastic modulus": 1.3, exponent: 2.4, "Active stress/Travelling wave/Amplitude": 0.25}
+    tracks, places = tracks_of(crawler, worm, truth, 12, numpy.linspace(0, 3, 13), 0.01)
+    yield worm, tracks, places
+    scene = {exponent: 1.8, "Active stress/Generator": "modes", modes + "In time": "splines", modes + "Harmonics": 1, modes + "Time cells": 3}
+    stress = (0.15 * numpy.random.default_rng(3).standard_normal(15)).tolist()
+    tracks, places = tracks_of(crawler, scene, {modes + "Coefficients": ", ".join(map(repr, stress))}, 1, numpy.linspace(0, 1, 13), 0.004)
+    yield ({**scene, modes + "Coefficients": ", ".join(15 * ["0"])}, tracks,
+           {**places, "Fit/Variables": f"{modes}Coefficients[1-15] : -1 to 1; {exponent} : 0.5 to 5", "Fit/Standard deviation": 0.004})
+
+
+def print_searches(scene, tracks, settings):
+    """Prints the runs that searches from the start of a scene need, and where they end."""
+    import numpy
+    from crawler.fitting import prepared
+    from crawler.fitting.fit import LARGEST_ACCURACY, Failed, Problem
+    from scipy.optimize import minimize
+    model, _ = prepared(scene, [f"{name}={value}" for name, value in settings.items()], tracks)
+    model.accuracy, problem = LARGEST_ACCURACY, Problem(model, model.data)
+    start = (model.start - model.low) / problem.width
+    squares, _, why = problem.search(start)
+    print(f"{len(start)} numbers: {model.n_runs} runs, least sum {squares:.6g} {why}", end="; ")
+    effects = numpy.linalg.norm(problem.jacobian(start), axis=0)  # they scale the variables for L-BFGS
+    unit = 1 / numpy.where(effects > 0, effects, effects.max())
+
+    def value_and_gradient(y):
+        try:
+            residuals = problem.residuals(y * unit)
+            return residuals @ residuals, 2 * unit * (problem.jacobian(y * unit).T @ residuals)
+        except Failed:  # no run there: the search goes back
+            return 1e9 * squares, numpy.zeros(len(y))
+    found = minimize(value_and_gradient, start / unit, jac=True, method="L-BFGS-B", bounds=[(0, 1 / one) for one in unit],
+                     options={"ftol": 1e-6 / model.data.n, "maxcor": 20, "maxiter": 1000})
+    print(f"L-BFGS: {found.nfev} runs with sweeps, least sum {found.fun:.6g}")
 
 
 def main():
@@ -75,12 +114,16 @@ def main():
     entry = "Body/Elastic modulus"
     measure("batch, each of 64", lambda: crawler.batch([file] * 64), 5, 64)
     measure("sweep, each of 1024 points", lambda: crawler.sweep(file, {entry: stiffness}), 3, 1024)
-    measure("fit, 3 numbers to 13 markers x 300 frames", fit_of_tracks(crawler), 5)
+    scenes = list(fits(crawler))
+    scene, tracks, settings = scenes[0]
+    measure("fit, 3 numbers to 13 markers x 300 frames", lambda: crawler.fit(scene, tracks, set=settings), 5)
     with tempfile.TemporaryDirectory() as folder:
         command = [program, "run", file, "--quiet", "--overwrite", "--output", folder + "/output"]
         measure("crawler run, a process with files", lambda: subprocess.run(command, check=True), 7)
         command += ["--set", "Output/Number of snapshots=0", "--set", "Output/Statistics=false"]
         measure("crawler run, without fields", lambda: subprocess.run(command, check=True), 7)
+    for one in scenes:
+        print_searches(*one)
 
 
 if __name__ == "__main__":

@@ -217,7 +217,8 @@ def fit(scene, data=None, variables=None, *, set=None, workers=1, verbose=False,
     data: the name of a file, or measured.Samples, e.g. from measured.read_samples(name, unit_of_t="1/30") for a file in
     other units; for several kinds a list, with standard_deviation=[0.01, 0.02] for each; None: that of the scene
     (Fit/Data). variables: {entry: (from, to), ...}; None: Fit/Variables. starts=8, standard_deviation=0.01, ... are
-    entries of section Fit. workers: number of processes that share the starts; the result does not depend on it.
+    entries of section Fit; with one start the minimum may be local. workers: number of processes that share the starts;
+    the result does not depend on it.
     Fit.variables has, for each, value, deviation, intervals and numerical error; Fit.undetermined the combinations that
     the data do not determine. Raises InputError, FileError, and RuntimeError where the fit fails.
     """

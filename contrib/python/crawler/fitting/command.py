@@ -13,7 +13,7 @@ from ..needs import Failed, InputError, Parser, Stopped
 from . import Interrupted, find, prepared
 from .comparison import Comparison, require_comparable
 from .folder import Folder, drawn
-from .result import value_in_words
+from .result import ONE_START, value_in_words
 
 DESCRIPTION = """Finds numbers of a parameter file, with their uncertainty, from measured data (section Fit; doc/fit.md). With several
 files all are fitted to the same data, and a table says which of them the data prefer."""
@@ -57,8 +57,7 @@ def lines_of(found):
     yield f"data: {goodness.n_data}, variables: {len(found.variables)}, further unknowns for origin and places: {goodness.n_constants}; {fits}"
     for one in goodness.series if len(goodness.series) > 1 else ():
         yield f"of {one['kind']}: {one['n_data']} data, chi-square {one['chi_square']:.5g}"
-    alone = ["1 start: the minimum may be local (Fit/Starts)"] if len(found.starts) == 1 else []
-    for sentence in [*found.notes, *found.undetermined, *alone]:
+    for sentence in [*found.notes, *found.undetermined, *([ONE_START] if len(found.starts) == 1 else [])]:
         yield f"{sentence[0].upper()}{sentence[1:]}."
 
 

@@ -15,6 +15,7 @@ UNLIKELY = 1e-3       # probability of chi-square below which the scene does not
 RULED_OUT = 1e-6       # probability below which undetermined combinations are not reported either
 OUTLYING = 1e-4       # probability of a residual as large as the largest
 MUCH = 100            # chi-square per degree of freedom beyond any noise
+ONE_START = "1 start: the minimum may be local (Fit/Starts)"
 UNITS = 'units? see "--unit-of-s" and "--unit-of-t"'
 ALIKE = 5             # correlation of residuals in time, in its own deviations, that is not accidental
 
@@ -33,7 +34,7 @@ class Fit(Numbers):
         self.settings, self.covariance = settings, covariance_of_values
 
     def __repr__(self):
-        return f"<crawler.Fit: {self.status}, " + ", ".join(f"{name} = {value_in_words(one)}" for name, one in self.variables.items()) + ">"
+        return f"<crawler.Fit: {self.status}, " + ", ".join(f"{name} = {value_in_words(one)}" for name, one in self.variables.items()) + f"{'; ' + ONE_START if len(self.starts) == 1 else ''}>"
 
 
 def value_in_words(one):

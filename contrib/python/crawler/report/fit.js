@@ -73,7 +73,8 @@ function showFit() {
       {axes: ['t', 'place'], details, first: {x: ['place', 't'], y: table.columns.some(column => column.name === 'place') ? ['t'] : ['residual'], colour: ['residual']}});
   }
   const starts = summary.starts ?? [];
-  if (starts.length > 1) section('Starts', tableOf(['start', 'residuals (root mean square)', ...Object.keys(starts[0].values).map(shortName)],
+  if (starts.length === 1) section('Starts', el('p', {}, '1 start: the minimum may be local (Fit/Starts).'));
+  else if (starts.length) section('Starts', tableOf(['start', 'residuals (root mean square)', ...Object.keys(starts[0].values).map(shortName)],
     starts.map(one => [String(one.start + 1), one.reason || exactly(one.residuals), ...Object.values(one.values).map(value => exactly(value))])));
 }
 
