@@ -19,6 +19,8 @@ import warnings
 
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1)
 DEBIANS_PYTHON, LACKING = "/usr/bin/python3", "CRAWLER_LACKING_PYTHON"  # the latter: modules that another Python lacks
+CHART_LIBRARIES = [pathlib.Path(__file__).resolve().parents[1] / "crawler.libs/chart.min.js",  # of the wheel
+                   pathlib.Path("/usr/share/javascript/chart.js/chart.min.js")]
 PACKAGES = {name: f"python3-{name}" for name in ("h5py", "matplotlib", "numpy", "scipy")}
 
 
@@ -79,6 +81,15 @@ def need(*modules):
         plt.rcParams.update({"font.size": 10, "axes.titlesize": 10, "axes.labelsize": 10, "xtick.labelsize": 9,
                              "ytick.labelsize": 9, "axes.linewidth": 0.7, "hatch.linewidth": 0.5,
                              "svg.hashsalt": "crawler"})
+
+
+def chart_library():
+    """Text of Chart.js as a script of a page. Ends the script if it is missing."""
+    found = next((path for path in CHART_LIBRARIES if path.is_file()), None)
+    if found is None:
+        complain(f"{CHART_LIBRARIES[-1]}, which draws charts, is missing (on Debian: apt install libjs-chart.js)")
+        sys.exit(os.EX_UNAVAILABLE)
+    return found.read_text(encoding="utf-8").replace("</script", "<\\/script")
 
 
 def write_whole(path, content):

@@ -78,11 +78,16 @@ class Clock {
 
 /** The body on its ground, from the side: its thickness is 1/stretch, so that its volume stays. */
 class BodyPicture {
-  constructor(parent, run, fields, clock) {
-    this.clock = clock;
+  constructor(parent, run, fields, clock, colours) {
+    Object.assign(this, {clock, colours});
     this.use(run, fields);
-    this.chart = new Chart(parent, {height: 210, label: 'the body on its ground', paint: chart => this.paint(chart)});
-    clock.listeners.push(() => this.chart.draw());
+    this.chart = new Picture(parent, {height: 210, label: 'the body on its ground', paint: (c, chart) => this.paint(c, chart),
+      axes: () => ({x: {low: this.centre() - this.span / 2, high: this.centre() + this.span / 2, bare: true, title: withUnit('place x on the ground', 'length')}, y: {low: 0, high: 1, hidden: true}})});
+    clock.listeners.push(() => this.chart.redraw());
+  }
+  centre() {
+    const [row, part] = this.fields.row(this.clock.t), next = Math.min(row + 1, this.centres.length - 1);
+    return this.follows ? (1 - part) * this.centres[row] + part * this.centres[next] : this.middle;
   }
   /** From now on it shows these. */
   use(run, fields) {
@@ -96,16 +101,13 @@ class BodyPicture {
     this.reach = Math.max(...(fields.shown.friction_force ?? [0]).map(Math.abs));
     if (run.ground) this.ground = {x: run.ground.x, c: run.ground.factor.map(factor => factor ?? NaN)};
   }
-  paint({context: c, width}) {
-    const ground = 128, scale = width / this.span, f = this.fields, t = this.clock.t;
-    const [row, part] = f.row(t), next = Math.min(row + 1, this.centres.length - 1);
-    const centre = this.follows ? (1 - part) * this.centres[row] + part * this.centres[next] : this.middle;
-    const px = x => (x - centre) * scale + width / 2;
-    this.drawGround(c, px, ground, width, centre);
-    const x = f.along('position', t), w = f.along('stretch', t), value = f.along(this.field, t);
-    const base = Math.min(34, 0.075 * f.length * scale, Math.max(12, 100 * this.least)), thick = w.map(stretch => Math.min(104, base / Math.max(stretch, 1e-3)));
+  paint(c, chart) {
+    const f = this.fields, t = this.clock.t, {field, scale} = this.colours(), {chartArea: {bottom, width}} = chart, ground = bottom - 34, px = x => chart.x(x);
+    this.drawGround(c, px, ground, chart);
+    const x = f.along('position', t), w = f.along('stretch', t), value = f.along(field, t);
+    const base = Math.min(34, 0.075 * f.length / this.span * width, Math.max(12, 100 * this.least)), thick = w.map(stretch => Math.min(104, base / Math.max(stretch, 1e-3)));
     for (let i = 0; i + 1 < x.length; ++i) {
-      c.fillStyle = this.colours.css((value[i] + value[i + 1]) / 2);
+      c.fillStyle = scale.css((value[i] + value[i + 1]) / 2);
       c.beginPath();
       c.moveTo(px(x[i]) - 0.4, ground);
       c.lineTo(px(x[i]) - 0.4, ground - thick[i]);
@@ -139,8 +141,7 @@ class BodyPicture {
     c.textAlign = 'center';
     c.fillText('head', px[last], ground - thick[last] - 8);
   }
-  drawGround(c, px, ground, width, centre) {
-    const low = centre - this.span / 2, high = centre + this.span / 2;
+  drawGround(c, px, ground, {chartArea: {left, width}, scales}) {
     if (this.ground) {
       const {x, c: factor} = this.ground, [least, most] = range(factor);
       c.fillStyle = ink('soft');
@@ -149,18 +150,11 @@ class BodyPicture {
         c.fillRect(px(x[i]), ground, px(x[i + 1]) - px(x[i]) + 0.5, 34);
       }
       c.globalAlpha = 1;
-    } else { c.fillStyle = ink('raised'); c.fillRect(0, ground, width, 34); }
-    c.strokeStyle = ink('ink');
-    c.lineWidth = 1.5;
-    c.beginPath(); c.moveTo(0, ground + 0.5); c.lineTo(width, ground + 0.5); c.stroke();
-    c.fillStyle = c.strokeStyle = ink('soft');
-    c.lineWidth = 1;
-    c.textAlign = 'center';
-    for (const tick of ticks(low, high, width / 110)) {
-      c.beginPath(); c.moveTo(px(tick), ground); c.lineTo(px(tick), ground + 38); c.stroke();
-      if (px(tick) > 14 && px(tick) < width - 14) c.fillText(show(tick, 5), px(tick), ground + 52);
-    }
-    c.fillText(withUnit('place x on the ground', 'length'), width / 2, ground + 74);
+    } else { c.fillStyle = ink('raised'); c.fillRect(left, ground, width, 34); }
+    c.fillStyle = ink('ink');
+    c.fillRect(left, ground, width, 1.5);
+    c.fillStyle = ink('soft');
+    for (const {value} of scales.x.ticks) c.fillRect(px(value), ground, 1, 34);
   }
   /** What the ground does to the body. */
   drawArrows(c, px, ground) {
@@ -179,21 +173,16 @@ class BodyPicture {
 
 /** A field as colours over time and the body, or the ground on which it is. */
 class KymographPicture {
-  constructor(parent, fields, clock) {
-    Object.assign(this, {fields, clock, over: 's'});
-    this.chart = new Chart(parent, {height: 380, label: 'kymograph', axesAbove: true, keys: event => this.keys(event),
-      axes: () => ({x: {...this.domain(), title: withUnit(this.over === 's' ? 'place s on the body' : 'place x on the ground', 'length')},
-                    y: {low: 0, high: this.fields.end, title: withUnit('time t', 'time')}}),
-      paint: chart => this.paint(chart),
-      overlay: chart => {
-        const y = chart.y(clock.t), c = chart.top;
-        c.strokeStyle = ink('ink');
-        c.lineWidth = 1.5;
-        c.beginPath(); c.moveTo(chart.margin.left, y); c.lineTo(chart.width - chart.margin.right, y); c.stroke();
-      },
-      hover: (x, y) => this.words(this.chart.x.inverse(x), this.chart.y.inverse(y)),
-      press: (x, y) => clock.set(this.chart.y.inverse(y))});
-    clock.listeners.push(() => this.chart.move());
+  constructor(parent, fields, clock, colours) {
+    Object.assign(this, {fields, clock, colours, over: 's'});
+    this.chart = new Picture(parent, {height: 430, label: 'kymograph', keys: event => this.keys(event), colours,
+      axes: () => ({x: {...this.domain(), bare: true, title: withUnit(this.over === 's' ? 'place s on the body' : 'place x on the ground', 'length')},
+                    y: {low: 0, high: this.fields.end, bare: true, title: withUnit('time t', 'time')}}),
+      paint: (c, chart) => this.paint(c, chart),
+      overlay: (c, {chartArea: {left, width}, scales: {y}}) => { c.fillStyle = ink('ink'); c.fillRect(left, y.getPixelForValue(clock.t) - 0.75, width, 1.5); },
+      find: (x, y, chart) => { const words = this.words(...chart.inverse(x, y)); return words && {x, y, words}; },
+      press: (x, y, chart) => clock.set(chart.inverse(x, y)[1])});
+    clock.listeners.push(() => this.chart.draw());
   }
   domain() {
     if (this.over === 's') return {low: 0, high: this.fields.length};
@@ -216,23 +205,22 @@ class KymographPicture {
       return low + (p[high] > p[low] ? (x - p[low]) / (p[high] - p[low]) : 0);
     };
   }
-  paint(chart) {
-    const m = chart.margin, ratio = devicePixelRatio || 1, {n} = this.fields;
-    const wide = Math.round((chart.width - m.left - m.right) * ratio), tall = Math.round((chart.height - m.top - m.bottom) * ratio);
-    if (wide < 1 || tall < 1) return;
-    const image = new ImageData(wide, tall), pixels = new Uint32Array(image.data.buffer), x = Array.from({length: wide}, (_, i) => chart.x.inverse(m.left + (i + 0.5) / ratio));
+  paint(c, chart) {
+    const {chartArea: {left, top, width, height}, currentDevicePixelRatio: ratio} = chart, {n} = this.fields, {field, scale} = this.colours();
+    const wide = Math.round(width * ratio), tall = Math.round(height * ratio), image = new ImageData(wide, tall), pixels = new Uint32Array(image.data.buffer);
+    const x = Array.from({length: wide}, (_, i) => chart.inverse(left + (i + 0.5) / ratio, 0)[0]);
     for (let j = 0; j < tall; ++j) {
-      const t = chart.y.inverse(m.top + (j + 0.5) / ratio), values = this.fields.along(this.field, t), index = this.indexer(t);
+      const t = chart.inverse(0, top + (j + 0.5) / ratio)[1], values = this.fields.along(field, t), index = this.indexer(t);
       for (let i = 0; i < wide; ++i) {
         const at = index(x[i]);
         if (at < 0) continue;
         const k = Math.min(Math.floor(at), n - 2);
-        pixels[j * wide + i] = this.colours.pixel(values[k] + (at - k) * (values[k + 1] - values[k]));
+        pixels[j * wide + i] = scale.pixel(values[k] + (at - k) * (values[k + 1] - values[k]));
       }
     }
     const canvas = el('canvas', {width: wide, height: tall});
     canvas.getContext('2d').putImageData(image, 0, 0);
-    chart.context.drawImage(canvas, m.left, m.top, wide / ratio, tall / ratio);
+    c.drawImage(canvas, left, top, width, height);
   }
   words(x, t) {
     const at = t >= 0 && t <= this.fields.end ? this.indexer(t)(x) : -1;
@@ -248,37 +236,28 @@ function showBody(parent, run, clock, fields) {
   const names = Object.keys(FIELDS).filter(name => fields.fields[name]);
   const top = figure('The body on its ground.', 'It is as thick as its volume asks for (1/stretch). Arrows: friction of the ground on the body. ▲ centre of mass.');
   parent.append(top);
-  const body = new BodyPicture(top, run, fields, clock);
+  let field = names[0];
+  const colours = () => {
+    const {middle, name, symbol, unit} = FIELDS[field];
+    return {field, scale: colourScale(...fields.shown[field], {middle}), title: withUnit(`${name} ${symbol}`, unit)};
+  };
+  const body = new BodyPicture(top, run, fields, clock, colours);
   const slider = el('input', {type: 'range', min: 0, max: 1000, value: 0, 'aria-label': 'time', oninput: () => clock.set(slider.value / 1000 * fields.end)});
   const play = el('button', {class: 'play', type: 'button', onclick: () => clock.toggle()}, 'Play');
   const time = el('output');
-  const choose = name => {
-    const {middle, name: words, symbol, unit} = FIELDS[name];
-    body.field = map.field = name;
-    restyle = () => {
-      body.colours = map.colours = colourScale(...fields.shown[name], {middle});
-      bar.set(body.colours, withUnit(`${words} ${symbol}`, unit));
-    };
-    restyle();
-    body.chart.draw();
-    map.chart.draw();
-  };
-  let restyle = () => {};
   top.append(el('div', {class: 'controls'}, play, el('label', {class: 'grow'}, slider, time),
     chooser('Speed', [['0.25', '¼'], ['1', '1'], ['4', '4']], '1', value => { clock.speed = Number(value); }),
-    chooser('Colour', names.map(name => [name, FIELDS[name].name]), names[0], choose)));
+    chooser('Colour', names.map(name => [name, FIELDS[name].name]), field, name => { field = name; redraw(); })));
   const two = el('div', {class: 'two'}), left = figure('Kymograph.', 'Click to go to a time.');
   parent.append(two);
   two.append(left);
-  const map = new KymographPicture(left, fields, clock), bar = new ColourBar(left, 58);
-  left.append(el('div', {class: 'controls'}, chooser('Over', [['s', 'the body'], ['x', 'the ground']], 's', over => { map.over = over; map.chart.draw(); })));
-  charts.unshift({box: top, draw: () => restyle()}); // colours first, then pictures
+  const map = new KymographPicture(left, fields, clock, colours), redraw = () => { body.chart.redraw(); map.chart.redraw(); };
+  left.append(el('div', {class: 'controls'}, chooser('Over', [['s', 'the body'], ['x', 'the ground']], 's', over => { map.over = over; map.chart.redraw(); })));
   clock.listeners.push(t => {
     slider.value = t / fields.end * 1000;
     time.textContent = `t = ${show(t, 4)}`;
     play.textContent = clock.running ? 'Pause' : 'Play';
   });
-  choose(names[0]);
   clock.set(clock.t);
   const right = el('div');
   two.append(right);
@@ -286,8 +265,7 @@ function showBody(parent, run, clock, fields) {
     fields = map.fields = otherFields;
     Object.assign(clock, {end: fields.end, pace: other.pace ?? clock.pace});
     body.use(other, fields);
-    restyle();
-    map.chart.draw();
+    map.chart.redraw();
     clock.set(clock.t);
   };
   return {right, use};

@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 from .. import _compiled
-from ..needs import InputError, Parser, write_whole
+from ..needs import InputError, Parser, chart_library, write_whole
 from ..results import entries_of
 from ..tradeoff import evaluate, read_rows
 from .folder import data_of_fit, fits_within, parameters_in, run_in, runs_within, summary_in, table_in, text_of, units_of
@@ -86,7 +86,7 @@ def page_of(data):
     """Page as bytes. No text of the data can end its script, as "<" is escaped."""
     words = json.dumps(data, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")
     page = text_of(HERE / "page.html").replace("{{styles}}", text_of(HERE / "page.css"))
-    page = page.replace("{{scripts}}", "".join(text_of(HERE / name) for name in SCRIPTS)).replace("{{data}}", words)
+    page = page.replace("{{library}}", chart_library()).replace("{{scripts}}", "".join(text_of(HERE / name) for name in SCRIPTS)).replace("{{data}}", words)
     return page.encode("utf-8", errors="replace")
 
 

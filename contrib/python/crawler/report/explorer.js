@@ -5,7 +5,7 @@ const GOOD = ['finished', 'agree']; // green
 
 class Explorer {
   /** @p table: that of the page; axes: names of what was varied; first: {x, y, colour}; logarithmic: names of columns; frame(explorer) may know better
-   *  axes, decorate(chart, explorer) draws more, details(panel, row, explorer) says what a row is; rows that fades(row, explorer)
+   *  axes, decorate(explorer, axes) has more lines, details(panel, row, explorer) says what a row is; rows that fades(row, explorer)
    *  are grey. */
   constructor(parent, table, {axes, first, frame, fades, decorate, details, status, logarithmic = []}) {
     Object.assign(this, {parent, rows: table.rows, axes, logarithmic, frame, fades, decorate, details, columns: columnsOf(table.columns), filters: {}, selected: null});
@@ -24,17 +24,8 @@ class Explorer {
     this.filterBox = el('div', {class: 'controls'});
     this.caption = el('figcaption');
     this.box = el('figure', {}, this.caption);
-    this.legendBox = el('div');
     this.panel = el('section', {class: 'details', 'aria-live': 'polite', hidden: true});
     parent.append(this.controls, this.filterBox, this.box, this.panel);
-    this.chart = new Chart(this.box, {height: 460, margin: {left: 72, right: 16, top: 10, bottom: 44}, label: 'map of all points', keys: event => this.keys(event), axesAbove: false,
-      axes: () => this.axesOf(), paint: chart => this.paint(chart), overlay: chart => this.mark(chart),
-      hover: (x, y) => { this.hovered = this.find(x, y); this.chart.move(); return this.hovered === null ? null : this.words(this.hovered); },
-      left: () => { this.hovered = null; this.chart.move(); },
-      press: (x, y) => { const row = this.find(x, y); if (row !== null) this.select(row); }});
-    this.bar = new ColourBar(this.box, 72);
-    this.box.append(this.legendBox);
-    charts.unshift({box: this.box, draw: () => this.restyle()});
     this.update();
   }
   column(key) { return this.columns.get(this[key]); }
@@ -58,8 +49,11 @@ class Explorer {
     const status = this.columns.get(this.statusName);
     this.isOpen = this.axes.length && status && this.colour !== this.statusName ? row => ![null, 'finished'].includes(status.value(row)) : () => false;
     if (list.some(this.isOpen)) this.caption.append(' Crossed out: did not finish.');
-    this.restyle();
-    this.chart.draw();
+    if (this.chart) this.chart.redraw();
+    else this.chart = new Picture(this.box, {height: 520, label: 'map of all points', keys: event => this.keys(event), axes: () => this.axesNow = this.axesOf(), colours: () => this.colours(), legend: () => this.legend(),
+      lines: () => this.linesNow(), paint: (c, chart) => this.paint(c, chart), overlay: (c, chart) => this.mark(c, chart),
+      find: (x, y, chart) => { const row = this.find(x, y, chart); return row === null ? null : this.tipOf(row, chart); },
+      press: (x, y, chart) => { const row = this.find(x, y, chart); if (row !== null) this.select(row); }});
   }
   showFilters(names) {
     for (const name of names) if (this.filters[name] === undefined) this.filters[name] = this.isAxis('x') && this.isAxis('y') ? String(this.columns.get(name).different()[0]) : '';
@@ -93,41 +87,41 @@ class Explorer {
   }
   /** Lines and dots of a few kinds have a colour each. */
   isFew(column) { return !this.cells && column.different().length <= 7; }
-  restyle() {
+  hasFewColours(column) { return column.isText || this.isFew(column); }
+  /** Texts with their colours. */
+  legend() {
     const column = this.column('colour');
-    this.legendBox.replaceChildren();
-    this.bar.chart.box.hidden = !column || column.isText || this.isFew(column);
+    if (!column || !this.hasFewColours(column)) return [];
+    if (!column.isText) return [[withUnit(column.title, column.unit) + ':', 'transparent'], ...column.different().map((value, i) => [show(value, 4), series(i)])];
+    const counts = column.texts.map(() => 0);
+    for (const row of this.list) if (isFinite(column.number(row))) ++counts[column.number(row)];
+    return column.texts.map((text, i) => [`${fitted(text, 400)} (${counts[i]})`, this.colourOf(i)]).filter((_, i) => counts[i] > 0);
+  }
+  /** How rows are coloured: {scale, title} of a colour bar, if there is one. */
+  colours() {
+    const column = this.column('colour');
     if (!column) { this.css = () => series(0); return; }
-    if (column.isText || this.isFew(column)) {
-      if (!column.isText) {
-        const list = column.different();
-        this.css = row => isFinite(column.number(row)) ? series(list.indexOf(column.number(row))) : ink('unknown');
-        legend(this.legendBox, [[withUnit(column.title, column.unit) + ':', 'transparent'], ...list.map((value, i) => [show(value, 4), series(i)])]);
-        return;
-      }
-      const others = column.texts.filter(text => !GOOD.includes(text)), hues = ['c2', 'c1', 'c4', 'c5', 'c6', 'c7'];
-      const colour = i => !isFinite(i) ? ink('unknown') : GOOD.includes(column.texts[i]) ? ink('c3') : ink(hues[others.indexOf(column.texts[i]) % hues.length]);
-      const counts = column.texts.map(() => 0);
-      for (const row of this.list) if (isFinite(column.number(row))) ++counts[column.number(row)];
-      this.css = row => colour(column.number(row));
-      legend(this.legendBox, column.texts.map((text, i) => [`${text} (${counts[i]})`, colour(i)]).filter((_, i) => counts[i] > 0));
+    if (this.hasFewColours(column)) {
+      const inks = new Map(), others = column.isText && column.texts.filter(text => !GOOD.includes(text)), hues = ['c2', 'c1', 'c4', 'c5', 'c6', 'c7'];
+      this.colourOf = !column.isText ? x => series(column.different().indexOf(x)) : i => ink(GOOD.includes(column.texts[i]) ? 'c3' : hues[others.indexOf(column.texts[i]) % hues.length]);
+      this.css = row => { const x = column.number(row); return inks.get(x) ?? inks.set(x, isFinite(x) ? this.colourOf(x) : ink('unknown')).get(x); };
       return;
     }
     // What points that did not finish have reached is no result, and must not spread the scale.
     const ended = this.list.filter(row => !this.isOpen(row)), values = (ended.length ? ended : this.list).map(row => column.number(row)), [low, high] = range(values);
-    const log = low > 0 && high / low > 1000, scale = colourScale(low, high, {log});
-    this.css = row => ended.length && this.isOpen(row) ? ink('unknown') : scale.css(column.number(row));
+    const log = low > 0 && high / low > 1000, scale = colourScale(low, high, {log}), unknown = ink('unknown');
+    this.css = row => ended.length && this.isOpen(row) ? unknown : scale.css(column.number(row));
     const grey = [values.some(value => !isFinite(value)) && 'not known', ended.length < this.list.length && 'not finished'].filter(Boolean);
-    this.bar.set(scale, withUnit(column.title, column.unit) + (grey.length ? ` (grey: ${grey.join(' or ')})` : ''));
+    return {scale, title: withUnit(column.title, column.unit) + (grey.length ? ` (grey: ${grey.join(' or ')})` : '')};
   }
   axesOf() {
     const axis = key => {
       const column = this.column(key), title = withUnit(column.title, column.unit);
-      if (column.isText) return {low: -0.6, high: column.texts.length - 0.4, texts: column.texts, title};
+      if (column.isText) return {texts: column.texts, title, reverse: key === 'y'};
       const [low, high] = range(this.list.map(row => column.number(row)));
       const list = column.different(), n = list.length - 1, step = Math.log(list[n] / list[0]) / n;
       const geometric = n > 1 && list.every((value, i) => i === 0 || Math.abs(Math.log(value / list[i - 1]) / step - 1) < 0.01);
-      const log = low > 0 && (geometric || high / low > 1000 || this.logarithmic.includes(column.name));
+      const log = low > 0 && high / low > 2.5 && (geometric || high / low > 1000 || this.logarithmic.includes(column.name));
       const part = this.cells ? 0.5 / (key === 'x' ? this.cells.xs : this.cells.ys).length : 0.04;
       return {...padded([low, high], log, part), title};
     };
@@ -140,10 +134,14 @@ class Explorer {
     for (let i = 1; i < p.length; ++i) list.push((p[i - 1] + p[i]) / 2);
     return [...list, p[p.length - 1] + (p[p.length - 1] - p[p.length - 2]) / 2];
   }
-  paint(chart) {
-    const c = chart.context;
+  linesNow() {
+    const [x, y] = ['x', 'y'].map(key => this.column(key).numbers()), closed = (this.lines ?? []).map(rows => rows.filter(row => !this.isOpen(row))).filter(rows => rows.length);
+    return [...closed.map(rows => lineOf('', rows.map(row => x[row]), rows.map(row => y[row]), this.css(rows[0]))), ...(!this.cells && this.decorate?.(this, this.axesNow) || [])];
+  }
+  paint(c, chart) {
+    const x = this.column('x').numbers(), y = this.column('y').numbers(), size = this.list.length > 5000 ? 2 : this.list.length > 300 ? 5 : 7, grey = ink('unknown');
     if (this.cells) {
-      const {xs, ys, rows} = this.cells, px = this.edges(xs, chart.x), py = this.edges(ys, chart.y);
+      const {xs, ys, rows} = this.cells, px = this.edges(xs, value => chart.x(value)), py = this.edges(ys, value => chart.y(value));
       for (let j = 0; j < ys.length; ++j)
         for (let i = 0; i < xs.length; ++i) {
           const row = rows[j * xs.length + i];
@@ -151,64 +149,58 @@ class Explorer {
           c.fillStyle = this.css(row);
           c.fillRect(px[i], py[j + 1], px[i + 1] - px[i] + 0.6, py[j] - py[j + 1] + 0.6);
         }
-      for (const row of this.list.filter(this.isOpen)) this.cross(chart, chart.x(this.column('x').number(row)), chart.y(this.column('y').number(row)));
-    } else {
-      const x = this.column('x').numbers(), y = this.column('y').numbers(), size = this.list.length > 5000 ? 2 : this.list.length > 300 ? 5 : 7;
-      for (const all of this.lines ?? []) {
-        const rows = all.filter(row => !this.isOpen(row));
-        if (!rows.length) continue;
-        chart.polyline(rows.map(row => x[row]), rows.map(row => y[row]), this.css(rows[0]));
-        this.errorBars(chart, rows, x, y);
-      }
-      this.decorate?.(chart, this);
-      for (const row of this.list) {
-        c.fillStyle = this.fades?.(row, this) ? ink('unknown') : this.css(row);
-        const px = chart.x(x[row]), py = chart.y(y[row]);
-        if (size < 5) c.fillRect(px - size / 2, py - size / 2, size, size);
-        else { c.beginPath(); c.arc(px, py, size / 2, 0, 7); c.fill(); }
-        if (this.isOpen(row)) this.cross(chart, px, py);
-      }
+    } else for (const row of this.list) {
+      c.fillStyle = this.fades?.(row, this) ? grey : this.css(row);
+      const px = chart.x(x[row]), py = chart.y(y[row]);
+      if (size < 5) c.fillRect(px - size / 2, py - size / 2, size, size);
+      else { c.beginPath(); c.arc(px, py, size / 2, 0, 7); c.fill(); }
     }
+    for (const row of this.list.filter(this.isOpen)) this.cross(c, chart.x(x[row]), chart.y(y[row]));
+    if (this.lines) this.errorBars(c, chart, x, y);
   }
-  cross({context: c}, x, y) {
+  cross(c, x, y) {
     const r = this.list.length > 3000 ? 1.5 : 4;
     c.strokeStyle = ink('ink');
     c.lineWidth = 1;
     c.beginPath(); c.moveTo(x - r, y - r); c.lineTo(x + r, y + r); c.moveTo(x - r, y + r); c.lineTo(x + r, y - r); c.stroke();
   }
-  errorBars(chart, rows, x, y) {
+  errorBars(c, chart, x, y) {
     const bounds = this.columns.get(boundKey(this.y));
-    if (!bounds || rows.length > 500) return;
-    const c = chart.context;
-    c.lineWidth = 1;
-    for (const row of rows) {
-      const px = chart.x(x[row]), bound = bounds.number(row);
-      if (isFinite(bound)) { c.beginPath(); c.moveTo(px, chart.y(y[row] - bound)); c.lineTo(px, chart.y(y[row] + bound)); c.stroke(); }
+    if (!bounds || this.list.length > 500) return;
+    for (const row of this.list) {
+      const px = chart.x(x[row]), bound = bounds.number(row), top = chart.y(y[row] + bound);
+      c.fillStyle = this.css(row);
+      if (isFinite(bound) && !this.isOpen(row)) c.fillRect(px - 0.5, top, 1, chart.y(y[row] - bound) - top);
     }
   }
   /** The row at a pixel. */
-  find(px, py) {
+  find(px, py, chart) {
     if (this.cells) {
-      const {xs, ys, rows} = this.cells, ex = this.edges(xs, this.chart.x), ey = this.edges(ys, this.chart.y);
+      const {xs, ys, rows} = this.cells, ex = this.edges(xs, value => chart.x(value)), ey = this.edges(ys, value => chart.y(value));
       const i = ex.findIndex(edge => px < edge) - 1, j = ey.findIndex(edge => py > edge) - 1;
       return i >= 0 && j >= 0 && rows[j * xs.length + i] >= 0 ? rows[j * xs.length + i] : null;
     }
     const x = this.column('x').numbers(), y = this.column('y').numbers();
     let best = null, nearest = 20 ** 2;
     for (const row of this.list) {
-      const distance = (this.chart.x(x[row]) - px) ** 2 + (this.chart.y(y[row]) - py) ** 2;
+      const distance = (chart.x(x[row]) - px) ** 2 + (chart.y(y[row]) - py) ** 2;
       if (distance < nearest) [best, nearest] = [row, distance];
     }
     return best;
   }
-  mark(chart) {
-    for (const [row, colour] of [[this.hovered, 'soft'], [this.selected, 'ink']]) {
+  tipOf(row, chart) {
+    this.hovered = row;
+    return {x: chart.x(this.column('x').number(row)), y: chart.y(this.column('y').number(row)), words: this.words(row)};
+  }
+  mark(c, chart) {
+    for (const [row, colour] of [[chart.getActiveElements().length ? this.hovered : null, 'soft'], [this.selected, 'ink']]) {
       if (row === null || row === undefined) continue;
-      const c = chart.top, px = chart.x(this.column('x').number(row)), py = chart.y(this.column('y').number(row));
-      c.strokeStyle = ink('paper'); c.lineWidth = 4;
-      c.beginPath(); c.arc(px, py, 7, 0, 7); c.stroke();
-      c.strokeStyle = ink(colour); c.lineWidth = 2;
-      c.beginPath(); c.arc(px, py, 7, 0, 7); c.stroke();
+      const px = chart.x(this.column('x').number(row)), py = chart.y(this.column('y').number(row));
+      for (const [name, width] of [['paper', 4], [colour, 2]]) {
+        c.strokeStyle = ink(name);
+        c.lineWidth = width;
+        c.beginPath(); c.arc(px, py, 7, 0, 7); c.stroke();
+      }
     }
   }
   keys(event) {
@@ -221,7 +213,7 @@ class Explorer {
       if (i >= 0 && i < xs.length && j >= 0 && j < ys.length && rows[j * xs.length + i] >= 0) row = rows[j * xs.length + i];
     } else row = this.order[Math.max(0, Math.min(this.order.length - 1, this.place.get(row) + move[0] + move[1]))];
     this.select(row);
-    this.chart.say(this.words(row), this.chart.x(this.column('x').number(row)), this.chart.y(this.column('y').number(row)));
+    this.chart.say(this.tipOf(row, this.chart));
     return true;
   }
   title(row) { return `${NOUN[0].toUpperCase()}${NOUN.slice(1)} ${this.index ? this.index.value(row) : row + 1}`; }
@@ -236,7 +228,7 @@ class Explorer {
   }
   select(row) {
     this.selected = row;
-    this.chart.move();
+    this.chart.draw();
     const body = el('tbody');
     for (const column of this.columns.values()) {
       const value = column.value(row), bound = this.columns.get(boundKey(column.name))?.value(row);

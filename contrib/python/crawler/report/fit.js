@@ -30,17 +30,11 @@ function showProfiles() {
   if (!lines.length) return;
   const box = figure('Profiles.', 'Chi-square with a variable held there and the others free; where it has risen by 1 and 3.84 (grey) the intervals of 68 % and 95 % end. Dashed: the parabola of a linear model.');
   section('How well the data tell them', box);
-  const [low, high] = range(lines.flatMap(([, x]) => x)), parabola = Array.from({length: 101}, (_, i) => low + i / 100 * (high - low));
-  new Chart(box, {height: 260, label: 'profiles of chi-square', axes: () => ({x: {...padded([low, high]), title: 'value less the best one, in standard deviations'},
-    y: {low: 0, high: Math.min(9, Math.max(5, ...lines.flatMap(([, , rise]) => rise))), title: 'rise of chi-square'}}),
-  paint: chart => {
-    for (const rise of [1, 3.8415]) chart.polyline([chart.x.low, chart.x.high], [rise, rise], ink('grid'), {width: 2});
-    chart.context.setLineDash([4, 4]);
-    chart.polyline(parabola, parabola.map(x => x * x), ink('soft'), {width: 1});
-    chart.context.setLineDash([]);
-    lines.forEach(([, x, rise], i) => chart.polyline(x, rise, series(i)));
-  }});
-  legend(box, lines.map(([entry], i) => [shortName(entry), `var(--c${i % 7 + 1})`]));
+  const [low, high] = range(lines.flatMap(([, x]) => x)), parabola = Array.from({length: 101}, (_, i) => low + i / 100 * (high - low)), axis = padded([low, high]);
+  new Picture(box, {height: 290, label: `profiles of chi-square: ${lines.map(([entry]) => shortName(entry)).join(', ')}`,
+    axes: () => ({x: {...axis, title: 'value less the best one, in standard deviations'}, y: {low: 0, high: Math.min(9, Math.max(5, ...lines.flatMap(([, , rise]) => rise))), title: 'rise of chi-square'}}),
+    lines: () => [...lines.map(([entry, x, rise], i) => lineOf(shortName(entry), x, rise, series(i))), lineOf('', parabola, parabola.map(x => x * x), ink('soft'), {borderWidth: 1, borderDash: [4, 4]}),
+      ...[1, 3.8415].map(rise => lineOf('', [axis.low, axis.high], [rise, rise], ink('line'), {borderWidth: 2}))]});
 }
 
 function showCorrelation() {
@@ -51,14 +45,12 @@ function showCorrelation() {
 }
 
 /** The best run through the data of each place. */
-function drawBestRun(chart, explorer) {
-  if (explorer.x !== 't' || explorer.y !== 'data') return;
+function linesOfBestRun(explorer) {
+  if (explorer.x !== 't' || explorer.y !== 'data') return [];
   const [t, place, model] = ['t', 'place', 'model'].map(name => explorer.columns.get(name)), lines = new Map();
   for (const row of explorer.list) { const key = place?.number(row); lines.set(key, [...lines.get(key) ?? [], row]); }
-  for (const rows of lines.values()) {
-    rows.sort((a, b) => t.number(a) - t.number(b));
-    chart.polyline(rows.map(row => t.number(row)), rows.map(row => model.number(row)), ink('ink'), {width: 1});
-  }
+  return [...lines.values()].map(rows => rows.sort((a, b) => t.number(a) - t.number(b)))
+    .map(rows => lineOf('', rows.map(row => t.number(row)), rows.map(row => model.number(row)), ink('ink'), {borderWidth: 1}));
 }
 
 function showFit() {
@@ -67,7 +59,7 @@ function showFit() {
   showCorrelation();
   for (const table of page.tables ?? []) {
     const details = () => {}, of = page.tables.length > 1 ? `: ${table.kind}` : '', box = section(`Data and the best run${of}`);
-    new Explorer(box, table, {axes: [], details, decorate: drawBestRun, first: {x: ['t'], y: ['data'], colour: ['place', 't']}});
+    new Explorer(box, table, {axes: [], details, decorate: linesOfBestRun, first: {x: ['t'], y: ['data'], colour: ['place', 't']}});
     box.append(el('p', {class: 'soft small'}, 'Dots: the data. Lines: the best run.'));
     new Explorer(section(`Residuals${of}`, el('p', {class: 'soft'}, 'Data less run. Patches or stripes are what the scene does not describe; noise has none.')), table,
       {axes: ['t', 'place'], details, first: {x: ['place', 't'], y: table.columns.some(column => column.name === 'place') ? ['t'] : ['residual'], colour: ['residual']}});
@@ -86,13 +78,10 @@ function showComparison() {
       ...[one.variables, one.chi_square, one.degrees_of_freedom, one.aic, one.bic, one.aic_less_least, one.bic_less_least].map(value => exactly(value))])));
   const chart = figure('Criteria.', 'One more than the difference from the least; grey: a difference of 10.');
   box.append(chart);
-  new Chart(chart, {height: 60 + 50 * rows.length, label: 'information criteria', axes: () => ({x: {low: 1, high: 1.3 * (1 + far), log: true, title: '1 + difference from the least'},
-    y: {low: rows.length - 0.5, high: -0.5, texts: rows.map(one => one.scene), title: ''}}),
-  paint: c => {
-    c.polyline([11, 11], [rows.length, -1], ink('grid'), {width: 2});
-    rows.forEach((one, row) => criteria.forEach(([key], i) => c.polyline([1, Math.max(1.02, 1 + one[`${key}_less_least`])], [row + 0.3 * i - 0.15, row + 0.3 * i - 0.15], series(i), {width: 10})));
-  }});
-  legend(chart, criteria.map(([, name], i) => [name, `var(--c${i + 1})`]));
+  new Picture(chart, {type: 'bar', horizontal: true, height: 90 + 50 * rows.length, label: 'information criteria',
+    axes: () => ({x: {low: 1, high: 1.3 * (1 + far), log: true, title: '1 + difference from the least'}, y: {texts: rows.map(one => one.scene)}}),
+    lines: () => criteria.map(([key, name], i) => ({label: name, backgroundColor: series(i), barThickness: 10, minBarLength: 4, data: rows.map((one, row) => ({x: 1 + one[`${key}_less_least`], y: row}))})),
+    overlay: (c, own) => { c.fillStyle = ink('unknown'); c.fillRect(own.x(11), own.chartArea.top, 2, own.chartArea.height); }});
   const entries = [...new Set(rows.flatMap(one => Object.keys(page.fits[one.folder].variables ?? {})))];
   const words = one => !one ? '–' : one.determined === false ? 'not determined by the data' : [exactly(one.value, showWith(one.value, one.deviation)), known(one.deviation) ? ` ± ${show(one.deviation, 2)}` : ''];
   section('Values', tableOf(['entry', ...rows.map(one => one.scene)], entries.map(entry => [[...brokenAtSlashes(entry)], ...rows.map(one => words(page.fits[one.folder].variables?.[entry]))])));

@@ -1,202 +1,112 @@
-// Axes, charts on canvases, and what moves above them.
-
-/** Ticks at 1, 2, 5 times powers of ten; of logarithmic axes at powers of ten. */
-function ticks(low, high, count, log) {
-  const list = [];
-  if (log) {
-    const first = Math.ceil(Math.log10(low) - 1e-9), last = Math.floor(Math.log10(high) + 1e-9);
-    if (last > first) {
-      const step = Math.ceil((last - first + 1) / count), factors = last - first < 3 && count > 4 ? [1, 2, 5] : [1];
-      for (let e = first - 1; e <= last; e += step) list.push(...factors.map(m => m * 10 ** e));
-      return list.filter(x => x >= low * 0.999 && x <= high * 1.001);
-    }
-  }
-  const raw = (high - low) / Math.max(count, 1), power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].map(m => m * power).find(s => s >= raw * 0.999);
-  for (let i = Math.ceil(low / step - 1e-6); i <= Math.floor(high / step + 1e-6); ++i) list.push(i * step);
-  return list;
-}
-const tickText = (x, log) => log && (x >= 99 || x < 0.05) && Math.abs(Math.log10(x) % 1) < 1e-9
-  ? '10' + superscript(Math.round(Math.log10(x))) : show(x, 5);
-
-/** A scale from numbers to pixels. */
-function scaleOf(low, high, from, to, log) {
-  const of = log ? Math.log10 : x => x, back = log ? x => 10 ** x : x => x;
-  const a = of(low), b = of(high);
-  const scale = x => from + (of(x) - a) / (b - a) * (to - from);
-  scale.inverse = pixel => back(a + (pixel - from) / (to - from) * (b - a));
-  return Object.assign(scale, {low, high, log});
-}
-
-/** What is drawn anew, in this order, when the colours of the page change: {box, draw}. */
-let charts = [];
-function redrawAll() {
-  charts = charts.filter(({box}) => box.isConnected);
-  for (const chart of charts) chart.draw();
-}
-matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redrawAll);
-
-/**
- * A canvas with axes, and a second one above it for what follows the pointer. paint(chart) draws within the axes,
- * overlay(chart) above; hover(x, y) in pixels says what the tip shows (nothing: none).
- */
-class Chart {
-  constructor(parent, options) {
-    Object.assign(this, {height: 260, margin: {left: 58, right: 14, top: 8, bottom: 42}}, options);
-    this.below = el('canvas', {role: 'img', 'aria-label': options.label});
-    this.above = el('canvas', options.keys ? {tabindex: 0, role: 'application', 'aria-label': `${options.label}; arrow keys move`} : {'aria-hidden': 'true'});
-    this.tip = el('div', {class: 'tip', hidden: true, role: options.keys ? 'status' : null});
-    this.box = el('div', {class: 'chart', style: `height:${this.height}px`}, this.below, this.above, this.tip);
-    parent.append(this.box);
-    this.above.addEventListener('pointermove', event => this.point(event));
-    this.above.addEventListener('pointerleave', () => { this.tip.hidden = true; this.left?.(); });
-    this.above.addEventListener('click', event => this.press?.(event.offsetX, event.offsetY));
-    if (options.keys) this.above.addEventListener('keydown', event => this.keys(event) && event.preventDefault());
-    charts.push(this);
-    new ResizeObserver(() => this.draw()).observe(this.box);
-  }
-  point(event) {
-    const text = this.hover?.(event.offsetX, event.offsetY);
-    if (text) this.say(text, event.offsetX, event.offsetY);
-    else this.tip.hidden = true;
-  }
-  say(text, x, y) {
-    this.tip.textContent = text;
-    this.tip.hidden = false;
-    this.tip.style.left = Math.max(0, Math.min(x + 14, this.width - this.tip.offsetWidth - 2)) + 'px';
-    this.tip.style.top = (y + 18 + this.tip.offsetHeight > this.height ? Math.max(0, y - this.tip.offsetHeight - 10) : y + 18) + 'px';
-  }
-  size(canvas) {
-    const ratio = devicePixelRatio || 1;
-    canvas.width = Math.round(this.width * ratio);
-    canvas.height = Math.round(this.height * ratio);
-    const context = canvas.getContext('2d');
-    context.scale(ratio, ratio);
-    context.font = `12px ${getComputedStyle(document.body).fontFamily}`;
-    return context;
-  }
-  draw() {
-    this.width = this.box.clientWidth;
-    if (this.width < 60) return;
-    this.context = this.size(this.below);
-    const m = this.margin, axes = this.axes?.();
-    if (axes) { // long words and numbers need more room
-      this.least ??= m.left;
-      const widest = Math.max(0, ...this.ticksOf(axes.y, this.height - m.bottom - m.top, 36).map(([, text]) => this.context.measureText(text).width));
-      m.left = Math.max(this.least, Math.min(widest + 32, 0.35 * this.width));
-    }
-    const inner = [m.left, this.width - m.right, this.height - m.bottom, m.top];
-    if (axes) {
-      const {x, y} = axes;
-      this.x = scaleOf(x.low, x.high, inner[0], inner[1], x.log);
-      this.y = scaleOf(y.low, y.high, inner[2], inner[3], y.log);
-      if (!this.axesAbove) this.drawAxes(x, y);
-      this.context.save();
-      this.context.beginPath();
-      this.context.rect(inner[0] - 1, inner[3] - 1, inner[1] - inner[0] + 2, inner[2] - inner[3] + 2);
-      this.context.clip();
-      this.paint(this);
-      this.context.restore();
-      if (this.axesAbove) this.drawAxes(x, y);
-    } else this.paint(this);
-    this.move();
-  }
-  /** Draws the upper canvas anew. */
-  move() {
-    if (!this.overlay || !this.width) return;
-    this.top = this.size(this.above);
-    this.overlay(this);
-  }
-  /** Place and text of the ticks of an axis that has so many pixels, and of these so many from one to the next. */
-  ticksOf(axis, pixels, distance) {
-    if (axis.texts) return axis.texts.map((text, i) => [i, text]).slice(0, 40);
-    return ticks(axis.low, axis.high, Math.max(2, pixels / distance), axis.log).map(tick => [tick, tickText(tick, axis.log)]);
-  }
-  drawAxes(x, y) {
-    const c = this.context, m = this.margin, right = this.width - m.right, bottom = this.height - m.bottom;
-    c.strokeStyle = ink('grid');
-    c.fillStyle = ink('soft');
-    c.lineWidth = 1;
-    const line = (...points) => { c.beginPath(); c.moveTo(points[0], points[1]); c.lineTo(points[2], points[3]); c.stroke(); };
-    c.textAlign = 'center';
-    let end = -Infinity;
-    for (const [tick, text] of this.ticksOf(x, right - m.left, 90)) {
-      const p = Math.round(this.x(tick)) + 0.5, half = c.measureText(text).width / 2;
-      line(p, this.axesAbove ? bottom : m.top, p, bottom + 4);
-      const at = Math.min(Math.max(p, half + 2), this.width - half - 2);
-      if (at - half < end + 6) continue;
-      c.fillText(text, at, bottom + 17);
-      end = at + half;
-    }
-    c.textAlign = 'right';
-    for (const [tick, text] of this.ticksOf(y, bottom - m.top, 36)) {
-      const p = Math.round(this.y(tick)) + 0.5;
-      line(m.left - 4, p, this.axesAbove ? m.left : right, p);
-      c.fillText(clipped(c, text, m.left - 28), m.left - 8, p + 4);
-    }
-    c.fillStyle = ink('ink');
-    c.textAlign = 'center';
-    const fits = (text, width) => c.measureText(text).width <= width ? text : clipped(c, shortName(text), width); // of a path the last word
-    c.fillText(fits(x.title, right - m.left + 12), (m.left + right) / 2, this.height - 4);
-    c.save();
-    c.translate(12, (m.top + bottom) / 2);
-    c.rotate(-Math.PI / 2);
-    c.fillText(fits(y.title, bottom - m.top + 20), 0, 0);
-    c.restore();
-  }
-  /** A line through points, with gaps where a number is not known. */
-  polyline(xs, ys, colour, {width = 1.6, steps = false} = {}) {
-    const c = this.context;
-    c.strokeStyle = colour;
-    c.lineWidth = width;
-    c.lineJoin = 'round';
-    c.beginPath();
-    let pen = false, last = 0;
-    for (let i = 0; i < xs.length; ++i) {
-      const px = this.x(xs[i]), py = this.y(ys[i]);
-      if (!isFinite(px) || !isFinite(py)) { pen = false; continue; }
-      if (pen && steps) c.lineTo(px, last);
-      if (pen) c.lineTo(px, py); else c.moveTo(px, py);
-      pen = true;
-      last = py;
-    }
-    c.stroke();
-  }
-}
-
-function clipped(context, text, width) {
-  if (context.measureText(text).width <= width) return text;
-  while (text.length > 1 && context.measureText(text + '…').width > width) text = text.slice(0, -1);
-  return text + '…';
-}
-
-/** A legend of colours that follow the page's. */
-function legend(parent, entries) {
-  parent.append(el('div', {class: 'legend'}, ...entries.map(([name, colour]) =>
-    el('span', {}, el('i', {style: `background:${colour}`}), name))));
-}
-
-/** A colour bar with its name, low and high. */
-class ColourBar {
-  constructor(parent, left) {
-    this.chart = new Chart(parent, {height: 50, label: 'colour bar', margin: {left, right: 15, top: 0, bottom: 34}, axesAbove: true,
-      axes: () => ({x: {low: this.scale.low, high: this.scale.high, log: this.scale.log, title: this.title, texts: this.texts}, y: {low: 0, high: 1, texts: [], title: ''}}),
-      paint: chart => {
-        const from = chart.x(this.scale.low), width = (chart.x(this.scale.high) - from) / 256;
-        this.scale.list.forEach((colour, i) => { chart.context.fillStyle = `rgb(${colour.join()})`; chart.context.fillRect(from + i * width, 6, width + 1, 10); });
-      }});
-  }
-  set(scale, title) {
-    Object.assign(this, {scale, title});
-    this.chart.draw();
-  }
-}
+// Charts of Chart.js in the colours of the page, and what is painted over them.
 
 /** Low and high of an axis with some room. */
 function padded([low, high], log = false, part = 0.05) {
   if (log) { const room = Math.max((high / low) ** part, 1.05); return {low: low / room, high: high * room, log}; }
   const room = (high - low) * part || Math.abs(high) * 0.1 || 1;
   return {low: low - room, high: high + room, log};
+}
+
+/** Texts that have room in so many pixels: of a path the last word. */
+function fitted(text, pixels) {
+  const most = Math.max(4, Math.floor(pixels / 6.6)), short = text.length > most ? shortName(text) : text;
+  return short.length > most ? short.slice(0, most - 1) + '…' : short;
+}
+
+const leadingDigits = x => Number((x / 10 ** Math.floor(Math.log10(x) + 1e-9)).toPrecision(6));
+const tickText = (x, log) => log && (x >= 99 || x < 0.05) && leadingDigits(x) === 1 ? '10' + superscript(Math.round(Math.log10(x))) : show(x, 5);
+
+/** An axis: from low to high, or with texts that are counted from 0; a bare one has no grid. */
+function scaleOf(axis, {low, high, log, texts, title, hidden, bare, reverse, tickLength = 4}) {
+  const decades = Math.log10(high / low), digits = decades < 1 ? [1, 2, 3, 4, 5, 6, 7, 8, 9] : decades < 3 ? [1, 2, 5] : [1];
+  return {axis, display: !hidden, reverse, position: axis === 'x' ? 'bottom' : 'left', ...(texts ? {type: 'category', labels: texts, offset: true} : {type: log ? 'logarithmic' : 'linear', min: low, max: high}),
+    grid: {drawBorder: false, drawOnChartArea: !bare, tickLength, color: tickLength === 4 ? ink('grid') : 'transparent'},
+    title: {display: Boolean(title), color: ink('ink'), padding: 2, text: ({chart}) => fitted(title, axis === 'x' ? chart.width - 60 : chart.height - 30)},
+    afterBuildTicks: own => { if (log) own.ticks = own.ticks.filter(({value}) => digits.includes(leadingDigits(value))); },
+    afterFit: own => { if (axis === 'y' && !hidden) own.width = Math.max(own.width, 58); },
+    ticks: {includeBounds: false, maxRotation: 0, autoSkipPadding: 24, callback: value => texts ? fitted(texts[value], 160) : tickText(value, log)}};
+}
+
+/** A line through points, with gaps where a number is not known. */
+const lineOf = (label, xs, ys, colour, more) => ({label, data: Array.from(xs, (x, i) => ({x, y: ys[i]})), borderColor: colour, backgroundColor: colour, borderWidth: 1.6, pointRadius: 0, ...more});
+
+// The tip says what find() knows of the place of the pointer, or numbers of the lines.
+Chart.Interaction.modes.found = (chart, event) => chart.found(chart.own.find(event.x, event.y, chart));
+Object.assign(Chart.defaults.plugins.tooltip, {caretSize: 0, padding: 8, borderWidth: 1, boxWidth: 8, boxHeight: 8, filter: ({chart, dataset}) => chart.own.find || dataset.label});
+Object.assign(Chart.defaults.plugins.tooltip.callbacks, {
+  title: ([item]) => item && (item.chart.own.find ? item.chart.words[0] : `${item.chart.own.axes().x.title}: ${show(item.parsed.x, 5)}`),
+  label: ({chart, dataset, parsed}) => chart.own.find ? chart.words.slice(1) : `${dataset.label}: ${show(parsed.y, 6)}`});
+Object.assign(Chart.defaults, {animation: false, parsing: false, maintainAspectRatio: false});
+
+function recolour() {
+  Object.assign(Chart.defaults, {color: ink('soft'), borderColor: ink('grid')});
+  Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
+  Object.assign(Chart.defaults.plugins.tooltip, {backgroundColor: ink('paper'), borderColor: ink('line'), titleColor: ink('ink'), bodyColor: ink('ink'), multiKeyBackground: ink('paper')});
+  for (const chart of Object.values(Chart.instances)) chart.redraw();
+}
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', recolour);
+recolour();
+
+/**
+ * A chart with axes() and lines(). Over these are paint(context, chart), which is kept until the next redraw(), and
+ * overlay(context, chart). find(x, y, chart) says what is at a pixel, {x, y, words}; press(x, y, chart) follows a click;
+ * colours() is {scale, title} of a colour bar, legend() has texts with colours.
+ */
+class Picture extends Chart {
+  constructor(parent, own) {
+    const {label, height = 260, type = 'line', keys} = own;
+    for (const chart of Object.values(Chart.instances)) if (!chart.canvas.isConnected) chart.destroy();
+    const canvas = el('canvas', keys ? {tabindex: 0, role: 'application', 'aria-label': `${label}; arrow keys move`, onkeydown: event => keys(event) && event.preventDefault()} : {role: 'img', 'aria-label': label});
+    parent.append(el('div', {class: 'chart', style: `height:${height}px`}, canvas));
+    const picture = {id: 'picture', afterUpdate: chart => { chart.image = null; }, afterDatasetsDraw: chart => chart.own && chart.paint()};
+    super(canvas, {type, data: {datasets: []}, plugins: [picture]});
+    this.own = own;
+    this.redraw();
+  }
+  x(value) { return this.scales.x.getPixelForValue(value); }
+  y(value) { return this.scales.y.getPixelForValue(value); }
+  inverse(x, y) { return [this.scales.x.getValueForPixel(x), this.scales.y.getValueForPixel(y)]; }
+  /** Draws everything anew. */
+  redraw() {
+    const {axes, lines, find, press, legend, horizontal} = this.own, {x, y} = axes(), bar = this.own.colours?.(), entries = legend?.();
+    this.data.datasets = [...(find ? [{data: [{x: NaN, y: NaN}], pointRadius: 0, pointHoverRadius: 0}] : []), ...(lines?.() ?? [])];
+    this.list = bar?.scale.list;
+    this.options = {indexAxis: horizontal ? 'y' : 'x', interaction: find ? {mode: 'found'} : {mode: 'nearest', axis: 'x', intersect: false}, onClick: event => press?.(event.x, event.y, this),
+      scales: {x: scaleOf('x', x), y: scaleOf('y', y), ...(bar && {colour: scaleOf('x', {...bar.scale, title: bar.title, bare: true, tickLength: 16})})},
+      plugins: {tooltip: {enabled: !horizontal, displayColors: !find}, legend: {position: 'bottom', align: 'start', display: entries ? entries.length > 0 : this.data.datasets.filter(({label}) => label).length > 1,
+        labels: {boxWidth: 12, boxHeight: 8, filter: ({text}) => text, ...(entries && {generateLabels: () => entries.map(([text, colour]) => ({text, fillStyle: colour, strokeStyle: colour}))})}, ...(entries && {onClick: null})}}};
+    this.update();
+  }
+  paint() {
+    const {own: {paint, overlay}, ctx, width, height, currentDevicePixelRatio: ratio, chartArea: area, scales: {colour}} = this;
+    if (paint && !this.image && area.width > 0) {
+      this.image = el('canvas', {width: ctx.canvas.width, height: ctx.canvas.height});
+      const c = this.image.getContext('2d');
+      c.scale(ratio, ratio);
+      c.font = `12px ${Chart.defaults.font.family}`;
+      if (colour) this.list.forEach((one, i) => { c.fillStyle = `rgb(${one.join()})`; c.fillRect(colour.left + i * colour.width / 256, colour.top + 4, colour.width / 256 + 1, 10); });
+      c.rect(area.left - 1, area.top - 1, area.width + 2, area.height + 2);
+      c.clip();
+      paint(c, this);
+    }
+    if (this.image) ctx.drawImage(this.image, 0, 0, width, height);
+    overlay?.(ctx, this);
+  }
+  /** The item of the library for something that was found. */
+  found(one) {
+    if (!one) return [];
+    const [element] = this.getDatasetMeta(0).data;
+    Object.assign(element, {x: one.x, y: one.y, skip: false});
+    this.words = one.words.split('\n');
+    return [{element, datasetIndex: 0, index: 0}];
+  }
+  /** Shows its tip. */
+  say(one) {
+    const items = this.found(one);
+    this.setActiveElements(items);
+    this.tooltip.setActiveElements(items, one);
+    this.draw();
+  }
 }
 
 const chooser = (name, options, value, change) => el('label', {}, name,

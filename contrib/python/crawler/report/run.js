@@ -55,30 +55,21 @@ function showCurves(parent, run, clock, fields) {
     const box = figure(title, text);
     parent.append(box);
     const least = 1e-12 * run.length, all = lines.flatMap(([column]) => range(column.numbers())).concat(-least, least);
-    const chart = new Chart(box, {height, label: title,
+    const chart = new Picture(box, {height, label: `${title} ${lines.map(([, words]) => words).join(', ')}`,
       axes: () => ({x: {low: 0, high: end, title: withUnit('time t', 'time')}, y: {...padded(range(all)), title: withUnit(lines.length > 1 ? 'energy' : lines[0][1], lines[0][0].unit)}}),
-      paint: own => lines.forEach(([column], i) => own.polyline(time, column.numbers(), series(i))),
-      overlay: own => {
+      lines: () => lines.map(([column, words], i) => lineOf(words, time, column.numbers(), series(i))),
+      overlay: (c, own) => {
         if (!clock || !fields) return;
-        const x = own.x(clock.t), c = own.top;
-        c.strokeStyle = ink('soft');
-        c.beginPath(); c.moveTo(x, own.margin.top); c.lineTo(x, own.height - own.margin.bottom); c.stroke();
+        c.fillStyle = ink('soft');
+        c.fillRect(own.x(clock.t), own.chartArea.top, 1, own.chartArea.height);
       },
-      hover: x => {
-        const t = chart.x.inverse(x);
-        if (t < 0 || t > end) return null;
-        let i = time.findIndex(one => one >= t);
-        if (i > 0 && t - time[i - 1] < time[i] - t) --i;
-        return [`t = ${show(time[i], 5)}`, ...lines.map(([column, words]) => `${words} ${show(column.numbers()[i], 6)}`)].join('\n');
-      },
-      press: x => clock?.set(chart.x.inverse(x))});
-    clock?.listeners.push(() => chart.move());
-    if (lines.length > 1) legend(box, lines.map(([, words], i) => [words, `var(--c${i + 1})`]));
+      press: (x, y, own) => clock?.set(own.inverse(x, y)[0])});
+    clock?.listeners.push(() => chart.draw());
   };
-  add('Centre of mass.', 'How far it has come.', [['displacement', 'displacement D']], 190);
+  add('Centre of mass.', 'How far it has come.', [['displacement', 'displacement D']], 210);
   const residual = at(run.summary, 'ledger_residual');
   add('Energy balance.', known(residual) ? `Work is what friction takes and what the body stores, up to ${show(residual, 2)} of it.` : '',
-    [['stress power', 'work of the active stress'], ['dissipation', 'lost to friction'], ['elastic energy', 'stored in the body']], 230);
+    [['stress power', 'work of the active stress'], ['dissipation', 'lost to friction'], ['elastic energy', 'stored in the body']], 260);
 }
 
 /** All numbers and words of a summary, in its order. */
@@ -107,9 +98,8 @@ function showSensitivities(parent, run) {
   if (!s || !lines.length) return;
   const box = figure('Where on the body it matters.', 'Change of the displacement for a relative change of stiffness or friction there, per length.');
   parent.append(box);
-  new Chart(box, {height: 220, label: 'sensitivities along the body', paint: chart => lines.forEach((name, i) => chart.polyline(s, columns.get(name).numbers(), series(i))),
+  new Picture(box, {height: 250, label: `sensitivities along the body: ${lines.join(', ')}`, lines: () => lines.map((name, i) => lineOf(name, s, columns.get(name).numbers(), series(i))),
     axes: () => ({x: {low: 0, high: run.length, title: withUnit('place s on the body', 'length')}, y: {...padded(range([0, ...lines.flatMap(name => range(columns.get(name).numbers()))])), title: 'sensitivity'}})});
-  legend(box, lines.map((name, i) => [name, `var(--c${i + 1})`]));
 }
 
 /** Everything of one run but for its table of numbers. */

@@ -150,19 +150,14 @@ function showPoints() {
 const inTime = seconds => !known(seconds) ? '–' : seconds < 1e-3 ? `${show(seconds * 1e6, 3)} µs` : seconds < 1 ? `${show(seconds * 1e3, 3)} ms` : `${show(seconds, 3)} s`;
 
 /** Pareto fronts, and the errors that cannot be told from 0. */
-function drawFronts(chart, explorer) {
-  if (explorer.x !== 'seconds' || explorer.y !== 'shown error') return;
+function linesOfFronts(explorer, {x: {low, high}}) {
+  if (explorer.x !== 'seconds' || explorer.y !== 'shown error') return [];
   const [x, y, engine] = ['seconds', 'shown error', 'engine'].map(name => explorer.columns.get(name)), front = new Set(summary.pareto ?? []), bar = at(summary, 'reference.relative_bar');
-  if (known(bar)) {
-    chart.context.fillStyle = ink('raised');
-    chart.context.fillRect(0, chart.y(bar), chart.width, chart.height);
-  }
-  [false, true].forEach((batch, i) => {
+  const fronts = [false, true].map((batch, i) => {
     const rows = explorer.list.filter(row => front.has(explorer.index.value(row)) && (engine.value(row) === 'batch') === batch).sort((a, b) => x.number(a) - x.number(b));
-    chart.context.setLineDash(i ? [6, 4] : []);
-    chart.polyline(rows.map(row => x.number(row)), rows.map(row => y.number(row)), ink('ink'), {steps: true, width: 1.3});
-    chart.context.setLineDash([]);
+    return lineOf('', rows.map(row => x.number(row)), rows.map(row => y.number(row)), ink('ink'), {stepped: true, borderWidth: 1.3, borderDash: i ? [6, 4] : []});
   });
+  return known(bar) ? [...fronts, lineOf('', [low, high], [bar, bar], ink('raised'), {fill: 'start'})] : fronts;
 }
 
 function showTradeoff() {
@@ -175,7 +170,7 @@ function showTradeoff() {
       el('td', {class: 'value'}, exactly(one.error, show(one.error, 2))), el('td', {class: 'value'}, exactly(one.seconds, inTime(one.seconds)))))))));
   const box = section('All settings');
   if (!page.table) { box.append(el('p', {}, 'There is no table of settings: it is written at the end.')); return; }
-  const explorer = new Explorer(box, page.table, {axes: [], status: 'status', decorate: drawFronts, logarithmic: ['seconds', 'shown error', 'memory'], first: {x: ['seconds'], y: ['shown error'], colour: ['engine', 'model']},
+  const explorer = new Explorer(box, page.table, {axes: [], status: 'status', decorate: linesOfFronts, logarithmic: ['seconds', 'shown error', 'memory'], first: {x: ['seconds'], y: ['shown error'], colour: ['engine', 'model']},
     details: (panel, row, own) => panel.append(el('p', {}, ['model', 'formulation', 'mesh', 'engine', 'integrator'].map(name => own.columns.get(name)?.value(row)).filter(Boolean).join(', '), '; ', own.columns.get('message')?.value(row) ?? ''),
       el('pre', {tabindex: 0}, (own.columns.get('entries')?.value(row) ?? '').replaceAll('; ', '\n')))});
   box.append(el('p', {class: 'soft small'}, 'Lines: the Pareto fronts of single runs and (dashed) of batches. Shaded: errors below the uncertainty of the reference.'));
@@ -203,9 +198,8 @@ function bestSoFar(explorer) {
   return [...starts.values()];
 }
 const showsProgress = explorer => explorer.x === 'evaluation' && explorer.y === 'objective';
-function drawBest(chart, explorer) {
-  if (showsProgress(explorer)) for (const line of bestSoFar(explorer)) chart.polyline(line.x, line.y, explorer.colour === 'violation' ? ink('ink') : explorer.css(line.row), {steps: true});
-}
+const linesOfBest = explorer => !showsProgress(explorer) ? []
+  : bestSoFar(explorer).map(line => lineOf('', line.x, line.y, explorer.colour === 'violation' ? ink('ink') : explorer.css(line.row), {stepped: true}));
 /** Gaits far off the lines would hide how these rise. */
 function frameOfBest(explorer, {x, y}) {
   const ends = showsProgress(explorer) ? bestSoFar(explorer).flatMap(line => range(line.y)) : [];
@@ -229,7 +223,7 @@ function showOptimisation() {
   const box = section('How the gait became better'), optima = summary.optimize?.optima ?? [];
   let explorer = null;
   if (page.table) {
-    explorer = new Explorer(box, page.table, {axes: [], status: 'problem', decorate: drawBest, frame: frameOfBest, fades: (row, own) => own.columns.get('violation')?.number(row) > admissible(), first: {x: ['evaluation'], y: ['objective'], colour: optima.length > 1 ? ['case'] : ['start', 'violation']},
+    explorer = new Explorer(box, page.table, {axes: [], status: 'problem', decorate: linesOfBest, frame: frameOfBest, fades: (row, own) => own.columns.get('violation')?.number(row) > admissible(), first: {x: ['evaluation'], y: ['objective'], colour: optima.length > 1 ? ['case'] : ['start', 'violation']},
       details: (panel, row, own) => panel.append(el('p', {}, own.columns.get('problem')?.value(row) ?? ''))});
     box.append(el('p', {class: 'soft small'}, 'Dots: all gaits that were tried, grey if they exceed a limit. Lines: the best so far within the limits.'));
   } else box.append(el('p', {}, 'There is no table of gaits: it is written when all starts have ended.'));
