@@ -57,6 +57,7 @@ subsection Optimize
 end
 """
 FOLDERS = ("run", "sweep", "checked", "tradeoff", "optimisation", "fit", "comparison")
+PYTHON = pathlib.Path(__file__).resolve().parents[2] / "contrib/python"
 STUDIES = pathlib.Path(__file__).resolve().parents[2] / "prm/studies"
 checks = Checks()
 check = checks.expect
@@ -106,7 +107,7 @@ def make_studies(program):
 def page_data(folder):
     """What the page knows."""
     text = (folder / "report.html").read_text(encoding="utf-8")
-    check(len(re.findall("</script", text)) == 2 and NASTY not in text, f"no text ends a script of {folder.name}")
+    check(len(re.findall("</script", text)) == 3 and "Chart.js v" in text and NASTY not in text, f"no text ends a script of {folder.name}")
     check(not re.search(r"(src|href)=[\"']?(https?:)?//|@import|url\(", text), f"{folder.name} needs no network")
     return json.loads(re.search(r'id="data">(.*?)</script>', text, re.DOTALL)[1])
 
@@ -194,6 +195,22 @@ def test_refused(program):
         check(result.returncode == 2 and words in result.stderr, f"report {' '.join(arguments)}: {result.stderr.strip()}")
 
 
+def test_library(program):
+    """Chart.js cannot end its script, and if it is missing a sentence names its package."""
+    def report(library):
+        words = ["from crawler import needs", f"needs.CHART_LIBRARIES = [pathlib.Path({str(library)!r})]",
+                 "from crawler.report.command import main", "needs.run_script(main)"]
+        return call([sys.executable, "-c", "; ".join(["import pathlib, sys", f"sys.path.insert(0, {str(PYTHON)!r})", *words]), "report", "run"],
+                    program.folder, variables={"CRAWLER_PROGRAM": program.path})
+    own = program.folder / "own.js"
+    result = report(own)
+    check(result.returncode == 69 and "apt install libjs-chart.js" in result.stderr and result.stderr.count("\n") == 1, f"no Chart.js: {result.stderr}")
+    own.write_text("window.Chart = '</script><b>';", encoding="utf-8")
+    report(own)
+    check("'<\\/script><b>'" in (program.folder / "run/report.html").read_text(encoding="utf-8"), "the library cannot end its script")
+    program("report", "run")
+
+
 def test_unfinished(program):
     """A run and a sweep that were killed: what is there is shown."""
     shutil.copytree(program.folder / "run", program.folder / "killed run")
@@ -233,34 +250,42 @@ def test_large(program, browser):
           f"{drawing} calls draw the points, {pointing} show one of them: {tip!r}")
 
 
+# The charts of a page, and the words of a chart's tip.
+HELPERS = """Object.defineProperty(window, 'CHARTS', {get: () => Object.values(Chart.instances)});
+window.TIP = ({tooltip}) => tooltip.opacity ? [...tooltip.title, ...tooltip.body.flatMap(one => one.lines)].join('\\n') : ''"""
 # How often something is painted for all points, and for one that is pointed at.
-PAINTING = """(() => { const chart = charts.find(one => one.keys), kind = CanvasRenderingContext2D.prototype, own = {}; let calls = 0;
+PAINTING = """(() => { const chart = CHARTS.find(one => one.own.keys), kind = CanvasRenderingContext2D.prototype, own = {}; let calls = 0;
   for (const name of Object.getOwnPropertyNames(kind)) {
     const one = Object.getOwnPropertyDescriptor(kind, name);
     if (typeof one.value !== 'function') continue;
     own[name] = one;
     kind[name] = function (...values) { ++calls; return one.value.apply(this, values); };
   }
-  chart.draw();
+  chart.redraw();
   const drawing = calls;
-  const tip = chart.hover(chart.x(0.32), chart.y(2.1));
-  const pointing = calls - drawing;
+  chart.say(chart.own.find(chart.x(0.32), chart.y(2.1), chart));
+  const tip = TIP(chart), pointing = calls - drawing;
   for (const name in own) Object.defineProperty(kind, name, own[name]);
   return [drawing, pointing, tip]; })()"""
 ALL_KNOWN_NUMBERS = """[...document.querySelectorAll('[data-key] data')].map(one => [one.closest('[data-key]').dataset.key, Number(one.value)])"""
-# How many pictures look (nearly) the same if nothing is painted within their axes.
-BLANK = """charts.filter(one => one.context && one.box.isConnected && !one.box.hidden && one.width > 60).filter(one => {
-  const image = () => { one.draw(); return new Uint32Array(one.context.getImageData(0, 0, one.width, one.height).data.buffer); };
-  const painted = image(), paint = one.paint;
-  one.paint = () => {};
+# How many charts look (nearly) the same without lines and what is painted.
+BLANK = """CHARTS.filter(one => one.width > 60).filter(one => {
+  const {own, ctx, canvas} = one, image = () => { one.redraw(); return new Uint32Array(ctx.getImageData(0, 0, canvas.width, canvas.height).data.buffer); };
+  const painted = image();
+  one.own = {...own, paint: null, overlay: null, lines: () => (own.lines?.() ?? []).map(line => ({...line, data: []}))};
   const blank = image();
-  one.paint = paint;
-  one.draw();
+  one.own = own;
+  one.redraw();
   return painted.filter((colour, i) => colour !== blank[i]).length < 50; }).length"""
-# How many vertical axes have numbers that reach into the title beside them.
-CRAMPED = """charts.filter(one => one.axes && one.context && one.box.isConnected && !one.box.hidden && one.width > 60).filter(one => {
-  const {y} = one.axes(), texts = one.ticksOf(y, one.height - one.margin.bottom - one.margin.top, 36).map(([, text]) => text);
-  return !y.texts && y.title && Math.max(...texts.map(text => one.context.measureText(text).width)) + 26 > one.margin.left; }).length"""
+# How many axes have numbers that reach into the title beside them or into each other.
+CRAMPED = """CHARTS.filter(one => one.width > 60).flatMap(one => Object.values(one.scales)).filter(scale => {
+  if (!scale.options.display) return false;
+  const {ctx} = scale.chart;
+  ctx.font = `12px ${Chart.defaults.font.family}`;
+  const shown = scale.ticks.map((tick, i) => [scale.getPixelForTick(i), scale.axis === 'x' ? ctx.measureText(tick.label).width : 12]).sort((a, b) => a[0] - b[0]);
+  const widest = Math.max(...scale.ticks.map(tick => ctx.measureText(tick.label).width));
+  return !shown.length || shown.some(([at, size], i) => i > 0 && at - size / 2 < shown[i - 1][0] + shown[i - 1][1] / 2)
+    || scale.axis === 'y' && scale.width < widest + (scale.options.title.display ? 20 : 4); }).length"""
 BRIGHTNESS = """(() => { const c = getComputedStyle(document.documentElement).backgroundColor.match(/\\d+/g).map(Number);
   return (c[0] + c[1] + c[2]) / 3; })()"""
 
@@ -275,7 +300,7 @@ def test_in_browser(browser, folder):
             way = f"{name}, {width} pixels, {'dark' if dark else 'light'}"
             check(not browser.complaints, f"{way}: no complaints {browser.complaints}")
             check(browser.ask("document.documentElement.scrollWidth") <= width, f"{way}: nothing is cut off")
-            check(browser.ask(BLANK) == 0 and browser.ask("document.querySelectorAll('.chart').length") > 0, f"{way}: no blank picture")
+            check(browser.ask(BLANK) == 0 and browser.ask("CHARTS.length") > 0, f"{way}: no blank picture")
             check((browser.ask(BRIGHTNESS) < 60) == dark, f"{way}: colours")
             check(browser.ask("[...document.querySelectorAll('.stacks')].every(one => one.scrollWidth <= one.parentElement.clientWidth)"), f"{way}: tables of fits are whole")
             check(browser.ask(CRAMPED) == 0, f"{way}: titles of axes have room")
@@ -284,7 +309,7 @@ def test_in_browser(browser, folder):
         check(all(url.startswith("file:") for url in browser.requests), f"{name}: nothing is loaded")
         check(browser.ask("document.querySelector('h1').textContent") == name, f"{name} is the title")
         if name == "tradeoff":
-            check(browser.ask("(one => one.x.log && one.y.log)(charts.find(one => one.label === 'map of all points'))"), "times and errors are logarithmic")
+            check(browser.ask("(({x, y}) => x.type === 'logarithmic' && y.type === 'logarithmic')(CHARTS.find(one => one.own.label === 'map of all points').scales)"), "times and errors are logarithmic")
 
 
 def in_summary(summary, key):
@@ -314,10 +339,10 @@ def test_run_in_browser(browser, folder):
     check(browser.ask("document.querySelector('button.play').textContent") == "Pause", "the body moves")
     browser.key(" ")
     check(browser.ask("document.querySelector('button.play').textContent") == "Play", "and stops")
-    x, y, width, height = browser.ask("(() => { const r = charts.find(one => one.label === 'kymograph').above.getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; })()")
+    x, y, width, height = browser.ask("(() => { const r = CHARTS.find(one => one.own.label === 'kymograph').canvas.getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; })()")
     browser.ask(f"window.scrollTo(0, {y})")
     browser.mouse(x + width / 2, height / 4, click=True)
-    check("stretch" in browser.ask("charts.find(one => one.label === 'kymograph').tip.textContent"), "the kymograph has numbers")
+    check("stretch" in browser.ask("TIP(CHARTS.find(one => one.own.label === 'kymograph'))"), "the kymograph has numbers")
     browser.open(folder / "<b>inverted/report.html")
     text = browser.ask("document.body.innerText")
     check("inverted_inside" in text and "What to do: a property of the model" in text, "a failure comes with advice")
@@ -345,10 +370,10 @@ def test_map_in_browser(browser, folder):
     """Points by pointer and keys: stored ones with their kymograph, others with their command."""
     browser.open(folder / "sweep/report.html", 1200, 1000)
     rows = csv_rows(folder / "sweep/results.csv")
-    canvas = "charts.find(one => one.keys)"
-    x, y = browser.ask(f"(() => {{ const c = {canvas}, r = c.above.getBoundingClientRect(); return [r.x + c.x(0.3), r.y + c.y(2)]; }})()")
+    chart = "CHARTS.find(one => one.own.keys)"
+    x, y = browser.ask(f"(() => {{ const c = {chart}, r = c.canvas.getBoundingClientRect(); return [r.x + c.x(0.3), r.y + c.y(2)]; }})()")
     browser.mouse(x, y)
-    tip = browser.ask(f"{canvas}.tip.textContent")
+    tip = browser.ask(f"TIP({chart})")
     check("Point 5" in tip and f"displacement: {float(rows[5]['displacement']):.3f}"[:18] in tip, f"the tip of a point: {tip!r}")
     browser.mouse(x, y, click=True)
     panel = "document.querySelector('.details')"
@@ -356,7 +381,7 @@ def test_map_in_browser(browser, folder):
     shown = browser.ask(ALL_KNOWN_NUMBERS)
     stored = json_of(folder / "sweep/points/5/summary.json")
     check(shown and all(in_summary(stored, key) == value for key, value in shown), "its numbers are those of its summary.json")
-    browser.ask(f"{canvas}.above.focus()")
+    browser.ask(f"{chart}.canvas.focus()")
     browser.key("ArrowRight")
     text = browser.ask(f"{panel}.innerText")
     check("Point 6" in text and f"--set '{P}=2'" in text and f"--set '{CHI}=0.6'" in text and "--output points/6" in text,
@@ -391,8 +416,10 @@ def main():
         test_content(program)
         test_sudden_start(program)
         test_refused(program)
+        test_library(program)
         test_unfinished(program)
         with Browser() as browser:
+            browser.call("Page.addScriptToEvaluateOnNewDocument", source=HELPERS)
             test_in_browser(browser, program.folder)
             test_run_in_browser(browser, program.folder)
             test_fit_in_browser(browser, program.folder)

@@ -187,7 +187,7 @@ def test_browser(page, folder):
         texts = {name: browser.ask(f"parameterFile({json.dumps(scene)}, {json.dumps(VALUES | changes)}, '1e-4')")
                  for name, (scene, changes) in SCENES.items()}
         look = """[document.querySelector('[data-key=displacement] data').value, document.querySelector('pre').textContent,
-                   document.querySelectorAll('.chart canvas')[0].toDataURL(), document.querySelectorAll('.chart canvas')[2].toDataURL()]"""
+                   document.querySelectorAll('.chart canvas')[0].toDataURL(), document.querySelectorAll('.chart canvas')[1].toDataURL()]"""
         before = browser.ask(look)
         for key in SLIDERS:
             move(browser, key, 2)

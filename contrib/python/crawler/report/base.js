@@ -14,6 +14,12 @@ function el(name, attributes = {}, ...children) {
   return element;
 }
 
+const chooser = (name, options, value, change) => el('label', {}, name,
+  el('select', {onchange: event => change(event.target.value)},
+    ...options.map(([key, text]) => el('option', {value: key, selected: key === value}, text))));
+
+const figure = (title, text, ...children) => el('figure', {}, el('figcaption', {}, el('b', {}, title), text ? ' ' + text : ''), ...children);
+
 const known = value => typeof value === 'number' && isFinite(value);
 const plural = (n, word) => `${n.toLocaleString('en')} ${word}${n === 1 ? '' : 's'}`;
 

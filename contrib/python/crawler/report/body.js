@@ -78,12 +78,12 @@ class Clock {
 
 /** The body on its ground, from the side: its thickness is 1/stretch, so that its volume stays. */
 class BodyPicture {
-  constructor(parent, run, fields, clock, colours) {
-    Object.assign(this, {clock, colours});
+  constructor(parent, run, fields, clock, map) {
+    Object.assign(this, {clock, map});
     this.use(run, fields);
-    this.chart = new Picture(parent, {height: 210, label: 'the body on its ground', paint: (c, chart) => this.paint(c, chart),
+    this.chart = new Picture(parent, {height: 210, label: 'the body on its ground', overlay: (c, chart) => this.paint(c, chart),
       axes: () => ({x: {low: this.centre() - this.span / 2, high: this.centre() + this.span / 2, bare: true, title: withUnit('place x on the ground', 'length')}, y: {low: 0, high: 1, hidden: true}})});
-    clock.listeners.push(() => this.chart.redraw());
+    clock.listeners.push(() => this.follows ? this.chart.redraw() : this.chart.draw());
   }
   centre() {
     const [row, part] = this.fields.row(this.clock.t), next = Math.min(row + 1, this.centres.length - 1);
@@ -100,9 +100,10 @@ class BodyPicture {
     this.centres = fields.centres(this.clock.pace);
     this.reach = Math.max(...(fields.shown.friction_force ?? [0]).map(Math.abs));
     if (run.ground) this.ground = {x: run.ground.x, c: run.ground.factor.map(factor => factor ?? NaN)};
+    this.chart?.redraw();
   }
   paint(c, chart) {
-    const f = this.fields, t = this.clock.t, {field, scale} = this.colours(), {chartArea: {bottom, width}} = chart, ground = bottom - 34, px = x => chart.x(x);
+    const f = this.fields, t = this.clock.t, {field, scale} = this.map.chart.bar, {chartArea: {bottom, width}} = chart, ground = bottom - 34, px = x => chart.x(x);
     this.drawGround(c, px, ground, chart);
     const x = f.along('position', t), w = f.along('stretch', t), value = f.along(field, t);
     const base = Math.min(34, 0.075 * f.length / this.span * width, Math.max(12, 100 * this.least)), thick = w.map(stretch => Math.min(104, base / Math.max(stretch, 1e-3)));
@@ -174,7 +175,7 @@ class BodyPicture {
 /** A field as colours over time and the body, or the ground on which it is. */
 class KymographPicture {
   constructor(parent, fields, clock, colours) {
-    Object.assign(this, {fields, clock, colours, over: 's'});
+    Object.assign(this, {fields, clock, over: 's'});
     this.chart = new Picture(parent, {height: 430, label: 'kymograph', keys: event => this.keys(event), colours,
       axes: () => ({x: {...this.domain(), bare: true, title: withUnit(this.over === 's' ? 'place s on the body' : 'place x on the ground', 'length')},
                     y: {low: 0, high: this.fields.end, bare: true, title: withUnit('time t', 'time')}}),
@@ -206,7 +207,7 @@ class KymographPicture {
     };
   }
   paint(c, chart) {
-    const {chartArea: {left, top, width, height}, currentDevicePixelRatio: ratio} = chart, {n} = this.fields, {field, scale} = this.colours();
+    const {chartArea: {left, top, width, height}, currentDevicePixelRatio: ratio} = chart, {n} = this.fields, {field, scale} = chart.bar;
     const wide = Math.round(width * ratio), tall = Math.round(height * ratio), image = new ImageData(wide, tall), pixels = new Uint32Array(image.data.buffer);
     const x = Array.from({length: wide}, (_, i) => chart.inverse(left + (i + 0.5) / ratio, 0)[0]);
     for (let j = 0; j < tall; ++j) {
@@ -235,23 +236,21 @@ class KymographPicture {
 function showBody(parent, run, clock, fields) {
   const names = Object.keys(FIELDS).filter(name => fields.fields[name]);
   const top = figure('The body on its ground.', 'It is as thick as its volume asks for (1/stretch). Arrows: friction of the ground on the body. ▲ centre of mass.');
-  parent.append(top);
+  const two = el('div', {class: 'two'}), left = figure('Kymograph.', 'Click to go to a time.'), right = el('div');
+  parent.append(top, two);
+  two.append(left, right);
   let field = names[0];
-  const colours = () => {
+  const map = new KymographPicture(left, fields, clock, () => {
     const {middle, name, symbol, unit} = FIELDS[field];
     return {field, scale: colourScale(...fields.shown[field], {middle}), title: withUnit(`${name} ${symbol}`, unit)};
-  };
-  const body = new BodyPicture(top, run, fields, clock, colours);
+  });
+  const body = new BodyPicture(top, run, fields, clock, map);
   const slider = el('input', {type: 'range', min: 0, max: 1000, value: 0, 'aria-label': 'time', oninput: () => clock.set(slider.value / 1000 * fields.end)});
   const play = el('button', {class: 'play', type: 'button', onclick: () => clock.toggle()}, 'Play');
   const time = el('output');
   top.append(el('div', {class: 'controls'}, play, el('label', {class: 'grow'}, slider, time),
     chooser('Speed', [['0.25', '¼'], ['1', '1'], ['4', '4']], '1', value => { clock.speed = Number(value); }),
-    chooser('Colour', names.map(name => [name, FIELDS[name].name]), field, name => { field = name; redraw(); })));
-  const two = el('div', {class: 'two'}), left = figure('Kymograph.', 'Click to go to a time.');
-  parent.append(two);
-  two.append(left);
-  const map = new KymographPicture(left, fields, clock, colours), redraw = () => { body.chart.redraw(); map.chart.redraw(); };
+    chooser('Colour', names.map(name => [name, FIELDS[name].name]), field, name => { field = name; map.chart.redraw(); body.chart.draw(); })));
   left.append(el('div', {class: 'controls'}, chooser('Over', [['s', 'the body'], ['x', 'the ground']], 's', over => { map.over = over; map.chart.redraw(); })));
   clock.listeners.push(t => {
     slider.value = t / fields.end * 1000;
@@ -259,13 +258,11 @@ function showBody(parent, run, clock, fields) {
     play.textContent = clock.running ? 'Pause' : 'Play';
   });
   clock.set(clock.t);
-  const right = el('div');
-  two.append(right);
   const use = (other, otherFields) => {
     fields = map.fields = otherFields;
     Object.assign(clock, {end: fields.end, pace: other.pace ?? clock.pace});
-    body.use(other, fields);
     map.chart.redraw();
+    body.use(other, fields);
     clock.set(clock.t);
   };
   return {right, use};

@@ -31,7 +31,7 @@ function showProfiles() {
   const box = figure('Profiles.', 'Chi-square with a variable held there and the others free; where it has risen by 1 and 3.84 (grey) the intervals of 68 % and 95 % end. Dashed: the parabola of a linear model.');
   section('How well the data tell them', box);
   const [low, high] = range(lines.flatMap(([, x]) => x)), parabola = Array.from({length: 101}, (_, i) => low + i / 100 * (high - low)), axis = padded([low, high]);
-  new Picture(box, {height: 290, label: `profiles of chi-square: ${lines.map(([entry]) => shortName(entry)).join(', ')}`,
+  new Picture(box, {height: 290, label: 'profiles of chi-square',
     axes: () => ({x: {...axis, title: 'value less the best one, in standard deviations'}, y: {low: 0, high: Math.min(9, Math.max(5, ...lines.flatMap(([, , rise]) => rise))), title: 'rise of chi-square'}}),
     lines: () => [...lines.map(([entry, x, rise], i) => lineOf(shortName(entry), x, rise, series(i))), lineOf('', parabola, parabola.map(x => x * x), ink('soft'), {borderWidth: 1, borderDash: [4, 4]}),
       ...[1, 3.8415].map(rise => lineOf('', [axis.low, axis.high], [rise, rise], ink('line'), {borderWidth: 2}))]});

@@ -24,7 +24,7 @@ function scaleOf(axis, {low, high, log, texts, title, hidden, bare, reverse, tic
     title: {display: Boolean(title), color: ink('ink'), padding: 2, text: ({chart}) => fitted(title, axis === 'x' ? chart.width - 60 : chart.height - 30)},
     afterBuildTicks: own => { if (log) own.ticks = own.ticks.filter(({value}) => digits.includes(leadingDigits(value))); },
     afterFit: own => { if (axis === 'y' && !hidden) own.width = Math.max(own.width, 58); },
-    ticks: {includeBounds: false, maxRotation: 0, autoSkipPadding: 24, callback: value => texts ? fitted(texts[value], 160) : tickText(value, log)}};
+    ticks: {includeBounds: false, maxRotation: 0, autoSkipPadding: 24, callback(value) { return texts ? fitted(texts[value], axis === 'x' ? this.chart.width / texts.length : 160) : tickText(value, log); }}};
 }
 
 /** A line through points, with gaps where a number is not known. */
@@ -54,9 +54,9 @@ recolour();
  */
 class Picture extends Chart {
   constructor(parent, own) {
-    const {label, height = 260, type = 'line', keys} = own;
+    const {height = 260, type = 'line', keys} = own;
     for (const chart of Object.values(Chart.instances)) if (!chart.canvas.isConnected) chart.destroy();
-    const canvas = el('canvas', keys ? {tabindex: 0, role: 'application', 'aria-label': `${label}; arrow keys move`, onkeydown: event => keys(event) && event.preventDefault()} : {role: 'img', 'aria-label': label});
+    const canvas = el('canvas', keys ? {tabindex: 0, role: 'application', onkeydown: event => keys(event) && event.preventDefault()} : {role: 'img'});
     parent.append(el('div', {class: 'chart', style: `height:${height}px`}, canvas));
     const picture = {id: 'picture', afterUpdate: chart => { chart.image = null; }, afterDatasetsDraw: chart => chart.own && chart.paint()};
     super(canvas, {type, data: {datasets: []}, plugins: [picture]});
@@ -68,12 +68,13 @@ class Picture extends Chart {
   inverse(x, y) { return [this.scales.x.getValueForPixel(x), this.scales.y.getValueForPixel(y)]; }
   /** Draws everything anew. */
   redraw() {
-    const {axes, lines, find, press, legend, horizontal} = this.own, {x, y} = axes(), bar = this.own.colours?.(), entries = legend?.();
+    const {label, keys, axes, lines, find, press, legend, horizontal} = this.own, {x, y} = axes(), bar = this.bar = this.own.colours?.(), entries = legend?.();
     this.data.datasets = [...(find ? [{data: [{x: NaN, y: NaN}], pointRadius: 0, pointHoverRadius: 0}] : []), ...(lines?.() ?? [])];
-    this.list = bar?.scale.list;
+    const names = entries?.map(([text]) => text) ?? this.data.datasets.map(({label}) => label).filter(Boolean);
+    this.canvas.setAttribute('aria-label', `${[label, ...names].join(', ')}${keys ? '; arrow keys move' : ''}`);
     this.options = {indexAxis: horizontal ? 'y' : 'x', interaction: find ? {mode: 'found'} : {mode: 'nearest', axis: 'x', intersect: false}, onClick: event => press?.(event.x, event.y, this),
       scales: {x: scaleOf('x', x), y: scaleOf('y', y), ...(bar && {colour: scaleOf('x', {...bar.scale, title: bar.title, bare: true, tickLength: 16})})},
-      plugins: {tooltip: {enabled: !horizontal, displayColors: !find}, legend: {position: 'bottom', align: 'start', display: entries ? entries.length > 0 : this.data.datasets.filter(({label}) => label).length > 1,
+      plugins: {tooltip: {enabled: !horizontal, displayColors: !find}, legend: {position: 'bottom', align: 'start', display: names.length > (entries ? 0 : 1),
         labels: {boxWidth: 12, boxHeight: 8, filter: ({text}) => text, ...(entries && {generateLabels: () => entries.map(([text, colour]) => ({text, fillStyle: colour, strokeStyle: colour}))})}, ...(entries && {onClick: null})}}};
     this.update();
   }
@@ -83,22 +84,20 @@ class Picture extends Chart {
       this.image = el('canvas', {width: ctx.canvas.width, height: ctx.canvas.height});
       const c = this.image.getContext('2d');
       c.scale(ratio, ratio);
-      c.font = `12px ${Chart.defaults.font.family}`;
-      if (colour) this.list.forEach((one, i) => { c.fillStyle = `rgb(${one.join()})`; c.fillRect(colour.left + i * colour.width / 256, colour.top + 4, colour.width / 256 + 1, 10); });
+      if (colour) this.bar.scale.list.forEach((one, i) => { c.fillStyle = `rgb(${one.join()})`; c.fillRect(colour.left + i * colour.width / 256, colour.top + 4, colour.width / 256 + 1, 10); });
       c.rect(area.left - 1, area.top - 1, area.width + 2, area.height + 2);
       c.clip();
       paint(c, this);
     }
     if (this.image) ctx.drawImage(this.image, 0, 0, width, height);
+    ctx.font = `12px ${Chart.defaults.font.family}`;
     overlay?.(ctx, this);
   }
-  /** The item of the library for something that was found. */
+  /** The item of the library for what find() has found: its first point goes there. */
   found(one) {
     if (!one) return [];
-    const [element] = this.getDatasetMeta(0).data;
-    Object.assign(element, {x: one.x, y: one.y, skip: false});
     this.words = one.words.split('\n');
-    return [{element, datasetIndex: 0, index: 0}];
+    return [{element: Object.assign(this.getDatasetMeta(0).data[0], {x: one.x, y: one.y, skip: false}), datasetIndex: 0, index: 0}];
   }
   /** Shows its tip. */
   say(one) {
@@ -108,9 +107,3 @@ class Picture extends Chart {
     this.draw();
   }
 }
-
-const chooser = (name, options, value, change) => el('label', {}, name,
-  el('select', {onchange: event => change(event.target.value)},
-    ...options.map(([key, text]) => el('option', {value: key, selected: key === value}, text))));
-
-const figure = (title, text, ...children) => el('figure', {}, el('figcaption', {}, el('b', {}, title), text ? ' ' + text : ''), ...children);

@@ -55,7 +55,7 @@ function showCurves(parent, run, clock, fields) {
     const box = figure(title, text);
     parent.append(box);
     const least = 1e-12 * run.length, all = lines.flatMap(([column]) => range(column.numbers())).concat(-least, least);
-    const chart = new Picture(box, {height, label: `${title} ${lines.map(([, words]) => words).join(', ')}`,
+    const chart = new Picture(box, {height, label: title,
       axes: () => ({x: {low: 0, high: end, title: withUnit('time t', 'time')}, y: {...padded(range(all)), title: withUnit(lines.length > 1 ? 'energy' : lines[0][1], lines[0][0].unit)}}),
       lines: () => lines.map(([column, words], i) => lineOf(words, time, column.numbers(), series(i))),
       overlay: (c, own) => {
@@ -98,7 +98,7 @@ function showSensitivities(parent, run) {
   if (!s || !lines.length) return;
   const box = figure('Where on the body it matters.', 'Change of the displacement for a relative change of stiffness or friction there, per length.');
   parent.append(box);
-  new Picture(box, {height: 250, label: `sensitivities along the body: ${lines.join(', ')}`, lines: () => lines.map((name, i) => lineOf(name, s, columns.get(name).numbers(), series(i))),
+  new Picture(box, {height: 250, label: 'sensitivities along the body', lines: () => lines.map((name, i) => lineOf(name, s, columns.get(name).numbers(), series(i))),
     axes: () => ({x: {low: 0, high: run.length, title: withUnit('place s on the body', 'length')}, y: {...padded(range([0, ...lines.flatMap(name => range(columns.get(name).numbers()))])), title: 'sensitivity'}})});
 }
 
