@@ -12,7 +12,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(g++ cmake ninja-build git libdeal.ii-dev libcli11-dev nlohmann-json3-dev libfmt-dev openmpi-bin
-  python3-dev pybind11-dev python3-numpy python3-scipy python3-h5py python3-matplotlib)
+  python3-dev pybind11-dev python3-numpy python3-scipy python3-h5py python3-matplotlib libjs-chart.js)
 [ "${1:-}" = package ] && packages+=(dpkg-dev file)
 [ "${1:-}" = live ] && packages+=(emscripten)
 [ "${1:-}" = fuzz ] && packages+=(libclang-rt-dev)

@@ -12,6 +12,8 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 REPORT = HERE.parent / "python/crawler/report"
+sys.path.insert(0, str(REPORT.parent))
+from needs import chart_library  # noqa: E402
 
 
 def text_of(*paths):
@@ -29,7 +31,7 @@ def templates():
 def main():
     core, page = map(pathlib.Path, sys.argv[1:])
     parts = {"styles": text_of(REPORT / "page.css", HERE / "live.css"),
-             "core": text_of(core),
+             "core": text_of(core), "library": chart_library(),
              "scripts": text_of(*(REPORT / name for name in ("base.js", "plot.js", "body.js", "run.js")), HERE / "live.js")}
     parts["templates"] = json.dumps(templates()).replace("<", "\\u003c")
     text = text_of(HERE / "page.html")

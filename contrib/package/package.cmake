@@ -15,7 +15,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "openmpi-bin, python3-numpy, python3-h5py, python3")
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "openmpi-bin, libjs-chart.js, python3-numpy, python3-h5py, python3")
 if(TARGET crawler_python) # a module for one version of Python only
   string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS
     " (>= ${CRAWLER_PYTHON_VERSION}), python3 (<< ${CRAWLER_PYTHON_VERSION}.99)")

@@ -4,7 +4,7 @@
 
     wheel.py MODULE VERSION FOLDER
 
-prints the name of the wheel, which also holds muParser and what it needs, with their licences. Ends with 1 if the module
+prints the name of the wheel, which also holds muParser and what it needs, and Chart.js, with their licences. Ends with 1 if the module
 needs more than these, Python and the libraries of C and C++.
 """
 import base64
@@ -17,16 +17,19 @@ import sysconfig
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "contrib/python/crawler"))
+from needs import CHART_LIBRARIES, chart_library  # noqa: E402
 COMMON = pathlib.Path("/usr/share/common-licenses")
 # Libraries of the system, and those that the wheel brings, with files that have their licences.
 SYSTEM = {"libc.so.6", "libm.so.6", "libmvec.so.1", "ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1", "libstdc++.so.6", "libgcc_s.so.1"}
 BUNDLED = {"libmuparser.so.2": [pathlib.Path("/usr/share/doc/libmuparser2v5/copyright"), pathlib.Path("/usr/include/muParser.h")],
-           "libgomp.so.1": [pathlib.Path("/usr/share/doc/libgomp1/copyright"), COMMON / "GPL-3"]}
+           "libgomp.so.1": [pathlib.Path("/usr/share/doc/libgomp1/copyright"), COMMON / "GPL-3"],
+           CHART_LIBRARIES[0].name: [pathlib.Path("/usr/share/doc/libjs-chart.js/copyright")]}
 METADATA = """Metadata-Version: 2.1
 Name: crawler
 Version: {version}
 Summary: Finite elements for the one-dimensional limbless crawler: single runs, batches, sweeps, gradients and fits
-License: LGPL-2.1-or-later; crawler.libs: BSD-2-Clause (muParser), GPL-3.0-or-later WITH GCC-exception-3.1 (libgomp)
+License: LGPL-2.1-or-later; crawler.libs: BSD-2-Clause (muParser), GPL-3.0-or-later WITH GCC-exception-3.1 (libgomp), MIT (Chart.js)
 Requires-Python: =={python}.*
 Requires-Dist: numpy
 Requires-Dist: scipy; extra == "all"
@@ -90,10 +93,11 @@ def main():
     contents[f"crawler/{module.name}"] = module.read_bytes()
     info = f"crawler-{version}.dist-info"
     contents[f"{info}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
-    for name, library in bundled.items():
-        contents[f"crawler.libs/{name}"] = library.read_bytes()
+    libraries = {**{name: library.read_bytes() for name, library in bundled.items()}, CHART_LIBRARIES[0].name: chart_library().encode()}
+    for name, library in libraries.items():
+        contents[f"crawler.libs/{name}"] = library
         contents[f"{info}/licenses/{name}.txt"] = (
-            f"{name} is Debian's, unchanged; its source code: https://sources.debian.org (packages muparser, gcc-12).\n\n{licence(name)}").encode()
+            f"{name} is Debian's, unchanged; its source code: https://sources.debian.org (packages muparser, gcc-12, node-chart.js).\n\n{licence(name)}").encode()
     contents[f"{info}/METADATA"] = METADATA.format(version=version, python="{}.{}".format(*sys.version_info)).encode()
     contents[f"{info}/WHEEL"] = WHEEL.format(tag=tag).encode()
     record = "".join(f"{name},sha256={base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b'=').decode()},{len(content)}\n"

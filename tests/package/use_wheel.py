@@ -118,6 +118,7 @@ def test_commands():
         return end.returncode, end.stderr.strip()
     code, problem = call("run", SCENE)
     check(code == 2 and "full program" in problem and "\n" not in problem, f"refused: {problem}")
+    check(crawler.needs.CHART_LIBRARIES[0].is_file(), "the wheel has Chart.js")
     try:
         import h5py  # noqa: F401
         code, problem = call("report", FOLDER, "--quiet")
