@@ -32,7 +32,7 @@ const lineOf = (label, xs, ys, colour, more) => ({label, data: Array.from(xs, (x
 
 // The tip says what find() knows of the place of the pointer, or numbers of the lines.
 Chart.Interaction.modes.found = (chart, event) => chart.found(chart.own.find(event.x, event.y, chart));
-Object.assign(Chart.defaults.plugins.tooltip, {caretSize: 0, padding: 8, borderWidth: 1, boxWidth: 8, boxHeight: 8, filter: ({chart, dataset}) => chart.own.find || dataset.label});
+Object.assign(Chart.defaults.plugins.tooltip, {caretSize: 6, caretPadding: 10, padding: 8, borderWidth: 1, boxWidth: 8, boxHeight: 8, boxPadding: 4, filter: ({chart, dataset}) => chart.own.find || dataset.label});
 Object.assign(Chart.defaults.plugins.tooltip.callbacks, {
   title: ([item]) => item && (item.chart.own.find ? item.chart.words[0] : `${item.chart.own.axes().x.title}: ${show(item.parsed.x, 5)}`),
   label: ({chart, dataset, parsed}) => chart.own.find ? chart.words.slice(1) : `${dataset.label}: ${show(parsed.y, 6)}`});
@@ -74,7 +74,7 @@ class Picture extends Chart {
     this.canvas.setAttribute('aria-label', `${[label, ...names].join(', ')}${keys ? '; arrow keys move' : ''}`);
     this.options = {indexAxis: horizontal ? 'y' : 'x', interaction: find ? {mode: 'found'} : {mode: 'nearest', axis: 'x', intersect: false}, onClick: event => press?.(event.x, event.y, this),
       scales: {x: scaleOf('x', x), y: scaleOf('y', y), ...(bar && {colour: scaleOf('x', {...bar.scale, title: bar.title, bare: true, tickLength: 16})})},
-      plugins: {tooltip: {enabled: !horizontal, displayColors: !find}, legend: {position: 'bottom', align: 'start', display: names.length > (entries ? 0 : 1),
+      plugins: {tooltip: {enabled: !horizontal, displayColors: !find, ...(find && {yAlign: ({tooltipItems: [item]}) => item?.element.y < 150 ? 'top' : 'bottom'})}, legend: {position: 'bottom', align: 'start', display: names.length > (entries ? 0 : 1),
         labels: {boxWidth: 12, boxHeight: 8, filter: ({text}) => text, ...(entries && {generateLabels: () => entries.map(([text, colour]) => ({text, fillStyle: colour, strokeStyle: colour}))})}, ...(entries && {onClick: null})}}};
     this.update();
   }
