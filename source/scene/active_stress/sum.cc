@@ -15,119 +15,47 @@ namespace crawler
 {
   namespace
   {
-    /// The points where the window of a term is open.
-    struct OpenPoints
-    {
-      OpenPoints(const SumTerm &term, const std::vector<double> &points)
-      {
-        for (std::size_t i = 0; i < points.size(); ++i)
-          if (const double W = term.in_s.value(points[i]); W != 0.)
-          {
-            index.push_back(i);
-            place.push_back(points[i]);
-            factor.push_back(term.factor * W);
-          }
-      }
-
-      std::vector<std::size_t> index; ///< among all points
-      std::vector<double> place;      ///< [length]
-      std::vector<double> factor;     ///< the term's factor times W(s)
-    };
-
-    /// Sum and product of terms, and their derivatives in some directions, point by point.
-    class Combination
+    /// Evaluates a sum with its derivatives: values, rates, or values and derivatives with respect to what is seen.
+    class SumAtPoints : public ActiveStressAtPoints, public FeedbackAtPoints
     {
     public:
-      Combination(const std::size_t n_points, const std::size_t n_derivatives)
-        : sum_(n_points)
-        , product_(n_points)
-        , f(n_points)
-        , sum_d_(n_derivatives, sum_)
-        , product_d_(n_derivatives, sum_)
-        , f_d(n_derivatives, sum_)
+      enum class Wanted
       {
-      }
+        values,
+        rates,
+        feedback
+      };
 
-      void
-      start()
-      {
-        std::fill(sum_.begin(), sum_.end(), 0.);
-        std::fill(product_.begin(), product_.end(), 1.);
-        for (auto *all : {&sum_d_, &product_d_})
-          for (auto &d : *all)
-            std::fill(d.begin(), d.end(), 0.);
-      }
-
-      /// Clears f and f_d for the next term.
-      void
-      clear_term()
-      {
-        std::fill(f.begin(), f.end(), 0.);
-        for (auto &d : f_d)
-          std::fill(d.begin(), d.end(), 0.);
-      }
-
-      void
-      combine(const bool multiplies)
-      {
-        for (std::size_t d = 0; d < f_d.size(); ++d)
-          for (std::size_t i = 0; i < f.size(); ++i)
-            if (multiplies)
-              product_d_[d][i] = product_d_[d][i] * f[i] + product_[i] * f_d[d][i];
-            else
-              sum_d_[d][i] += f_d[d][i];
-        for (std::size_t i = 0; i < f.size(); ++i)
-          if (multiplies)
-            product_[i] *= f[i];
-          else
-            sum_[i] += f[i];
-      }
-
-      void
-      values(const std::span<double> m) const
-      {
-        for (std::size_t i = 0; i < m.size(); ++i)
-          m[i] = sum_[i] * product_[i];
-      }
-
-      void
-      derivatives(const std::size_t d, const std::span<double> m_d) const
-      {
-        for (std::size_t i = 0; i < m_d.size(); ++i)
-          m_d[i] = sum_d_[d][i] * product_[i] + sum_[i] * product_d_[d][i];
-      }
-
-    private:
-      std::vector<double> sum_, product_;
-
-    public:
-      std::vector<double> f; ///< of one term
-
-    private:
-      std::vector<std::vector<double>> sum_d_, product_d_;
-
-    public:
-      std::vector<std::vector<double>> f_d; ///< [direction][point]
-    };
-
-    /// Evaluates values, or rates.
-    class SumAtPoints : public ActiveStressAtPoints
-    {
-    public:
-      SumAtPoints(const std::vector<SumTerm> &terms, const std::vector<double> &points, const bool wants_rate)
-        : wants_rate_(wants_rate)
-        , all_(points.size(), wants_rate ? 1 : 0)
+      SumAtPoints(const std::vector<SumTerm> &terms, const std::vector<double> &points, const Wanted wanted)
+        : wants_rates_(wanted == Wanted::rates)
+        , f_(wanted == Wanted::values  ? 1
+             : wanted == Wanted::rates ? 2
+                                       : n_all,
+             std::vector<double>(points.size()))
+        , sum_(f_)
+        , product_(f_)
       {
         for (const SumTerm &term : terms)
         {
-          Part part{&term, OpenPoints(term, points), {}, {}, {}, {}};
-          if (!part.open.index.empty())
+          Part part{.term = &term};
+          std::vector<double> places;
+          for (std::size_t i = 0; i < points.size(); ++i)
+            if (const double W = term.in_s.value(points[i]); W != 0.)
+            {
+              part.index.push_back(i);
+              part.factor.push_back(term.factor * W);
+              places.push_back(points[i]);
+            }
+          if (!places.empty())
           {
-            part.stress = term.stress->at(part.open.place);
-            part.g.resize(part.open.index.size());
-            if (wants_rate)
-              part.rate = term.stress->rate_at(part.open.place);
-            part.g_t.resize(part.g.size());
+            const StretchFeedback *feedback = wanted == Wanted::feedback ? term.stress->feedback() : nullptr;
+            if (feedback != nullptr)
+              part.feedback = feedback->at(places);
+            else
+              part.stress = term.stress->at(places);
+            if (wants_rates_)
+              part.rate = term.stress->rate_at(places);
+            part.g.assign(feedback != nullptr ? n_all : wants_rates_ ? 2 : 1, places);
           }
           parts_.push_back(std::move(part));
         }
@@ -136,143 +64,107 @@ namespace crawler
       void
       values(const double t, const std::span<double> m) override
       {
-        all_.start();
-        for (Part &part : parts_)
-        {
-          all_.clear_term();
-          const double V = part.term->in_t.value(t), V_t = wants_rate_ ? part.term->in_t.rate(t) : 0.;
-          if (part.stress && (V != 0. || V_t != 0.))
-            write(part, t, V, V_t);
-          all_.combine(part.term->multiplies);
-        }
-        if (wants_rate_)
-          all_.derivatives(0, m);
+        if (wants_rates_)
+          evaluate(t, {}, {{{}, m}});
         else
-          all_.values(m);
-      }
-
-    private:
-      struct Part
-      {
-        const SumTerm *term;
-        OpenPoints open;
-        std::unique_ptr<ActiveStressAtPoints> stress, rate;
-        std::vector<double> g, g_t;
-      };
-
-      /// Writes f = F W V g, or f_t = F W ( V_t g + V g_t ).
-      void
-      write(Part &part, const double t, const double V, const double V_t)
-      {
-        const OpenPoints &open = part.open;
-        part.stress->values(t, part.g);
-        for (std::size_t i = 0; i < open.index.size(); ++i)
-          all_.f[open.index[i]] = open.factor[i] * V * part.g[i];
-        if (!wants_rate_)
-          return;
-        part.rate->values(t, part.g_t);
-        for (std::size_t i = 0; i < open.index.size(); ++i)
-          all_.f_d[0][open.index[i]] = open.factor[i] * (V_t * part.g[i] + V * part.g_t[i]);
-      }
-
-      const bool wants_rate_;
-      Combination all_;
-      std::vector<Part> parts_;
-    };
-
-    class SumFeedbackAtPoints : public FeedbackAtPoints
-    {
-    public:
-      SumFeedbackAtPoints(const std::vector<SumTerm> &terms, const std::vector<double> &points)
-        : all_(points.size(), n_directions)
-      {
-        for (const SumTerm &term : terms)
-        {
-          Part part{&term, OpenPoints(term, points), {}, {}, {}, {}, {}};
-          const std::size_t n = part.open.index.size();
-          if (n > 0)
-          {
-            if (const StretchFeedback *feedback = term.stress->feedback())
-              part.feedback = feedback->at(part.open.place);
-            else
-              part.stress = term.stress->at(part.open.place);
-            part.g.resize(n);
-            for (auto &d : part.g_d)
-              d.resize(n);
-          }
-          parts_.push_back(std::move(part));
-        }
+          evaluate(t, {}, {{m}});
       }
 
       void
       values(const double t, const StretchSeen &seen, const FeedbackStress &m) override
       {
-        const std::array<std::span<double>, n_directions> wanted = {{m.m_w, m.m_rate, m.m_near}};
-        all_.start();
-        for (Part &part : parts_)
-        {
-          all_.clear_term();
-          const double V = part.term->in_t.value(t);
-          if (!part.open.index.empty() && V != 0.)
-            write(part, t, V, seen, wanted);
-          all_.combine(part.term->multiplies);
-        }
-        all_.values(m.m);
-        for (std::size_t d = 0; d < n_directions; ++d)
-          all_.derivatives(d, wanted[d]);
+        evaluate(t, seen, {{m.m, m.m_w, m.m_rate, m.m_near}});
       }
 
     private:
-      static constexpr std::size_t n_directions = 3, n_seen = 4; ///< w, w_t, w near; also w delayed
+      static constexpr std::size_t n_all = 4; ///< m and its derivatives; also what is seen: w, w_t, w near, w delayed
+      using Written                      = std::array<std::span<double>, n_all>;
 
+      /// A term at the points where its window is open.
       struct Part
       {
         const SumTerm *term;
-        OpenPoints open;
-        std::unique_ptr<ActiveStressAtPoints> stress; ///< or
-        std::unique_ptr<FeedbackAtPoints> feedback;
-        std::array<std::vector<double>, n_seen> seen;
-        std::vector<double> g;
-        std::array<std::vector<double>, n_directions> g_d;
+        std::vector<std::size_t> index               = {};            ///< among all points
+        std::vector<double> factor                   = {};            ///< the term's factor times W(s)
+        std::unique_ptr<ActiveStressAtPoints> stress = {}, rate = {}; ///< or
+        std::unique_ptr<FeedbackAtPoints> feedback  = {};
+        std::array<std::vector<double>, n_all> seen = {};
+        std::vector<std::vector<double>> g          = {}; ///< and its derivatives
       };
 
+      /// Writes value and derivatives; those that are not wanted are empty.
       void
-      write(Part &part,
-            const double t,
-            const double V,
-            const StretchSeen &seen,
-            const std::array<std::span<double>, n_directions> &wanted)
+      evaluate(const double t, const StretchSeen &seen, const Written &m)
       {
-        const OpenPoints &open = part.open;
-        const std::size_t n    = open.index.size();
-        if (part.stress)
-          part.stress->values(t, part.g);
-        else
+        for (std::size_t k = 0; k < f_.size(); ++k)
         {
-          const std::array<std::span<const double>, n_seen> all = {{seen.stretch, seen.rate, seen.near, seen.delayed}};
-          for (std::size_t k = 0; k < n_seen; ++k)
-          {
-            part.seen[k].resize(all[k].empty() ? 0 : n);
-            for (std::size_t i = 0; i < part.seen[k].size(); ++i)
-              part.seen[k][i] = all[k][open.index[i]];
-          }
-          FeedbackStress answer{part.g, {}, {}, {}};
-          std::span<double> *const derivatives[] = {&answer.m_w, &answer.m_rate, &answer.m_near};
-          for (std::size_t d = 0; d < n_directions; ++d)
-            if (!wanted[d].empty())
-              *derivatives[d] = part.g_d[d];
-          part.feedback->values(t, {part.seen[0], part.seen[1], part.seen[2], part.seen[3]}, answer);
+          std::fill(sum_[k].begin(), sum_[k].end(), 0.);
+          std::fill(product_[k].begin(), product_[k].end(), k == 0 ? 1. : 0.);
         }
-        for (std::size_t i = 0; i < n; ++i)
-          all_.f[open.index[i]] = open.factor[i] * V * part.g[i];
-        if (part.feedback)
-          for (std::size_t d = 0; d < n_directions; ++d)
-            if (!wanted[d].empty())
-              for (std::size_t i = 0; i < n; ++i)
-                all_.f_d[d][open.index[i]] = open.factor[i] * V * part.g_d[d][i];
+        for (Part &part : parts_)
+        {
+          for (auto &f : f_)
+            std::fill(f.begin(), f.end(), 0.);
+          const double V = part.term->in_t.value(t), V_t = wants_rates_ ? part.term->in_t.rate(t) : 0.;
+          if (!part.index.empty() && (V != 0. || V_t != 0.))
+            write(part, t, V, V_t, seen, m);
+          combine(part.term->multiplies);
+        }
+        for (std::size_t k = 0; k < f_.size(); ++k)
+          for (std::size_t i = 0; i < m[k].size(); ++i)
+            m[k][i] = k == 0 ? sum_[0][i] * product_[0][i] : sum_[k][i] * product_[0][i] + sum_[0][i] * product_[k][i];
       }
 
-      Combination all_;
+      /// Writes f = F W V g and its derivatives; in time F W (V_t g + V g_t).
+      void
+      write(
+        Part &part, const double t, const double V, const double V_t, const StretchSeen &seen, const Written &wanted)
+      {
+        if (part.feedback)
+          see(part, t, seen, wanted);
+        else
+          part.stress->values(t, part.g[0]);
+        if (part.rate)
+          part.rate->values(t, part.g[1]);
+        for (std::size_t k = 0; k < part.g.size(); ++k)
+          if (k == 0 || !wanted[k].empty())
+            for (std::size_t i = 0; i < part.index.size(); ++i)
+              f_[k][part.index[i]] = k > 0 && part.rate ? part.factor[i] * (V_t * part.g[0][i] + V * part.g[1][i])
+                                                        : part.factor[i] * V * part.g[k][i];
+      }
+
+      static void
+      see(Part &part, const double t, const StretchSeen &seen, const Written &wanted)
+      {
+        const std::array<std::span<const double>, n_all> all = {{seen.stretch, seen.rate, seen.near, seen.delayed}};
+        Written g;
+        for (std::size_t k = 0; k < n_all; ++k)
+        {
+          part.seen[k].resize(all[k].empty() ? 0 : part.index.size());
+          for (std::size_t i = 0; i < part.seen[k].size(); ++i)
+            part.seen[k][i] = all[k][part.index[i]];
+          if (k == 0 || !wanted[k].empty())
+            g[k] = part.g[k];
+        }
+        part.feedback->values(t, {part.seen[0], part.seen[1], part.seen[2], part.seen[3]}, {g[0], g[1], g[2], g[3]});
+      }
+
+      /// Adds f and its derivatives to the sum, or multiplies the product by them.
+      void
+      combine(const bool multiplies)
+      {
+        for (std::size_t k = f_.size(); k-- > 0;)
+          for (std::size_t i = 0; i < f_[k].size(); ++i)
+            if (!multiplies)
+              sum_[k][i] += f_[k][i];
+            else if (k == 0)
+              product_[0][i] *= f_[0][i];
+            else
+              product_[k][i] = product_[k][i] * f_[0][i] + product_[0][i] * f_[k][i];
+      }
+
+      const bool wants_rates_;
+      std::vector<std::vector<double>> f_, sum_, product_; ///< [value, then derivatives][point]; f of one term
       std::vector<Part> parts_;
     };
 
@@ -348,7 +240,7 @@ namespace crawler
     if (std::any_of(
           terms_.begin(), terms_.end(), [](const SumTerm &term) { return term.stress->feedback() != nullptr; }))
       feedback_ = std::make_unique<KnownFeedback>(common_facts(terms_), [this](const std::vector<double> &points) {
-        return std::make_unique<SumFeedbackAtPoints>(terms_, points);
+        return std::make_unique<SumAtPoints>(terms_, points, SumAtPoints::Wanted::feedback);
       });
     const auto add = [](std::vector<double> &all, const std::vector<double> &list) {
       all.insert(all.end(), list.begin(), list.end());
@@ -365,7 +257,8 @@ namespace crawler
   std::unique_ptr<ActiveStressAtPoints>
   Sum::evaluator(const std::vector<double> &points, const bool rate) const
   {
-    return std::make_unique<SumAtPoints>(terms_, points, /*wants_rate=*/rate);
+    return std::make_unique<SumAtPoints>(
+      terms_, points, rate ? SumAtPoints::Wanted::rates : SumAtPoints::Wanted::values);
   }
 
   std::unique_ptr<ActiveStressAtPoints>
