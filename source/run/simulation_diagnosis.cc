@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Part of Simulation that names a lost stretch or a failed time step (doc/numerics.md, "Failures and inversions").
+#include <crawler/base/bracketed_root.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/run/simulation.h>
 
-#include <boost/math/tools/toms748_solve.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,13 +40,9 @@ namespace crawler
     double
     first_zero(const Function &function, const double from, const double to)
     {
-      const double at_from = function(from), at_to = function(to);
-      if (!(at_from > 0.) || !(at_to < 0.))
-        return at_from > 0. ? to : from;
-      std::uintmax_t iterations = 100;
-      const auto bracket        = boost::math::tools::toms748_solve(
-        function, from, to, at_from, at_to, boost::math::tools::eps_tolerance<double>(50), iterations);
-      return 0.5 * (bracket.first + bracket.second);
+      if (!(function(from) > 0.))
+        return from;
+      return function(to) < 0. ? bracketed_root(function, from, to) : to;
     }
   } // namespace
 

@@ -26,7 +26,8 @@ namespace crawler
   std::vector<double>
   within(std::vector<double> places, const double end)
   {
-    std::erase_if(places, [end](const double x) { return !(x > 0. && x < end); });
+    constexpr double round_off = 1e-12;
+    std::erase_if(places, [end](const double x) { return !(x > round_off * end && x < (1. - round_off) * end); });
     return places;
   }
 

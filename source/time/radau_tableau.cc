@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/bracketed_root.h>
 #include <crawler/time/radau_tableau.h>
 
 #include <boost/math/special_functions/legendre.hpp>
-#include <boost/math/tools/toms748_solve.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -141,12 +141,8 @@ namespace crawler
       for (int i = 1; i < n_grid - 1; ++i)
       {
         const double left = (i - 0.5) / n_grid, right = (i + 0.5) / n_grid;
-        if (function(left) * function(right) > 0.)
-          continue;
-        std::uintmax_t iterations = 100;
-        const auto bracket        = boost::math::tools::toms748_solve(
-          function, left, right, boost::math::tools::eps_tolerance<double>(52), iterations);
-        points.push_back(0.5 * (bracket.first + bracket.second));
+        if (function(left) * function(right) <= 0.)
+          points.push_back(bracketed_root(function, left, right));
       }
       points.push_back(1.);
       return points;

@@ -14,7 +14,7 @@ namespace crawler
   /// Breaks closer than this fraction of the duration, or of the length, are one.
   constexpr double min_time_between_breaks = 1e-12, min_space_between_breaks = 1e-9;
 
-  /// The @p places that are in (0, @p end).
+  /// The @p places that are in (0, @p end), apart from its ends by more than round-off.
   std::vector<double>
   within(std::vector<double> places, double end);
 

@@ -3,6 +3,7 @@
 
 #include <crawler/scene/active_stress.h>
 
+#include <concepts>
 #include <functional>
 #include <utility>
 
@@ -11,7 +12,7 @@ namespace crawler
   // Evaluators of active stresses, strains and feedback at points, made of functions that keep whatever does not depend
   // on time.
 
-  /// Makes an evaluator from a function of t [time] and of the list that receives m.
+  /// Makes an evaluator from a function of t [time] and of the list that receives m, or from its values().
   template <typename Function>
   std::unique_ptr<ActiveStressAtPoints>
   stress_at_points(Function function)
@@ -25,7 +26,10 @@ namespace crawler
       void
       values(const double t, const std::span<double> m) override
       {
-        function(t, m);
+        if constexpr (std::invocable<Function &, double, std::span<double>>)
+          function(t, m);
+        else
+          function.values(t, m);
       }
       Function function;
     };

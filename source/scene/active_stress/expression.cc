@@ -46,13 +46,8 @@ namespace crawler
   std::unique_ptr<ActiveStressAtPoints>
   Expression::evaluator(const std::vector<double> &points, const bool rate) const
   {
-    const auto by = [](auto formula) {
-      return stress_at_points(
-        [formula = std::move(formula)](const double t, const std::span<double> m) mutable { formula.values(t, m); });
-    };
-    if (rate)
-      return by(FormulaRateAtPoints(compiled_, points));
-    return by(FormulaAtPoints(compiled_, points));
+    return rate ? stress_at_points(FormulaRateAtPoints(compiled_, points))
+                : stress_at_points(FormulaAtPoints(compiled_, points));
   }
 
   std::optional<ActiveStress::Repetition>

@@ -35,11 +35,8 @@ namespace crawler
     {
       return strain_by(
         [formula](const std::vector<double> &points) -> Strains {
-          const auto by = [](auto values) {
-            return stress_at_points(
-              [values = std::move(values)](const double t, const std::span<double> e) mutable { values.values(t, e); });
-          };
-          return {by(FormulaAtPoints(formula, points)), by(FormulaRateAtPoints(formula, points))};
+          return {stress_at_points(FormulaAtPoints(formula, points)),
+                  stress_at_points(FormulaRateAtPoints(formula, points))};
         },
         [bound = std::make_shared<FormulaBound>(formula)](const SpaceTimeBox &box) {
           const Enclosure e = (*bound)({box.s_from, box.s_to}, {box.t_from, box.t_to});

@@ -3,6 +3,7 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/segments.h>
 #include <crawler/scene/active_stress/wave_entries.h>
+#include <crawler/scene/breaks.h>
 
 #include <fmt/format.h>
 
@@ -22,17 +23,6 @@ namespace crawler
     fraction(const double x)
     {
       return x - std::floor(x);
-    }
-
-    /// Sorts @p values and removes those that differ by round-off only.
-    std::vector<double>
-    distinct(std::vector<double> values)
-    {
-      std::sort(values.begin(), values.end());
-      values.erase(
-        std::unique(values.begin(), values.end(), [](const double a, const double b) { return b - a <= round_off; }),
-        values.end());
-      return values;
     }
   } // namespace
 
@@ -152,7 +142,9 @@ namespace crawler
     for (const Segment &s : segments_)
       for (const double x : breaks(s))
         phases.push_back(fraction(x - s.phase));
-    phases                = distinct(std::move(phases));
+    std::sort(phases.begin(), phases.end());
+    const auto are_one = [](const double a, const double b) { return b - a <= round_off; };
+    phases.erase(std::unique(phases.begin(), phases.end(), are_one), phases.end());
     constexpr double most = 1e6;
     const double periods = p.frequency * end_time, n_breaks = static_cast<double>(phases.size()) * periods;
     require_countable_periods(p.frequency, end_time, false, segments_section + "Frequency");
@@ -165,9 +157,8 @@ namespace crawler
     std::vector<double> times;
     for (double period = 0.; period <= periods && !phases.empty(); ++period)
       for (const double x : phases)
-        if (const double t = (period + x) / p.frequency; t > round_off * end_time && t < (1. - round_off) * end_time)
-          times.push_back(t);
-    return times;
+        times.push_back((period + x) / p.frequency);
+    return within(std::move(times), end_time);
   }
 
   std::vector<double>

@@ -100,18 +100,6 @@ namespace crawler
         return GridInterpolation::Outside::periodic;
       return p.outside == "hold" ? GridInterpolation::Outside::hold : GridInterpolation::Outside::go_on;
     }
-
-    /// The numbers strictly between 0 and @p end.
-    std::vector<double>
-    inside(const std::vector<double> &values, const double end)
-    {
-      constexpr double round_off = 1e-12;
-      std::vector<double> result;
-      for (const double value : values)
-        if (value > round_off * end && value < (1. - round_off) * end)
-          result.push_back(value);
-      return result;
-    }
   } // namespace
 
   void
@@ -229,10 +217,10 @@ namespace crawler
   {
     constexpr std::size_t most = 256;
     const auto &s              = table_.grid().s;
-    auto knots                 = inside(s, length_);
+    auto knots                 = within(s, length_);
     if (knots.size() <= (parameters_.interpolation == "linear" ? most : max_knots_of_splines))
       return knots;
-    return inside({s.front(), s.back()}, length_); // ends of a held table
+    return within({s.front(), s.back()}, length_); // ends of a held table
   }
 
   std::vector<double>
@@ -242,7 +230,7 @@ namespace crawler
     const auto &t              = table_.grid().t;
     const bool linear = parameters_.interpolation == "linear", periodic = parameters_.outside == "periodic";
     if (linear && !periodic)
-      if (auto knots = inside(t, end_time); knots.size() <= most)
+      if (auto knots = within(t, end_time); knots.size() <= most)
         return knots;
     if (linear && periodic)
     {
@@ -251,10 +239,10 @@ namespace crawler
       for (double n = -std::ceil(t.back() / P); t.front() + n * P < end_time && knots.size() <= 2 * most; ++n)
         for (std::size_t j = 0; j + 1 < t.size(); ++j)
           knots.push_back(t[j] + n * P);
-      if (knots = inside(knots, end_time); knots.size() <= most)
+      if (knots = within(knots, end_time); knots.size() <= most)
         return knots;
     }
-    return periodic ? std::vector<double>() : inside({t.front(), t.back()}, end_time);
+    return periodic ? std::vector<double>() : within({t.front(), t.back()}, end_time);
   }
 
   void

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/bracketed_root.h>
 #include <crawler/scene/active_stress/wave_roots.h>
 #include <crawler/scene/body.h>
 
-#include <boost/math/tools/roots.hpp>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
 #include <numeric>
 
@@ -42,16 +40,6 @@ namespace crawler
       for (unsigned int n = 1; n <= shape.a.size(); ++n)
         sum += shape.power(n) * pi * n * std::sin(2. * pi * n * x);
       return sum;
-    }
-
-    template <typename Function>
-    double
-    bracketed_root(const Function &f, const double left, const double right)
-    {
-      std::uintmax_t iterations = 200;
-      const auto interval =
-        boost::math::tools::toms748_solve(f, left, right, boost::math::tools::eps_tolerance<double>(52), iterations);
-      return 0.5 * (interval.first + interval.second);
     }
   } // namespace
 
