@@ -252,35 +252,6 @@ namespace crawler
     rename_whole(temporary, path);
   }
 
-  void
-  write_hdf5(const std::filesystem::path &path,
-             const std::string &group,
-             const Table &table,
-             const std::map<std::string, std::string> &attributes)
-  {
-    using Texts = std::vector<std::string>;
-    std::vector<RowFile::Column> columns;
-    unsigned long n_rows = 0;
-    for (const Column &column : table)
-    {
-      unsigned int width = 0;
-      if (const auto *texts = std::get_if<Texts>(&column.values))
-      {
-        width = 1;
-        for (const std::string &text : *texts)
-          width = std::max(width, static_cast<unsigned int>(text.size()));
-      }
-      columns.push_back({column.name, column.unit, column.description, width});
-      n_rows = std::visit([](const auto &values) { return values.size(); }, column.values);
-    }
-    const auto value = [&](const std::size_t column, const unsigned long row) {
-      return std::visit([row](const auto &values) { return RowFile::Value(values[row]); }, table[column].values);
-    };
-    auto all         = attributes;
-    all["not known"] = "NaN in numbers, an empty text in texts";
-    RowFile::create(path, group, columns, n_rows, all, {columns.size(), value});
-  }
-
   struct RowFile::Handles
   {
     Hdf5Handle file, transfer;

@@ -105,12 +105,6 @@ namespace crawler
       stress.time = std::numeric_limits<double>::quiet_NaN();
   }
 
-  StretchAt
-  PositionForm::smallest_of_ranks(const StretchAt own) const
-  {
-    return reduce_minimum(own, 1., discretization_);
-  }
-
   StretchRange
   PositionForm::stretch_range(const ConstVector y)
   {
@@ -228,25 +222,10 @@ namespace crawler
     if (!one)
       discretization_.add_to_owned<double>(F_local_, F);
 
-    StretchAt found{std::numeric_limits<double>::infinity(), 0.};
-    if (bad >= 0)
-    {
-      const auto &element      = discretization_.element();
-      const unsigned int cell  = static_cast<unsigned int>(bad) / element.n,
-                         point = static_cast<unsigned int>(bad) % element.n;
-      const double h           = discretization_.cell_size()[cell];
-      double w                 = 1.;
-      for (unsigned int i = 0; i < element.n; ++i)
-        w += element.derivatives[point * element.n + i] / h * in.u[cell * element.degree + i];
-      found = {w, discretization_.cell_left()[cell] + h * element.points[point]};
-    }
     int any = bad >= 0;
     if (discretization_.n_ranks() > 1)
       MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, discretization_.communicator());
-    if (any == 0)
-      return true;
-    bad_stretch_ = smallest_of_ranks(found);
-    return false;
+    return any == 0;
   }
 
   void

@@ -46,12 +46,6 @@ namespace crawler
     {
       return bytes_;
     }
-    /// True if nothing is left to read.
-    bool
-    is_at_end() const
-    {
-      return place_ == bytes_.size();
-    }
 
     template <typename... Types>
     void

@@ -73,13 +73,6 @@ namespace crawler
     std::unique_ptr<Handles> handles_;
   };
 
-  /// Writes a whole table to such a file. Throws FileError.
-  void
-  write_hdf5(const std::filesystem::path &path,
-             const std::string &group,
-             const Table &table,
-             const std::map<std::string, std::string> &attributes);
-
   /// Reads parts of a table that RowFile has written; a large one need not fit into memory.
   class RowReader
   {

@@ -53,8 +53,7 @@ namespace crawler
     void
     forget_stresses() override;
 
-    /// Residual F(t, u, u'). Returns false (on all ranks) if the stretch is not positive at a quadrature point;
-    /// bad_stretch() then tells where.
+    /// Residual F(t, u, u'). Returns false (on all ranks) if the stretch is not positive at a quadrature point.
     bool
     residual(double t, ConstVector u, ConstVector v, Vector F) override;
 
@@ -85,13 +84,6 @@ namespace crawler
     void
     mass(double t, ConstVector u, ConstVector v, BlockTridiagonalMatrix<double> &M);
 
-    /// First stretch that was not positive, of the last residual() that returned false.
-    const std::optional<StretchAt> &
-    bad_stretch() const
-    {
-      return bad_stretch_;
-    }
-
     Resolution
     resolution(ConstVector y);
 
@@ -118,8 +110,6 @@ namespace crawler
     std::unique_ptr<BlockTridiagonalMatrix<double>> mass_; ///< mass matrix, built when a velocity is first needed
 
   private:
-    StretchAt
-    smallest_of_ranks(StretchAt own) const;
     const std::vector<double> &
     stress_at(double t);
 
@@ -137,7 +127,6 @@ namespace crawler
     std::vector<double> u_local_, v_local_, F_local_;
     const StretchSampler &sampler_;        ///< samples at the left end, the quadrature points and the right end
     std::vector<double> force_, friction_; ///< values at the quadrature points
-    std::optional<StretchAt> bad_stretch_;
     std::vector<BlockTridiagonalMatrix<Complex>> complex_jacobians_;
     struct Stage
     {

@@ -127,10 +127,6 @@ TEST(PositionForm, ReportsAStretchThatIsNotPositive)
     u[i] = -0.15;
   u[13] = -0.075;
   EXPECT_FALSE(assembler.residual(0., u, v, F));
-  ASSERT_TRUE(assembler.bad_stretch().has_value());
-  EXPECT_GT(assembler.bad_stretch()->s, 0.6);
-  EXPECT_LT(assembler.bad_stretch()->s, 0.7);
-  EXPECT_NEAR(assembler.bad_stretch()->value, -0.5, 1e-12);
   const StretchRange range = assembler.stretch_range(u);
   EXPECT_NEAR(range.min.value, -0.5, 1e-12);
   EXPECT_NEAR(range.max.value, 1., 1e-12);
