@@ -101,6 +101,17 @@ namespace crawler
           set_error_bound(result, key, std::max(*known, part * *value));
     }
 
+    Simulation::Options
+    options_of_finer_run(const SimulationResult &result, const std::optional<CycleWish> &cycles)
+    {
+      using Wish = Simulation::GaitWish;
+      return {.energy_balance = result.energy_balance.has_value(),
+              .cycles         = cycles,
+              .gait           = !result.gait               ? Wish::none
+                                : result.gait->is_declared ? Wish::declared
+                                                           : Wish::any};
+    }
+
     /// Runs with more cells and its own steps: where no rule predicts the error this separates the two parts of the
     /// error, since their sum may be small by chance.
     SimulationResult
@@ -192,17 +203,6 @@ namespace crawler
     if (cycles_repeat)
       change_steps(numerics, finer_tolerance_of_cycles);
     return numerics;
-  }
-
-  Simulation::Options
-  options_of_finer_run(const SimulationResult &result, const std::optional<CycleWish> &cycles)
-  {
-    using Wish = Simulation::GaitWish;
-    return {.energy_balance = result.energy_balance.has_value(),
-            .cycles         = cycles,
-            .gait           = !result.gait               ? Wish::none
-                              : result.gait->is_declared ? Wish::declared
-                                                         : Wish::any};
   }
 
   void

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/stress_scales.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/scene/fast_changes.h>
 #include <crawler/scene/jump_bracket.h>
 
@@ -50,10 +51,8 @@ namespace crawler
     undeclared_jump(const Scene &scene, const std::vector<double> &in_space, const double t, const double least)
     {
       constexpr unsigned int n = 512, n_bisections = 30;
-      const double L = scene.body.length;
-      std::vector<double> points(n + 1), m(n + 1);
-      for (unsigned int i = 0; i <= n; ++i)
-        points[i] = L * i / n;
+      const std::vector<double> points = equal_parts(0., scene.body.length, n);
+      std::vector<double> m(n + 1);
       scene.active_stress->at(points)->values(t, m);
       JumpBracket jump;
       for (unsigned int i = 0; i < n; ++i)
@@ -153,7 +152,7 @@ namespace crawler
       void
       look_at(const double t)
       {
-        sample(scene_.active_stress->at(places(fine)).get(), fine, t);
+        sample(at_places(fine).get(), fine, t);
       }
 
       double
@@ -226,13 +225,10 @@ namespace crawler
         return found;
       }
 
-      std::vector<double>
-      places(const unsigned int n) const
+      std::unique_ptr<ActiveStressAtPoints>
+      at_places(const unsigned int n) const
       {
-        std::vector<double> list;
-        for (unsigned int i = 0; i <= n; ++i)
-          list.push_back(scene_.body.length * i / n);
-        return list;
+        return scene_.active_stress->at(equal_parts(0., scene_.body.length, n));
       }
 
       void
@@ -262,7 +258,7 @@ namespace crawler
       void
       look(const unsigned int n_points, const unsigned int n_times)
       {
-        const auto stress = scene_.active_stress->at(places(n_points));
+        const auto stress = at_places(n_points);
         std::vector<double> before, rates(n_times, 0.);
         for (unsigned int j = 0; j <= n_times; ++j)
         {
@@ -282,7 +278,7 @@ namespace crawler
         constexpr unsigned int n = 128, n_places = 4;
         constexpr double quiet = 1e-6, often = 0.1;
         std::vector<double> m(n_places + 1);
-        const auto stress    = scene_.active_stress->at(places(n_places));
+        const auto stress    = at_places(n_places);
         unsigned int n_quiet = 0;
         for (unsigned int j = 0; j < n; ++j)
         {

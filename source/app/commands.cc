@@ -91,15 +91,6 @@ namespace crawler
       return found == std::end(commands) ? nullptr : found;
     }
 
-    std::string
-    version_text()
-    {
-      std::string text;
-      for (const auto &[name, version] : versions())
-        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, version);
-      return text;
-    }
-
     void
     add_command(const Command &command, CLI::App &app, CommandOptions &options)
     {
@@ -133,7 +124,7 @@ namespace crawler
   Commands::Commands()
     : app_("Crawler: the limbless crawler, a body that pushes itself along by waves of active stress.", "crawler")
   {
-    app_.set_version_flag("--version", version_text());
+    app_.set_version_flag("--version", versions_in_words());
     app_.require_subcommand(1);
     for (const Command &command : commands)
       add_command(command, app_, options_);

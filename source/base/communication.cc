@@ -7,6 +7,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <numeric>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -54,45 +55,45 @@ namespace crawler
     return result;
   }
 
+  namespace
+  {
+    /// Gathers @p own of all ranks on rank 0, one behind the other, and writes there how long each is.
+    template <typename List>
+    List
+    gathered(const List &own, std::vector<int> &lengths, const MPI_Datatype type, MPI_Comm communicator)
+    {
+      const int length = static_cast<int>(own.size());
+      lengths.resize(rank_of(communicator) == 0 ? size_of(communicator) : 0);
+      MPI_Gather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, 0, communicator);
+      std::vector<int> starts(lengths.size());
+      std::exclusive_scan(lengths.begin(), lengths.end(), starts.begin(), 0);
+      List all;
+      all.resize(std::accumulate(lengths.begin(), lengths.end(), 0));
+      MPI_Gatherv(own.data(), length, type, all.data(), lengths.data(), starts.data(), type, 0, communicator);
+      return all;
+    }
+  } // namespace
+
   std::vector<std::string>
   gather(const std::string &text, MPI_Comm communicator)
   {
-    const bool first = rank_of(communicator) == 0;
-    const int length = static_cast<int>(text.size());
-    std::vector<int> lengths(first ? size_of(communicator) : 0), starts;
-    MPI_Gather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, 0, communicator);
-    int total = 0;
-    for (const int one : lengths)
-    {
-      starts.push_back(total);
-      total += one;
-    }
-    std::string all(total, ' ');
-    MPI_Gatherv(text.data(), length, MPI_CHAR, all.data(), lengths.data(), starts.data(), MPI_CHAR, 0, communicator);
+    std::vector<int> lengths;
+    const std::string all = gathered(text, lengths, MPI_CHAR, communicator);
     std::vector<std::string> texts;
-    for (std::size_t i = 0; i < lengths.size(); ++i)
-      texts.push_back(all.substr(starts[i], lengths[i]));
+    std::size_t start = 0;
+    for (const int length : lengths)
+    {
+      texts.push_back(all.substr(start, length));
+      start += length;
+    }
     return texts;
   }
 
   std::vector<double>
   gather(const std::vector<double> &numbers, MPI_Comm communicator)
   {
-    if (size_of(communicator) == 1)
-      return numbers;
-    const bool first = rank_of(communicator) == 0;
-    const int own    = static_cast<int>(numbers.size());
-    std::vector<int> counts(first ? size_of(communicator) : 0), starts;
-    MPI_Gather(&own, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, communicator);
-    int total = 0;
-    for (const int one : counts)
-    {
-      starts.push_back(total);
-      total += one;
-    }
-    std::vector<double> all(static_cast<std::size_t>(total));
-    MPI_Gatherv(numbers.data(), own, MPI_DOUBLE, all.data(), counts.data(), starts.data(), MPI_DOUBLE, 0, communicator);
-    return all;
+    std::vector<int> lengths;
+    return size_of(communicator) == 1 ? numbers : gathered(numbers, lengths, MPI_DOUBLE, communicator);
   }
 
   std::string

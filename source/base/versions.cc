@@ -16,4 +16,13 @@ namespace crawler
             {"PETSc", fmt::format("{}.{}.{}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR)},
             {"MPI", fmt::format("{}.{}", MPI_VERSION, MPI_SUBVERSION)}};
   }
+
+  std::string
+  versions_in_words()
+  {
+    std::string text;
+    for (const auto &[name, version] : versions())
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, version);
+    return text;
+  }
 } // namespace crawler

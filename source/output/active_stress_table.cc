@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/output/active_stress_table.h>
 #include <crawler/scene/active_stress/segments.h>
 
@@ -46,14 +47,12 @@ namespace crawler
                             const unsigned int n_s,
                             const unsigned int n_t)
   {
-    std::vector<double> points(n_s), m(n_s);
-    for (unsigned int i = 0; i < n_s; ++i)
-      points[i] = i + 1 == n_s ? length : length * i / (n_s - 1);
+    const std::vector<double> points = equal_parts(0., length, n_s - 1);
+    std::vector<double> m(n_s);
     const auto at    = stress.at(points);
     std::string text = "s,t,m\n";
-    for (unsigned int j = 0; j < n_t; ++j)
+    for (const double t : equal_parts(0., end_time, n_t - 1))
     {
-      const double t = j + 1 == n_t ? end_time : end_time * j / (n_t - 1);
       at->values(t, m);
       for (unsigned int i = 0; i < n_s; ++i)
       {
@@ -103,8 +102,7 @@ namespace crawler
       fmt::format_to(std::back_inserter(text), "{},{}\n", t, fmt::join(m, ","));
     };
     std::vector<double> times = segments.breaks_in_time();
-    for (unsigned int j = 0; j <= n_parts; ++j)
-      times.push_back(j == n_parts ? end_time : end_time * j / n_parts);
+    std::ranges::copy(equal_parts(0., end_time, n_parts), std::back_inserter(times));
     std::ranges::sort(times);
     const double beside = 1e-9 * end_time; // just before a jump
     for (std::size_t j = 0; j < times.size(); ++j)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/vtk_xml.h>
 
@@ -14,10 +15,7 @@ namespace crawler
   std::vector<double>
   Kymograph::equidistant()
   {
-    std::vector<double> points(n_points);
-    for (unsigned int i = 0; i < n_points; ++i)
-      points[i] = static_cast<double>(i) / (n_points - 1);
-    return points;
+    return equal_parts(0., 1., n_points - 1);
   }
 
   Kymograph::Kymograph(std::vector<double> points)

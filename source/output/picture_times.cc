@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/grid_samples.h>
 #include <crawler/output/output_parameters.h>
 #include <crawler/output/picture_times.h>
 #include <crawler/scene/breaks.h>
@@ -16,16 +17,6 @@ namespace crawler
     constexpr double strides_if_unknown = 4.;
     /// Times closer than this are one, in units of the duration.
     constexpr double same_time = 1e-12;
-
-    /// Returns the ends of @p n equal parts of (from, end_time].
-    std::vector<double>
-    equal_times(const unsigned int n, const double from, const double end_time)
-    {
-      std::vector<double> times;
-      for (unsigned int i = 1; i <= n; ++i)
-        times.push_back(i == n ? end_time : from + (end_time - from) * i / n);
-      return times;
-    }
   } // namespace
 
   PictureTimes::PictureTimes(const std::vector<double> &snapshots,
@@ -70,14 +61,14 @@ namespace crawler
       return static_cast<unsigned int>(std::ceil(per_stride * n_strides - 1e-6));
     };
     const auto snapshots =
-      equal_times(output.n_snapshots.value_or(in_all(std::clamp(strides, 1., 1. * max_snapshots / per_stride))), 0., T);
+      equal_parts(0., T, output.n_snapshots.value_or(in_all(std::clamp(strides, 1., 1. * max_snapshots / per_stride))));
     if (!output.kymograph)
       return {snapshots, {}, T};
     const bool is_long       = strides > max_strides;
     const double from        = is_long ? T - max_strides * gait->period : 0.;
-    std::vector<double> rows = equal_times(std::max(min_rows, in_all(std::min(strides, 1. * max_strides))), from, T);
-    if (!is_long)
-      rows.insert(rows.begin(), 0.);
+    std::vector<double> rows = equal_parts(from, T, std::max(min_rows, in_all(std::min(strides, 1. * max_strides))));
+    if (is_long)
+      rows.erase(rows.begin());
     std::vector<double> jumps;
     const TimeSegments segments(*scene.active_stress, T);
     for (const double part : segments.breaks())

@@ -66,12 +66,6 @@ namespace crawler
     }
   } // namespace
 
-  double
-  thickness(const double stretch, const double length)
-  {
-    return length * (stretch * largest_thickness > rest_thickness ? rest_thickness / stretch : largest_thickness);
-  }
-
   Corners
   ribbon(const Frame &frame, const double length)
   {
@@ -79,8 +73,9 @@ namespace crawler
     Corners points(6 * n, 0.);
     for (std::size_t i = 0; i < n; ++i)
     {
+      const double w = frame.fields.stretch[i];
       points[6 * i] = points[6 * i + 3] = frame.fields.position[i];
-      points[6 * i + 4]                 = thickness(frame.fields.stretch[i], length);
+      points[6 * i + 4] = length * (w * largest_thickness > rest_thickness ? rest_thickness / w : largest_thickness);
     }
     return points;
   }

@@ -82,6 +82,15 @@ namespace crawler
       return depth == 0;
     }
 
+    /// The text between the double quotes around @p text; a text without them unchanged.
+    std::string
+    without_quotes(const std::string &text)
+    {
+      return text.size() >= 2 && text.find('"', 1) == text.size() - 1 && text[0] == '"'
+               ? text.substr(1, text.size() - 2)
+               : text;
+    }
+
     std::vector<std::string>
     listed(const std::string &text, const std::string &name, const std::vector<std::string> &functions)
     {
@@ -143,13 +152,6 @@ namespace crawler
     for (std::string &part : parts)
       part = trimmed(part);
     return parts;
-  }
-
-  std::string
-  without_quotes(const std::string &text)
-  {
-    return text.size() >= 2 && text.find('"', 1) == text.size() - 1 && text[0] == '"' ? text.substr(1, text.size() - 2)
-                                                                                      : text;
   }
 
   std::optional<Call>

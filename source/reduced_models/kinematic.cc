@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/grid_samples.h>
 #include <crawler/equation/cell_loops.h>
 #include <crawler/equation/crawler_equation.h>
 #include <crawler/reduced_models/kinematic.h>
@@ -60,14 +61,11 @@ namespace crawler
       if (const auto bounds = strain.bounds(box); bounds && std::isfinite(bounds->value) && std::isfinite(bounds->rate))
         return *bounds;
       constexpr unsigned int n_s = 9, n_t = 3;
-      std::vector<double> points, values(n_s);
-      for (unsigned int i = 0; i < n_s; ++i)
-        points.push_back(box.s_from + (box.s_to - box.s_from) * i / (n_s - 1));
-      const auto at = strain.at(points);
+      std::vector<double> values(n_s);
+      const auto at = strain.at(equal_parts(box.s_from, box.s_to, n_s - 1));
       FieldBounds largest{0., 0.};
-      for (unsigned int j = 0; j < n_t; ++j)
+      for (const double t : equal_parts(box.t_from, box.t_to, n_t - 1))
       {
-        const double t = box.t_from + (box.t_to - box.t_from) * j / (n_t - 1);
         at->strain(t, values);
         for (const double e : values)
           largest.value = std::max(largest.value, std::abs(e));

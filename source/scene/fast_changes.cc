@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/grid_samples.h>
 #include <crawler/scene/active_stress.h>
 #include <crawler/scene/fast_changes.h>
 
@@ -130,14 +131,12 @@ namespace crawler
       see_values(const ActiveStress::Box &box)
       {
         constexpr unsigned int n = 4;
-        std::vector<double> places, m(n + 1), least(n + 1, HUGE_VAL), most(n + 1, -HUGE_VAL);
-        for (unsigned int i = 0; i <= n; ++i)
-          places.push_back(box.s_from + (box.s_to - box.s_from) * i / n);
-        const auto at = stress_.at(places);
+        std::vector<double> m(n + 1), least(n + 1, HUGE_VAL), most(n + 1, -HUGE_VAL);
+        const auto at = stress_.at(equal_parts(box.s_from, box.s_to, n));
         double change = 0.;
-        for (unsigned int j = 0; j <= n; ++j)
+        for (const double t : equal_parts(box.t_from, box.t_to, n))
         {
-          at->values(box.t_from + (box.t_to - box.t_from) * j / n, m);
+          at->values(t, m);
           for (unsigned int i = 0; i <= n; ++i)
           {
             largest_ = std::max(largest_, std::abs(m[i]));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/formula/formula_gradient.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/formula_input.h>
@@ -113,10 +114,9 @@ namespace crawler
     require_positive_law(const FrictionLaw &law, const std::string &formula)
     {
       constexpr unsigned int n = 100;
-      for (unsigned int i = 0; i <= n; ++i)
+      for (const double w : equal_parts(0.9, 1.1, n))
       {
-        const double w = 0.9 + 0.2 * i / n;
-        double g       = 0.;
+        double g = 0.;
         law.values({&w, 1}, {&g, 1});
         if (!(std::isfinite(g) && g > 0.))
           throw InputError(

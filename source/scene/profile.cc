@@ -2,6 +2,7 @@
 #include <crawler/base/csv_numbers.h>
 #include <crawler/base/cubic_spline.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/formula/formula_gradient.h>
 #include <crawler/parameters/plain_text.h>
 #include <crawler/scene/active_stress/formula_input.h>
@@ -27,11 +28,10 @@ namespace crawler
     jumps_of(const Values &values, const double length)
     {
       constexpr unsigned int n = 1024, n_bisections = 50;
-      constexpr double least     = 1e-3;
-      constexpr std::size_t most = 64; // more are no jumps of a material
-      std::vector<double> places(n + 1), f(n + 1);
-      for (unsigned int i = 0; i <= n; ++i)
-        places[i] = length * i / n;
+      constexpr double least           = 1e-3;
+      constexpr std::size_t most       = 64; // more are no jumps of a material
+      const std::vector<double> places = equal_parts(0., length, n);
+      std::vector<double> f(n + 1);
       values(places, f);
       double largest = 0.;
       for (const double one : f)
@@ -306,10 +306,8 @@ namespace crawler
   require_positive(const Profile &profile, const double from, const double to, const ProfileInput &input)
   {
     constexpr unsigned int n = 1000;
-    for (unsigned int i = 0; i <= n; ++i)
-    {
-      const double x = from + (to - from) * i / n, f = profile.value(x);
-      if (!(std::isfinite(f) && f > 0.))
+    for (const double x : equal_parts(from, to, n))
+      if (const double f = profile.value(x); !(std::isfinite(f) && f > 0.))
         throw InputError(fmt::format("the {} \"{}\" is {} at {} = {:g}; a positive number is expected",
                                      input.quantity,
                                      input.text,
@@ -317,6 +315,5 @@ namespace crawler
                                      input.variable,
                                      x),
                          input.entry);
-    }
   }
 } // namespace crawler

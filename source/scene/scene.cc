@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/scene/known_stress.h>
 #include <crawler/scene/scene.h>
 
@@ -176,16 +177,14 @@ namespace crawler
     largest_active_stress(const Scene &scene, const unsigned int n_times)
     {
       constexpr unsigned int n = 37;
-      std::vector<double> points(n + 1), m(n + 1);
-      for (unsigned int i = 0; i <= n; ++i)
-        points[i] = scene.body.length * i / n;
-      const auto stress = scene.active_stress->at(points);
+      std::vector<double> m(n + 1);
+      const auto stress = scene.active_stress->at(equal_parts(0., scene.body.length, n));
       double largest    = 0.;
-      for (unsigned int j = 0; j <= n_times; ++j)
+      for (const double t : equal_parts(0., scene.end_time, n_times))
       {
         const auto *failures         = scene.active_stress->failures();
         const unsigned long n_before = failures != nullptr ? failures->count : 0;
-        stress->values(scene.end_time * j / n_times, m);
+        stress->values(t, m);
         failures = scene.active_stress->failures();
         if (failures != nullptr && failures->count > n_before)
           continue;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/gauss_panels.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/scene/strain_history.h>
 
 #include <algorithm>
@@ -86,17 +87,15 @@ namespace crawler
                 const unsigned int n_s,
                 const unsigned int n_t)
   {
-    std::vector<double> points(n_s), e(1ul * n_s * n_t);
-    for (unsigned int i = 0; i < n_s; ++i)
-      points[i] = i + 1 == n_s ? length : length * i / (n_s - 1);
-    const auto time = [&](const unsigned int j) { return j + 1 == n_t ? end_time : end_time * j / (n_t - 1); };
-    const auto at   = history(points);
+    const std::vector<double> points = equal_parts(0., length, n_s - 1), times = equal_parts(0., end_time, n_t - 1);
+    std::vector<double> e(1ul * n_s * n_t);
+    const auto at = history(points);
     for (unsigned int j = 0; j < n_t; ++j)
     {
       const std::span row(e.data() + 1ul * j * n_s, n_s);
-      at(time(j), row);
+      at(times[j], row);
       for (unsigned int i = 0; i < n_s; ++i)
-        if (const StrainExtreme here{row[i], points[i], time(j)}; !std::isfinite(row[i]))
+        if (const StrainExtreme here{row[i], points[i], times[j]}; !std::isfinite(row[i]))
           return {here, here};
     }
     const double ds = length / (n_s - 1), dt = end_time / (n_t - 1);
@@ -105,8 +104,8 @@ namespace crawler
       StrainExtreme best{sign * HUGE_VAL, 0., 0.};
       for (const std::size_t k : peaks(e, n_s, sign))
       {
-        const StrainExtreme one = refined(
-          history, length, end_time, {e[k], points[k % n_s], time(static_cast<unsigned int>(k / n_s))}, sign, ds, dt);
+        const StrainExtreme one =
+          refined(history, length, end_time, {e[k], points[k % n_s], times[k / n_s]}, sign, ds, dt);
         if (sign * one.strain < sign * best.strain)
           best = one;
       }
@@ -134,21 +133,21 @@ namespace crawler
   {
     constexpr unsigned int n_points = 11, n_intervals = 37, max_panels = 1024;
     constexpr double tolerance = 1e-6;
-    std::vector<double> points(n_points), before(n_points), after(n_points), rate(n_points);
-    for (unsigned int i = 0; i < n_points; ++i)
-      points[i] = length * i / (n_points - 1);
-    const auto at = history.at(points);
-    double size   = 0.;
-    for (unsigned int j = 0; j <= n_intervals; ++j)
+    std::vector<double> before(n_points), after(n_points), rate(n_points);
+    const std::vector<double> points = equal_parts(0., length, n_points - 1),
+                              times  = equal_parts(0., end_time, n_intervals);
+    const auto at                    = history.at(points);
+    double size                      = 0.;
+    for (const double t : times)
     {
-      at->strain(end_time * j / n_intervals, after);
+      at->strain(t, after);
       for (const double e : after)
         size = std::max(size, std::abs(e));
     }
     at->strain(0., after);
     for (unsigned int j = 0; j < n_intervals; ++j)
     {
-      const double from = end_time * j / n_intervals, to = end_time * (j + 1) / n_intervals;
+      const double from = times[j], to = times[j + 1];
       before = after;
       at->strain(to, after);
       std::optional<StrainJump> jump;

@@ -3,7 +3,6 @@
 // Active stresses that jump: full orders where the jumps are declared, and lost orders where they are not.
 #include "../support/lane_runs.h"
 #include "../support/observed_order.h"
-#include "../support/watched.h"
 #include "../support/with_breaks.h"
 
 #include <crawler/time/integrators.h>
@@ -187,7 +186,7 @@ TEST(Jumps, ManyInTime)
     time.engine         = engine;
     Simulation simulation(MPI_COMM_WORLD, run->scene, time, run->numerics);
     std::vector<double> steps, output_times;
-    const auto observers          = test::watched_by([&](const Snapshot &snapshot) {
+    const auto observers          = watched_by([&](const Snapshot &snapshot) {
       if (snapshot.is_step_end)
         steps.push_back(snapshot.step.time);
       if (snapshot.pictures.is_snapshot)

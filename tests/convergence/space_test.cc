@@ -4,7 +4,6 @@
 // degree 1.
 #include "../support/exact_solution.h"
 #include "../support/observed_order.h"
-#include "../support/watched.h"
 
 #include <crawler/output/field_sampler.h>
 
@@ -72,7 +71,7 @@ TEST_P(Space, OrderOnAnExactSolution)
       parameters.time,
       {.degree = q, .n_cells = n, .tolerance = 1e-13, .initial_step = 1e-6, .formulation = formulation});
     double l2                     = 0.; // of the last state
-    const auto observers          = test::watched_by([&](const Snapshot &snapshot) { l2 = l2_error(snapshot); });
+    const auto observers          = watched_by([&](const Snapshot &snapshot) { l2 = l2_error(snapshot); });
     const SimulationResult result = simulation.run({}, {}, observers);
     ASSERT_EQ(result.time.status, Status::finished);
     cells.push_back(n);

@@ -4,7 +4,6 @@
 // jumps. Events are in events_test.cc, soft bodies in soft_bodies_test.cc.
 #include "../support/answers.h"
 #include "../support/expect_within.h"
-#include "../support/watched.h"
 #include "random_scenes.h"
 
 #include <crawler/accuracy/error_estimate.h>
@@ -63,7 +62,7 @@ TEST(HardAnswers, ExtremesOfSteepFriction)
     const Parameters parameters    = test::parameters_with(settings);
     const Scene own                = parameters.create_scene();
     const SimulationResult watched = Simulation(MPI_COMM_WORLD, own, parameters.time, answer.choice.numerics)
-                                       .run({}, {.energy_balance = true}, test::watched_by([](const Snapshot &) {}));
+                                       .run({}, {.energy_balance = true}, watched_by([](const Snapshot &) {}));
     EXPECT_NEAR(watched.min_stretch.value, smallest, watched.min_stretch.jump) << text;
   }
 }

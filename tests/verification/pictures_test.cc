@@ -2,7 +2,6 @@
 //
 // Pictures come from the dense output of the integrator (doc/numerics.md, "Pictures").
 #include "../support/run_text.h"
-#include "../support/watched.h"
 
 #include <crawler/output/field_sampler.h>
 
@@ -76,7 +75,7 @@ namespace
     prepare_for_pictures(run.choice, parameters);
     if (numerics)
       run.choice.numerics = *numerics;
-    const auto observers = test::watched_by([&](const Snapshot &snapshot) { run.seen.push_back(seen_in(snapshot)); });
+    const auto observers = watched_by([&](const Snapshot &snapshot) { run.seen.push_back(seen_in(snapshot)); });
     run.result           = Simulation(MPI_COMM_SELF, scene, parameters.time, run.choice.numerics)
                    .run(has_pictures ? picture_times(parameters.output, scene) : PictureTimes(),
                         {.energy_balance = true},

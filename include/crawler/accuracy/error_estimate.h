@@ -35,7 +35,7 @@ namespace crawler
   NumericsChoice
   refined(const NumericsChoice &choice, const Scene &scene, double cells);
 
-  /// Entries of section Time for the finer run that measures the errors of a run; then its numerics and its options.
+  /// Entries of section Time for the finer run that measures the errors of a run; then its numerics.
   TimeParameters
   time_of_finer_run(const TimeParameters &run);
   Numerics
@@ -43,9 +43,6 @@ namespace crawler
                         const TimeParameters &time,
                         const Scene &scene,
                         bool cycles_repeat);
-
-  Simulation::Options
-  options_of_finer_run(const SimulationResult &result, const std::optional<CycleWish> &cycles);
 
   /// Sets the errors of a finished @p result from the finer run; null if there was none since the choice knows.
   void

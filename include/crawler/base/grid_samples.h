@@ -11,6 +11,17 @@
 
 namespace crawler
 {
+  /// Ends of @p n equal parts of [@p from, @p to], n + 1 numbers.
+  inline std::vector<double>
+  equal_parts(const double from, const double to, const unsigned int n)
+  {
+    std::vector<double> ends;
+    for (unsigned int i = 0; i < n; ++i)
+      ends.push_back(from + (to - from) * i / n);
+    ends.push_back(to);
+    return ends;
+  }
+
   /// Samples of a function at all points of a grid over s and t.
   struct GridTable
   {

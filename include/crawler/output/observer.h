@@ -7,6 +7,10 @@
 #include <crawler/output/picture_times.h>
 #include <crawler/time/stepper.h>
 
+#include <functional>
+#include <memory>
+#include <vector>
+
 namespace crawler
 {
   /// A state of a run, read-only, in the user's units except for assembler, y, v and computed_time, which are in
@@ -49,4 +53,26 @@ namespace crawler
     {
     }
   };
+
+  /// Observers, one in number, that show each snapshot of a run to @p see.
+  inline std::vector<std::unique_ptr<Observer>>
+  watched_by(std::function<void(const Snapshot &)> see)
+  {
+    struct Watcher : public Observer
+    {
+      explicit Watcher(std::function<void(const Snapshot &)> see)
+        : see(std::move(see))
+      {
+      }
+      void
+      observe(const Snapshot &snapshot) override
+      {
+        see(snapshot);
+      }
+      const std::function<void(const Snapshot &)> see;
+    };
+    std::vector<std::unique_ptr<Observer>> observers;
+    observers.push_back(std::make_unique<Watcher>(std::move(see)));
+    return observers;
+  }
 } // namespace crawler

@@ -24,13 +24,10 @@ namespace crawler
   /// Vertices of triangles or quadrilaterals, one after another, each with x, y and z.
   using Corners = std::vector<double>;
 
-  /// Thickness of the drawn body: L/10 over the stretch, which keeps its area, but at most L.
-  double
-  thickness(double stretch, double length);
-
   /**
    * The drawn body of rest length @p length [length] on the ground, y = 0, at its present place. Each point of the
-   * frame gives one at the ground and one at the upper edge.
+   * frame gives one at the ground and one at the upper edge. The body is L/10 over the stretch thick, which keeps its
+   * area, but at most L.
    */
   Corners
   ribbon(const Frame &frame, double length);

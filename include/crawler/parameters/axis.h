@@ -22,10 +22,6 @@ namespace crawler
   std::vector<std::string>
   split_parts(const std::string &text, char separator);
 
-  /// The text between the double quotes around @p text; a text without them unchanged.
-  std::string
-  without_quotes(const std::string &text);
-
   /// A call "function(a, b)".
   struct Call
   {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/base/nearest_name.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress.h>
@@ -154,14 +155,12 @@ namespace crawler
                         const double length,
                         const double end_time)
   {
-    constexpr unsigned int n = 16;
-    std::vector<double> points(n + 1), m(n + 1);
-    for (unsigned int i = 0; i <= n; ++i)
-      points[i] = length * i / n;
+    constexpr unsigned int n         = 16;
+    const std::vector<double> points = equal_parts(0., length, n);
+    std::vector<double> m(n + 1);
     const auto at_points = stress.at(points);
-    for (unsigned int j = 0; j <= n; ++j)
+    for (const double t : equal_parts(0., end_time, n))
     {
-      const double t = end_time * j / n;
       at_points->values(t, m);
       for (unsigned int i = 0; i <= n; ++i)
         if (!std::isfinite(m[i]))

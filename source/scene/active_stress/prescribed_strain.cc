@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/base/grid_interpolation.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/formula/formula_bound.h>
 #include <crawler/formula/formula_gradient.h>
 #include <crawler/parameters/declarations.h>
@@ -25,15 +26,9 @@ namespace crawler
     using Strains = StrainByEvaluators::Evaluators;
 
     std::unique_ptr<const StrainHistory>
-    strain_by(StrainByEvaluators::Make make, StrainByEvaluators::Bound bound)
-    {
-      return std::make_unique<StrainByEvaluators>(std::move(make), std::move(bound));
-    }
-
-    std::unique_ptr<const StrainHistory>
     formula_strain(const std::shared_ptr<const Formula> &formula)
     {
-      return strain_by(
+      return std::make_unique<StrainByEvaluators>(
         [formula](const std::vector<double> &points) -> Strains {
           return {stress_at_points(FormulaAtPoints(formula, points)),
                   stress_at_points(FormulaRateAtPoints(formula, points))};
@@ -49,7 +44,7 @@ namespace crawler
     wave_strain(const PrescribedStrainParameters &wave, const double length)
     {
       const double q = 2. * std::numbers::pi * wave.wave_number / length;
-      return strain_by(
+      return std::make_unique<StrainByEvaluators>(
         [wave, q](const std::vector<double> &points) -> Strains {
           const auto phase = [wave, q](const double s, const double t) {
             return q * (s + wave.wave_speed * t) + wave.phase;
@@ -124,7 +119,7 @@ namespace crawler
                                        "differentiated in time is expected",
                                        parameters.given_by),
                            prescribed_strain_section + "Given by");
-        return strain_by(
+        return std::make_unique<StrainByEvaluators>(
           [generator](const std::vector<double> &points) -> Strains {
             return {generator->at(points), generator->rate_at(points)};
           },
@@ -203,15 +198,14 @@ namespace crawler
   {
     constexpr unsigned int n = 33;
     constexpr double beside = 1e-9, jump = 1e-6;
-    const double L = scene_->body.length;
-    std::vector<double> points(n), e(n), after(n);
-    double size = 0.;
-    for (unsigned int i = 0; i < n; ++i)
-      points[i] = L * i / (n - 1);
-    const auto at_points = history_->at(points);
-    for (unsigned int j = 0; j < n; ++j)
+    const double L                  = scene_->body.length;
+    const std::vector<double> times = equal_parts(0., end_time, n - 1);
+    std::vector<double> e(n), after(n);
+    double size          = 0.;
+    const auto at_points = history_->at(equal_parts(0., L, n - 1));
+    for (const double t : times)
     {
-      at_points->strain(end_time * j / (n - 1), e);
+      at_points->strain(t, e);
       for (const double value : e)
         size = std::max(size, std::abs(value));
     }
@@ -236,9 +230,9 @@ namespace crawler
     {
       const auto sides = history_->at({s - beside * L, s + beside * L});
       std::array<double, 2> values{};
-      for (unsigned int j = 0; j < n; ++j)
+      for (const double t : times)
       {
-        sides->strain(end_time * j / (n - 1), values);
+        sides->strain(t, values);
         if (std::abs(values[1] - values[0]) > jump * size)
           refuse("s", s);
       }
@@ -295,13 +289,10 @@ namespace crawler
   void
   PrescribedStrain::choose_panels(const double end_time)
   {
-    constexpr unsigned int most = 512;
-    constexpr double tolerance  = 1e-13;
-    std::vector<double> points, coarse, fine;
-    for (unsigned int i = 0; i <= 16; ++i)
-      points.push_back(scene_->body.length * i / 16);
-    coarse.resize(points.size());
-    fine.resize(points.size());
+    constexpr unsigned int most      = 512;
+    constexpr double tolerance       = 1e-13;
+    const std::vector<double> points = equal_parts(0., scene_->body.length, 16);
+    std::vector<double> coarse(points.size()), fine(points.size());
     for (n_panels_ = 2; n_panels_ < most; n_panels_ *= 2)
     {
       const auto now  = balancing_stress(*history_, scene_, n_panels_, points),

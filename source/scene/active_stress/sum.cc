@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/sum.h>
 #include <crawler/scene/period.h>
@@ -297,11 +298,10 @@ namespace crawler
     ActiveStress::Bounds
     sampled_bounds(const ActiveStress &stress, const ActiveStress::Box &box)
     {
-      constexpr unsigned int n = 2;
-      constexpr double margin  = 2.;
-      std::vector<double> places, now(n + 1), before;
-      for (unsigned int i = 0; i <= n; ++i)
-        places.push_back(box.s_from + (box.s_to - box.s_from) * i / n);
+      constexpr unsigned int n         = 2;
+      constexpr double margin          = 2.;
+      const std::vector<double> places = equal_parts(box.s_from, box.s_to, n);
+      std::vector<double> now(n + 1), before;
       const auto at = stress.at(places), rate_at = stress.rate_at(places);
       ActiveStress::Bounds largest{0., 0.};
       const double step = (box.t_to - box.t_from) / n;

@@ -19,28 +19,10 @@ namespace crawler
   namespace
   {
     Simulation::Options
-    options_of(const Parameters &parameters, const Scene &scene, const Simulation::GaitWish gait)
+    options_of_batch(const Task &task)
     {
-      return {.energy_balance = parameters.output.energy_balance,
-              .cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false),
-              .gait           = gait};
-    }
-
-    SimulationResult
-    simulate(const Parameters &parameters,
-             const Scene &scene,
-             const Numerics &numerics,
-             const Simulation::GaitWish gait,
-             const std::function<bool()> &keep_going)
-    {
-      Simulation simulation(MPI_COMM_SELF, scene, parameters.time, numerics);
-      return simulation.run({}, options_of(parameters, scene, gait), {}, keep_going);
-    }
-
-    Simulation::GaitWish
-    gait_wish(const Task &task)
-    {
-      return task.gait ? Simulation::GaitWish::declared : Simulation::GaitWish::none;
+      return {.energy_balance = task.parameters.output.energy_balance,
+              .gait           = task.gait ? Simulation::GaitWish::declared : Simulation::GaitWish::none};
     }
 
     /// Times a part of the work for one task. An exception becomes the status of the task, unless the user has to mend
@@ -201,12 +183,6 @@ namespace crawler
           take_answer(members[finished[j]], std::move(*results[finished[j]]), &*finer_results[j]);
     }
 
-    Simulation::Options
-    options_of_batch(const Task &task)
-    {
-      return {.energy_balance = task.parameters.output.energy_balance, .gait = gait_wish(task)};
-    }
-
     /// Computes runs that fit the lanes, each with the numerics chosen for it.
     void
     compute_batches(const std::span<Task> tasks, const double time_limit, const std::function<bool()> &interrupted)
@@ -246,18 +222,21 @@ namespace crawler
         task.is_out_of_time = before + clock.seconds() > time_limit;
         return !task.is_out_of_time && !interrupted();
       };
-      bool is_computed = task.computed.result.time.status != Status::none;
-      Answer answer    = run_to_accuracy(
+      Simulation::Options options = options_of_batch(task);
+      options.cycles              = cycle_wish(task.parameters, *task.scene, /*has_pictures=*/false);
+      bool is_computed            = task.computed.result.time.status != Status::none;
+      Answer answer               = run_to_accuracy(
         MPI_COMM_SELF,
         task.parameters,
         *task.scene,
         task.computed.choice,
         [&](const NumericsChoice &choice) {
           return std::exchange(is_computed, false)
-                      ? task.computed.result
-                      : simulate(task.parameters, *task.scene, choice.numerics, gait_wish(task), keep_going);
+                                 ? task.computed.result
+                                 : Simulation(MPI_COMM_SELF, *task.scene, task.parameters.time, choice.numerics)
+                       .run({}, options, {}, keep_going);
         },
-        options_of(task.parameters, *task.scene, gait_wish(task)),
+        options,
         /*writes=*/false,
         keep_going);
       task.computed = {std::move(answer.result), std::move(answer.choice)};
@@ -353,8 +332,8 @@ namespace crawler
                   const std::function<bool()> &interrupted)
   {
     std::vector<bool> done(tasks.size(), false);
-    const double start    = now();
-    const auto is_in_time = [&]() { return now() - start <= time_limit && !interrupted(); };
+    const Stopwatch clock;
+    const auto is_in_time = [&]() { return clock.seconds() <= time_limit && !interrupted(); };
     try
     {
       std::vector<Member> members;
@@ -379,7 +358,7 @@ namespace crawler
     }
     for (std::size_t i = 0; i < tasks.size(); ++i)
       if (done[i])
-        tasks[i].seconds = (now() - start) / static_cast<double>(tasks.size());
+        tasks[i].seconds = clock.seconds() / static_cast<double>(tasks.size());
       else
         forget(tasks[i]);
     return done;

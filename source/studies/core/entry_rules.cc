@@ -12,6 +12,18 @@ namespace crawler
 {
   namespace
   {
+    /// True if the variable or constant @p name is in the formula.
+    bool
+    uses_name(const std::string &formula, const std::string &name)
+    {
+      const auto in_name = [](const char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+      for (auto i = formula.find(name); i != std::string::npos; i = formula.find(name, i + 1))
+        if ((i == 0 || !in_name(formula[i - 1])) &&
+            (i + name.size() == formula.size() || !in_name(formula[i + name.size()])))
+          return true;
+      return false;
+    }
+
     const std::string command_entry = "crawler";
 
     // Conditions of a chooser on its value.
@@ -227,17 +239,6 @@ namespace crawler
       rules.push_back({{"Fit/Seed"}, {{"Fit/Starts", is_not(1.)}}});
     }
   } // namespace
-
-  bool
-  uses_name(const std::string &formula, const std::string &name)
-  {
-    const auto in_name = [](const char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
-    for (auto i = formula.find(name); i != std::string::npos; i = formula.find(name, i + 1))
-      if ((i == 0 || !in_name(formula[i - 1])) &&
-          (i + name.size() == formula.size() || !in_name(formula[i + name.size()])))
-        return true;
-    return false;
-  }
 
   std::vector<std::string>
   unused_constants(const Declarations &declarations, const EntryInfo &constants)

@@ -27,6 +27,14 @@ namespace crawler
 
   namespace
   {
+    /// True if these results have the number: an energy balance, a last stride.
+    bool
+    has_number(const std::size_t number, const SimulationResult &result)
+    {
+      return is_work(all_quantities[number]) ? result.energy_balance.has_value()
+                                             : number == 0 || result.gait.has_value();
+    }
+
     /// Places of the other answers, in steps: two differences, one of them far coarser.
     inline constexpr std::array<int, 4> around_answer = {{-4, -1, 1, 4}};
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/grid_samples.h>
 #include <crawler/base/parabola.h>
 #include <crawler/studies/optimize/extremes_in_boxes.h>
 
@@ -41,27 +42,25 @@ namespace crawler
       return {static_cast<std::size_t>(std::ranges::lower_bound(places, from) - places.begin()),
               static_cast<std::size_t>(std::ranges::upper_bound(places, to) - places.begin())};
     }
-  } // namespace
 
-  std::vector<double>
-  equal_parts(const std::size_t n, const std::vector<double> &breaks)
-  {
-    std::vector<double> list;
-    for (std::size_t i = 0; i <= n; ++i)
+    /// Fractions 0, 1/n, ... 1, and both sides of some breaks.
+    std::vector<double>
+    equal_parts_and_breaks(const unsigned int n, const std::vector<double> &breaks)
     {
-      const double place = static_cast<double>(i) / static_cast<double>(n);
-      if (std::ranges::none_of(breaks, [&](const double one) { return std::abs(one - place) < 4. * beside; }))
-        list.push_back(place);
+      std::vector<double> list = equal_parts(0., 1., n);
+      std::erase_if(list, [&](const double place) {
+        return std::ranges::any_of(breaks, [&](const double one) { return std::abs(one - place) < 4. * beside; });
+      });
+      for (const double one : breaks)
+        for (const double side : {one - beside, one + beside})
+          if (side >= 0. && side <= 1.)
+            list.push_back(side);
+      std::ranges::sort(list);
+      const auto are_one = [](const double a, const double b) { return b - a < beside / 2.; };
+      list.erase(std::unique(list.begin(), list.end(), are_one), list.end());
+      return list;
     }
-    for (const double one : breaks)
-      for (const double side : {one - beside, one + beside})
-        if (side >= 0. && side <= 1.)
-          list.push_back(side);
-    std::ranges::sort(list);
-    const auto are_one = [](const double a, const double b) { return b - a < beside / 2.; };
-    list.erase(std::unique(list.begin(), list.end(), are_one), list.end());
-    return list;
-  }
+  } // namespace
 
   std::size_t
   ExtremesInBoxes::boxes_in_time(const double strides)
@@ -70,10 +69,11 @@ namespace crawler
   }
 
   ExtremesInBoxes::ExtremesInBoxes(const std::size_t n_time, const double strides, const Breaks &breaks)
-    : points(equal_parts(n_space * per_box, breaks.in_space))
-    , times(equal_parts(static_cast<std::size_t>(std::clamp(
-                          per_box * boxes_of_stride * strides, per_box * static_cast<double>(n_time), max_times)),
-                        breaks.in_time))
+    : points(equal_parts_and_breaks(n_space * per_box, breaks.in_space))
+    , times(equal_parts_and_breaks(
+        static_cast<unsigned int>(
+          std::clamp(per_box * boxes_of_stride * strides, per_box * static_cast<double>(n_time), max_times)),
+        breaks.in_time))
     , n_time_(n_time)
   {
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/reduced_models/kinematic.h>
 #include <crawler/reduced_models/reduced_scene.h>
 #include <crawler/reduced_models/strain_functional.h>
@@ -212,13 +213,11 @@ namespace crawler
         Samples samples{grid_->sample(*state.reduced.strain()), {}};
         if (!wishes_.strain)
           return samples;
-        std::vector<double> points, strain(n_limited_s_ + 1);
-        for (unsigned int i = 0; i <= n_limited_s_; ++i)
-          points.push_back(static_cast<double>(i) / n_limited_s_);
-        const auto at = state.reduced.strain()->at(points);
-        for (unsigned int j = 0; j <= n_limited_t_; ++j)
+        std::vector<double> strain(n_limited_s_ + 1);
+        const auto at = state.reduced.strain()->at(equal_parts(0., 1., n_limited_s_));
+        for (const double t : equal_parts(0., 1., n_limited_t_))
         {
-          at->strain(static_cast<double>(j) / n_limited_t_, strain);
+          at->strain(t, strain);
           samples.limited.insert(samples.limited.end(), strain.begin(), strain.end());
         }
         return samples;

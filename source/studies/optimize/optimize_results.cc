@@ -14,12 +14,6 @@ namespace crawler
   {
     using Json = nlohmann::ordered_json;
 
-    Json
-    json_number(const double value)
-    {
-      return std::isfinite(value) ? Json(value) : Json();
-    }
-
     /// Number at a JSON pointer; not a number if there is none.
     double
     number_at(const Json &json, const char *place)
@@ -118,8 +112,8 @@ namespace crawler
                                         {"start", start.start},
                                         {"has_converged", start.has_converged},
                                         {"message", start.message.empty() ? Json() : Json(start.message)},
-                                        {"objective", json_number(start.best.objective)},
-                                        {"violation", json_number(start.best.violation)},
+                                        {"objective", start.best.objective},
+                                        {"violation", start.best.violation},
                                         {"exceeded_limit", start.is_admissible() ? Json() : Json(start.best.worst_limit)},
                                         {"is_admissible", start.is_admissible()},
                                         {"variables", Json::object()},
@@ -130,14 +124,14 @@ namespace crawler
       for (std::size_t k = 0; k < its.paths.size(); ++k)
         one["variables"][its.paths[k]] = start.best.x[k];
       for (const GaitLimit &limit : start.limits)
-        one["limits"][limit.name] = {{"value", limit.value}, {"multiplier", json_number(limit.multiplier)}};
+        one["limits"][limit.name] = {{"value", limit.value}, {"multiplier", limit.multiplier}};
       if (i < summaries.size())
       {
         const Json run = Json::parse(summaries[i]);
         for (const char *key : {"displacement", "displacement_error", "stress_power"})
           one[key] = run.value(key, Json());
-        one["efficiency"]        = json_number(number_at(run, "/gait/efficiency"));
-        one["stride_efficiency"] = json_number(number_at(run, "/gait/stride_efficiency"));
+        one["efficiency"]        = number_at(run, "/gait/efficiency");
+        one["stride_efficiency"] = number_at(run, "/gait/stride_efficiency");
       }
       own["optima"].push_back(one);
     }

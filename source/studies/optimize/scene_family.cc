@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/strain_history.h>
 #include <crawler/studies/optimize/scene_family.h>
@@ -75,12 +76,10 @@ namespace crawler
     {
       constexpr unsigned int n_s = 33, n_t = 129;
       const Scene scene = parameters.create_scene();
-      std::vector<double> points, m(1ul * n_s * n_t);
-      for (unsigned int i = 0; i < n_s; ++i)
-        points.push_back(scene.body.length * i / (n_s - 1));
-      const auto at = stress_of(scene, rate)(points);
-      for (unsigned int j = 0; j < n_t; ++j)
-        at(scene.end_time * j / (n_t - 1), std::span(m).subspan(1ul * j * n_s, n_s));
+      std::vector<double> m(1ul * n_s * n_t);
+      const auto at = stress_of(scene, rate)(equal_parts(0., scene.body.length, n_s - 1));
+      for (unsigned int j = 0; const double t : equal_parts(0., scene.end_time, n_t - 1))
+        at(t, std::span(m).subspan(1ul * j++ * n_s, n_s));
       return m;
     }
   } // namespace

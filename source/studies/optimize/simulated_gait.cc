@@ -2,6 +2,7 @@
 #include <crawler/adjoint/break_map.h>
 #include <crawler/adjoint/run_gradient.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/run/simulation.h>
 #include <crawler/studies/core/compute.h>
@@ -132,8 +133,10 @@ namespace crawler
               extremes.first  = std::min(extremes.first, snapshot.stretch.min.value - 1.);
               extremes.second = std::max(extremes.second, snapshot.stretch.max.value - 1.);
             },
-            equal_parts(static_cast<std::size_t>(
-              std::min(pictures_of_stride * std::max(strides_of(*task.scene), 1.), max_pictures))));
+            equal_parts(0.,
+                        1.,
+                        static_cast<unsigned int>(
+                          std::min(pictures_of_stride * std::max(strides_of(*task.scene), 1.), max_pictures))));
         return extremes;
       }
 
@@ -196,10 +199,8 @@ namespace crawler
           rows.push_back(scene.end_time * part);
         TimeParameters time = task.parameters.time;
         time.cycle_stop     = CycleStopMode::off;
-        std::vector<std::unique_ptr<Observer>> observers;
-        observers.push_back(std::make_unique<ObservingFunction>(see));
         Simulation(MPI_COMM_SELF, scene, time, task.computed.choice.numerics)
-          .run(PictureTimes({}, rows, scene.end_time), {.energy_balance = false}, observers, [&]() {
+          .run(PictureTimes({}, rows, scene.end_time), {.energy_balance = false}, watched_by(see), [&]() {
             return !interrupted_();
           });
         if (interrupted_())

@@ -24,15 +24,6 @@ namespace crawler
     const std::vector<std::string> free_entries = {"Time/Wall time limit", "Time/Checkpoint interval"};
 
     std::string
-    this_program()
-    {
-      std::string text;
-      for (const auto &[name, version] : versions())
-        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, version);
-      return text;
-    }
-
-    std::string
     heading(const std::string &content)
     {
       boost::crc_32_type crc;
@@ -54,7 +45,7 @@ namespace crawler
       RunCheckpoint checkpoint;
       Archive archive(text.substr(first));
       archive(checkpoint.program);
-      if (checkpoint.program != this_program())
+      if (checkpoint.program != versions_in_words())
         throw FileError("\"" + path.string() + "\" was written by another version of the program (" +
                         checkpoint.program + ")");
       Archive whole(text.substr(first));
@@ -106,7 +97,7 @@ namespace crawler
   RunCheckpoint
   checkpoint_of(const Input &input, const CommandOptions &options)
   {
-    RunCheckpoint checkpoint{this_program(), input.effective, options.petsc_options, {}, ""};
+    RunCheckpoint checkpoint{versions_in_words(), input.effective, options.petsc_options, {}, ""};
     const Form form(input.file);
     for (unsigned int i = 0; i < form.declarations.entries().size(); ++i)
     {

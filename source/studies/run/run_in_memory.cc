@@ -88,12 +88,12 @@ namespace crawler
         begin_tables(parameters.output, input.scene, wanted, run);
         std::vector<std::unique_ptr<Observer>> observers;
         if (run.kymograph || run.statistics)
-          observers.push_back(std::make_unique<ObservingFunction>([&](const Snapshot &snapshot) {
+          observers = watched_by([&](const Snapshot &snapshot) {
             if (run.kymograph)
               run.kymograph->observe(snapshot);
             if (run.statistics)
               run.statistics->observe(snapshot);
-          }));
+          });
         return Simulation(MPI_COMM_SELF, input.scene, parameters.time, choice.numerics)
           .run(pictures, options, observers, keep_going);
       };

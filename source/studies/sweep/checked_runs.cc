@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/answer.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/base/short_text.h>
 #include <crawler/studies/sweep/checked_runs.h>
 #include <crawler/studies/sweep/cross_check.h>
@@ -173,9 +174,8 @@ namespace crawler
       const auto ends                = scene.active_stress->at({0., scene.body.length});
       const auto [left, right]       = scene.end_moduli();
       std::array<double, 2> m{};
-      for (unsigned int i = 0; i <= n_times; ++i)
+      for (const double t : equal_parts(0., scene.end_time, n_times))
       {
-        const double t = scene.end_time * i / n_times;
         ends->values(t, m);
         if (std::min(1. - m[0] / left, 1. - m[1] / right) < level)
           return t;

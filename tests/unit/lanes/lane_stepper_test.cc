@@ -2,7 +2,6 @@
 //
 // The fused engine carries out what the PETSc type "radau" does.
 #include "../../support/lane_runs.h"
-#include "../../support/watched.h"
 
 #include <gtest/gtest.h>
 
@@ -176,7 +175,7 @@ namespace
     TimeParameters time = run.parameters.time;
     time.engine         = engine;
     Seen seen;
-    const auto observers = test::watched_by([&](const Snapshot &snapshot) {
+    const auto observers = watched_by([&](const Snapshot &snapshot) {
       seen.steps = snapshot.step.number;
       if (!snapshot.pictures.is_snapshot || snapshot.step.time == 0.)
         return;

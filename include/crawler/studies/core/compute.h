@@ -2,7 +2,6 @@
 #pragma once
 
 #include <crawler/accuracy/shared_choice.h>
-#include <crawler/output/observer.h>
 #include <crawler/run/simulation.h>
 #include <crawler/studies/core/parameters.h>
 
@@ -35,25 +34,6 @@ namespace crawler
     double seconds      = 0.;    ///< wall time [s]; runs of a batch share its time
     bool is_out_of_time = false; ///< stopped by the time limit
     bool has_answer     = false; ///< the answer was found in the lanes, and is as accurate as requested
-  };
-
-  /// Observer that passes the states of a run to a function.
-  class ObservingFunction : public Observer
-  {
-  public:
-    explicit ObservingFunction(std::function<void(const Snapshot &)> see)
-      : see_(std::move(see))
-    {
-    }
-
-    void
-    observe(const Snapshot &snapshot) override
-    {
-      see_(snapshot);
-    }
-
-  private:
-    const std::function<void(const Snapshot &)> see_;
   };
 
   /// Reason in words why a task has no answer; empty if it has one.

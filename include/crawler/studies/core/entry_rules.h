@@ -38,10 +38,6 @@ namespace crawler
   std::vector<std::string>
   unused_constants(const Declarations &declarations, const EntryInfo &constants);
 
-  /// Returns true if the variable or constant @p name is in the formula.
-  bool
-  uses_name(const std::string &formula, const std::string &name);
-
   /// Rules of all these entries; an entry without a rule always has an effect.
   std::vector<EntryRule>
   entry_rules(const Declarations &declarations);

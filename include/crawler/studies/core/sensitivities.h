@@ -31,13 +31,6 @@ namespace crawler
     {"gait.speed", [](const SimulationResult &result) { return result.gait->speed(); }},
   }};
 
-  /// Returns true if these results have the number: an energy balance, a last stride.
-  inline bool
-  has_number(const std::size_t number, const SimulationResult &result)
-  {
-    return is_work(all_quantities[number]) ? result.energy_balance.has_value() : number == 0 || result.gait.has_value();
-  }
-
   /// Step between answers with this relative error from which an entry is differentiated, relative to its value [1].
   double
   step_of_differences(double relative_error);

@@ -7,10 +7,6 @@
 
 namespace crawler
 {
-  /// Fractions 0, 1/n, ... 1, and both sides of some breaks.
-  std::vector<double>
-  equal_parts(std::size_t n, const std::vector<double> &breaks = {});
-
   /**
    * Smallest and largest stretch in each of some equal boxes of body and duration. The extremes of a whole run have
    * kinks as functions of a gait where one crest becomes higher than another; those in small boxes hardly do, so that
