@@ -2,7 +2,6 @@
 #include <crawler/accuracy/stress_scales.h>
 #include <crawler/base/grid_samples.h>
 #include <crawler/scene/fast_changes.h>
-#include <crawler/scene/jump_bracket.h>
 
 #include <algorithm>
 #include <array>
@@ -54,19 +53,26 @@ namespace crawler
       const std::vector<double> points = equal_parts(0., scene.body.length, n);
       std::vector<double> m(n + 1);
       scene.active_stress->at(points)->values(t, m);
-      JumpBracket jump;
+      double left = 0., right = 0., m_left = 0., m_right = 0.;
+      const auto change = [&]() { return std::abs(m_right - m_left); };
       for (unsigned int i = 0; i < n; ++i)
-        if (std::abs(m[i + 1] - m[i]) > jump.change() && !any_between(in_space, points[i], points[i + 1]))
-          jump = {points[i], points[i + 1], m[i], m[i + 1]};
-      jump.narrow(
-        [&](const double place) {
-          std::vector<double> value(1);
-          scene.active_stress->at({place})->values(t, value);
-          return value[0];
-        },
-        n_bisections,
-        least);
-      return jump.change() > least ? std::optional(jump.middle()) : std::nullopt;
+        if (std::abs(m[i + 1] - m[i]) > change() && !any_between(in_space, points[i], points[i + 1]))
+        {
+          left    = points[i];
+          right   = points[i + 1];
+          m_left  = m[i];
+          m_right = m[i + 1];
+        }
+      std::vector<double> value(1);
+      for (unsigned int i = 0; i < n_bisections && change() > least; ++i)
+      {
+        const double middle = 0.5 * (left + right);
+        scene.active_stress->at({middle})->values(t, value);
+        const bool in_left           = std::abs(value[0] - m_left) > std::abs(m_right - value[0]);
+        (in_left ? right : left)     = middle;
+        (in_left ? m_right : m_left) = value[0];
+      }
+      return change() > least ? std::optional(0.5 * (left + right)) : std::nullopt;
     }
 
     /// True if undeclared jumps are at different places at different times.
@@ -454,6 +460,9 @@ namespace crawler
     std::sort(changes.begin(), changes.end(), [](const FastChange &a, const FastChange &b) { return a.from < b.from; });
     for (std::size_t i = 0; i < changes.size(); i += 1 + changes.size() / max_looks)
       samples.look_at(0.5 * (changes[i].from + changes[i].to));
+    for (std::size_t i = 1; i < in_period.size(); ++i)
+      if (in_period[i] - in_period[i - 1] < 2. / fine) // a sampling may miss what is between these breaks
+        samples.look_at(0.5 * P * (in_period[i] + in_period[i - 1]));
 
     const double largest = samples.largest, along = samples.along;
     const bool is_moved       = largest > 0. || scene.profiles.initial_stretch;

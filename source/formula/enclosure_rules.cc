@@ -157,13 +157,13 @@ namespace crawler
       return {f, f * (x[1].rate * of_base + chain(x[1].value * inverse(base), x[0].rate))};
     }
 
-    /// Value of an operation that jumps, where the side is uncertain. Jumps at a time are infinitely fast; those that
-    /// depend on the place, too, move, and are searched for elsewhere.
+    /// Value of an operation that jumps, where the side is uncertain. Jumps at a time are infinitely fast, unless their
+    /// times are known; those that depend on the place, too, move, and are searched for elsewhere.
     Enclosure
     jumping(const Interval &value, const Arguments x)
     {
-      const bool at_a_time = std::all_of(x.begin(), x.end(), [](const Enclosure &e) { return !e.on_s; });
-      return {value, singleton(value) || !at_a_time ? Interval(0.) : Interval::whole()};
+      const bool is_known = std::ranges::any_of(x, &Enclosure::jumps_known);
+      return {value, singleton(value) || is_known ? Interval(0.) : Interval::whole()};
     }
 
     template <double (*function)(double)>
@@ -263,6 +263,39 @@ namespace crawler
       return -min_rule(turned);
     }
 
+    /// Number of the argument that is least; of equal ones the first.
+    Enclosure
+    number_of_least(const Arguments x)
+    {
+      const auto may_be_least = [&](const Enclosure &e) {
+        return std::ranges::none_of(x, [&](const Enclosure &other) {
+          return &other < &e ? cerle(other.value, e.value) : cerlt(other.value, e.value);
+        });
+      };
+      const auto first = std::ranges::find_if(x, may_be_least),
+                 last  = std::find_if(x.rbegin(), x.rend(), may_be_least).base();
+      return {{static_cast<double>(first - x.begin()), static_cast<double>(last - x.begin() - 1)}, 0.};
+    }
+
+    Enclosure
+    number_of_largest(const Arguments x)
+    {
+      std::vector<Enclosure> turned;
+      for (const Enclosure &e : x)
+        turned.push_back(-e);
+      return number_of_least(turned);
+    }
+
+    /// Number of the period of mod(a, b), if b is constant.
+    Enclosure
+    number_of_period(const Arguments x)
+    {
+      if (!is_constant(x[1]) || !(x[1].value.lower() > 0.))
+        return {0., 0.};
+      const Enclosure periods = {x[0].value / x[1].value, 0.};
+      return step_rule<std::floor>({&periods, 1});
+    }
+
     Enclosure
     sum_rule(const Arguments x)
     {
@@ -342,5 +375,18 @@ namespace crawler
     if (found == rules.end())
       throw std::logic_error("no rule for enclosures of the function " + operation);
     return found->second;
+  }
+
+  Bound
+  side_of(const std::string &operation)
+  {
+    static const std::map<std::string, Bound> rules = {{"abs", step_rule<sign_of_number>},
+                                                       {"min", number_of_least},
+                                                       {"max", number_of_largest},
+                                                       {"mod", number_of_period}};
+    const auto found                                = rules.find(operation);
+    if (found != rules.end())
+      return found->second;
+    return tangent_of(operation) == nullptr ? bound_of(operation) : nullptr;
   }
 } // namespace crawler

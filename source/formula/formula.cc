@@ -209,7 +209,7 @@ namespace crawler
     {
       for (const auto &[own_code, name, loop] : operators)
         if (own_code == code)
-          return add({.loop = loop, .tangent = tangent_of(name), .bound = bound_of(name)}, 2);
+          return add({.loop = loop, .tangent = tangent_of(name), .bound = bound_of(name), .side = side_of(name)}, 2);
       throw mu::ParserError(mu::ecINTERNAL_ERROR);
     }
 
@@ -235,7 +235,11 @@ namespace crawler
       // Functions without a name are the sign: -x (muParser defines no other).
       const auto name         = names_.find(reinterpret_cast<Function>(function._pRawFun));
       const std::string known = name == names_.end() ? "-" : name->second;
-      add({.loop = loop, .tangent = tangent_of(known), .bound = bound_of(known), .function = function._pRawFun},
+      add({.loop     = loop,
+           .tangent  = tangent_of(known),
+           .bound    = bound_of(known),
+           .side     = side_of(known),
+           .function = function._pRawFun},
           static_cast<std::size_t>(std::abs(count)));
     }
 
@@ -267,19 +271,32 @@ namespace crawler
         throw mu::ParserError(mu::ecINTERNAL_ERROR);
       operation.arguments.assign(stack_.end() - static_cast<std::ptrdiff_t>(n_arguments), stack_.end());
       stack_.resize(stack_.size() - n_arguments);
-      Formula::Dependence on = {false, false};
-      for (const unsigned int argument : operation.arguments)
-      {
-        on.on_s |= formula_.dependence_[argument].on_s;
-        on.on_t |= formula_.dependence_[argument].on_t;
-      }
-      operation.result = add_value(on);
+      const Formula::Dependence on = dependence(operation);
+      operation.result             = add_value(on);
       stack_.push_back(operation.result);
       if (on.on_s && on.on_t)
         for (const unsigned int argument : operation.arguments)
           keep(argument);
       auto &list = !on.on_s ? formula_.of_time_ : !on.on_t ? formula_.of_place_ : formula_.of_both_;
       list.push_back(std::move(operation));
+    }
+
+    Formula::Dependence
+    dependence(const Formula::Operation &operation) const
+    {
+      Formula::Dependence on = {false, false, true, true};
+      for (const unsigned int argument : operation.arguments)
+      {
+        const Formula::Dependence &its = formula_.dependence_[argument];
+        on.on_s |= its.on_s;
+        on.on_t |= its.on_t;
+        on.on_s_in_steps &= its.on_s_in_steps || !its.on_s;
+        on.on_t_in_steps &= its.on_t_in_steps || !its.on_t;
+      }
+      const bool is_step = operation.tangent == nullptr;
+      on.on_s_in_steps |= is_step && !on.on_t;
+      on.on_t_in_steps |= is_step && !on.on_s;
+      return on;
     }
 
     unsigned int

@@ -11,11 +11,13 @@ namespace crawler
       values_[i] = {formula_->scalars_[i], 0.};
   }
 
-  Enclosure
-  FormulaBound::operator()(const Interval &s, const Interval &t)
+  template <typename See>
+  void
+  FormulaBound::compute(const Interval &s, const Interval &t, const See &see)
   {
     values_[Formula::s_] = {s, 0.};
-    values_[Formula::t_] = {t, 1.};
+    if (formula_->used_.size() > Formula::t_) // not a formula of s alone
+      values_[Formula::t_] = {t, 1.};
     for (const auto *list : {&formula_->of_time_, &formula_->of_place_, &formula_->of_both_})
       for (const Formula::Operation &operation : *list)
       {
@@ -25,8 +27,8 @@ namespace crawler
         for (const unsigned int argument : operation.arguments)
         {
           arguments_.push_back(values_[argument]);
-          arguments_.back().number = argument;
-          arguments_.back().on_s   = formula_->dependence_[argument].on_s;
+          arguments_.back().number      = argument;
+          arguments_.back().jumps_known = leaves_out_jumps_ || formula_->dependence_[argument].on_s;
         }
         Enclosure &result = values_[operation.result];
         result            = operation.bound(arguments_);
@@ -35,7 +37,30 @@ namespace crawler
             *x = Interval::whole();
         if (!formula_->dependence_[operation.result].on_t)
           result.rate = 0.;
+        see(operation);
       }
+  }
+
+  Enclosure
+  FormulaBound::operator()(const Interval &s, const Interval &t)
+  {
+    compute(s, t, [](const Formula::Operation &) {});
     return values_[formula_->result_];
+  }
+
+  std::vector<Interval>
+  FormulaBound::sides(const Variable variable, const Interval &s, const Interval &t, const bool in_steps)
+  {
+    std::vector<Interval> sides;
+    compute(s, t, [&](const Formula::Operation &operation) {
+      if (operation.side == nullptr)
+        return;
+      const Formula::Dependence &on = formula_->dependence_[operation.result];
+      const bool counts             = variable == Variable::s ? on.on_s && (!on.on_t || (in_steps && on.on_t_in_steps))
+                                                              : on.on_t && (!on.on_s || (in_steps && on.on_s_in_steps));
+      if (counts)
+        sides.push_back(operation.side(arguments_).value);
+    });
+    return sides;
   }
 } // namespace crawler

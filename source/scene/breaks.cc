@@ -46,6 +46,23 @@ namespace crawler
     return breaks;
   }
 
+  std::vector<double>
+  off_breaks_at_ends(std::vector<double> points, const std::vector<double> &breaks, const double length)
+  {
+    const double off = 1e-12 * length;
+    double first = 0., last = length;
+    for (const double s : breaks)
+    {
+      if (s < off)
+        first = off;
+      if (s > length - off)
+        last = length - off;
+    }
+    for (double &s : points)
+      s = std::clamp(s, first, last);
+    return points;
+  }
+
   TimeSegments::TimeSegments(const ActiveStress &stress, const double end_time)
   {
     std::vector<double> breaks = stress.breaks_in_time();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/scene/active_stress.h>
+#include <crawler/scene/breaks.h>
 #include <crawler/scene/fast_changes.h>
 #include <crawler/scene/period.h>
 
@@ -96,8 +97,9 @@ namespace crawler
         for (unsigned int i = 0; i < n_random; ++i)
           if (!is_same_after(begin_ + static_cast<double>(generator()) / 4294967296. * last, P))
             return false;
-        const bool repeats =
-          (!stress_.bounds({0., length_, begin_, end_}) || fast_changes_repeat(P)) && all_periods_are_the_same(P);
+        const bool repeats = pieces_repeat(P) &&
+                             (!stress_.bounds({0., length_, begin_, end_}) || fast_changes_repeat(P)) &&
+                             all_periods_are_the_same(P);
         if (!repeats)
           ++n_misses_;
         return repeats;
@@ -108,6 +110,24 @@ namespace crawler
       is_same_after(const double t, const double P)
       {
         return StressAtPlaces::difference(m_.at(t), m_.at(t + P)) <= same * largest_;
+      }
+
+      /// True if m is the same after P between all breaks in time, however close these are: bounds leave out its jumps.
+      bool
+      pieces_repeat(const double P)
+      {
+        std::vector<double> ends = stress_.breaks_in_time();
+        ends.insert(ends.end(), {begin_, end_});
+        std::ranges::sort(ends);
+        for (std::size_t i = 1; i < ends.size(); ++i)
+        {
+          const double t = std::lerp(ends[i - 1], ends[i], 0.381966);
+          if (t <= begin_ || t >= end_ || ends[i] - ends[i - 1] < 4. * min_time_between_breaks * end_)
+            continue;
+          if ((t + P <= end_ && !is_same_after(t, P)) || (t - P >= begin_ && !is_same_after(t - P, P)))
+            return false;
+        }
+        return true;
       }
 
       bool

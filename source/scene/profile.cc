@@ -2,12 +2,11 @@
 #include <crawler/base/csv_numbers.h>
 #include <crawler/base/cubic_spline.h>
 #include <crawler/base/exceptions.h>
-#include <crawler/base/grid_samples.h>
+#include <crawler/formula/formula_breaks.h>
 #include <crawler/formula/formula_gradient.h>
 #include <crawler/parameters/plain_text.h>
 #include <crawler/scene/active_stress/formula_input.h>
 #include <crawler/scene/breaks.h>
-#include <crawler/scene/jump_bracket.h>
 #include <crawler/scene/profile.h>
 
 #include <fmt/format.h>
@@ -20,59 +19,17 @@ namespace crawler
 {
   namespace
   {
-    /// Finds jumps in [0, @p length] of a function with the values values(places, results): differences of neighbouring
-    /// samples that do not shrink with their distance. Finds only the first jump between two samples, and none below
-    /// 1e-3 of the largest value.
-    template <typename Values>
-    std::vector<double>
-    jumps_of(const Values &values, const double length)
-    {
-      constexpr unsigned int n = 1024, n_bisections = 50;
-      constexpr double least           = 1e-3;
-      constexpr std::size_t most       = 64; // more are no jumps of a material
-      const std::vector<double> places = equal_parts(0., length, n);
-      std::vector<double> f(n + 1);
-      values(places, f);
-      double largest = 0.;
-      for (const double one : f)
-        largest = std::max(largest, std::abs(one));
-      std::vector<double> jumps;
-      for (unsigned int i = 0; i < n; ++i)
-      {
-        JumpBracket jump{places[i], places[i + 1], f[i], f[i + 1]};
-        jump.narrow(
-          [&](const double place) {
-            double value = 0.;
-            values({&place, 1}, {&value, 1});
-            return value;
-          },
-          n_bisections,
-          least * largest);
-        if (jump.change() > least * largest)
-          jumps.push_back(jump.middle());
-      }
-      return jumps.size() <= most ? jumps : std::vector<double>();
-    }
-
     class FormulaProfile : public Profile
     {
     public:
       /// Searches jumps and kinks in [0, @p length], nowhere if this is 0.
-      FormulaProfile(std::shared_ptr<const Formula> formula, const double length)
-        : gradient_(std::move(formula))
+      FormulaProfile(const std::shared_ptr<const Formula> &formula, const double length)
+        : gradient_(formula)
       {
-        if (!(length > 0.))
-          return;
-        using Places = std::span<const double>;
-        using Values = std::span<double>;
-        breaks_      = jumps_of([&](const Places x, const Values f) { values(x, f); }, length);
-        std::vector<double> f;
-        const auto slopes = [&](const Places x, const Values slope) {
-          f.resize(x.size());
-          values_and_slopes(x, f, slope);
-        };
-        const std::vector<double> kinks = jumps_of(slopes, length);
-        breaks_.insert(breaks_.end(), kinks.begin(), kinks.end());
+        constexpr std::size_t most = 64; // more are no jumps of a material
+        const auto breaks          = length > 0. ? formula_breaks(formula, length, 0.).in_space : std::nullopt;
+        if (breaks && breaks->size() <= most)
+          breaks_ = *breaks;
       }
 
       std::vector<double>

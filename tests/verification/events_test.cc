@@ -55,6 +55,20 @@ namespace
   }
 } // namespace
 
+/// Segments that a formula describes have the answer of the generator that declares their jumps.
+TEST(Events, JumpsOfFormulasAreAsGoodAsDeclaredOnes)
+{
+  const test::Settings rest = test::set("p = 2; Time/End time = 1; Accuracy = 1e-6");
+  const auto generator      = answer_to(test::with(
+    rest,
+    test::set("segments; Number of segments = 4; Amplitude = 0.2; Phase lag = 0.25; Direction = from tail to head")));
+  const auto formula        = answer_to(test::with(
+    rest, test::set("expression; Active stress/Expression/Active stress = 0.2*(mod(t-0.25*floor(4*s),1)<0.5)")));
+  ASSERT_EQ(formula.time.status, Status::finished);
+  EXPECT_EQ(formula.mesh->n_cells, generator.mesh->n_cells);
+  EXPECT_NEAR(formula.displacement, generator.displacement, 1e-12);
+}
+
 TEST(Events, ASinglePulseIsNotMissed)
 {
   expect_within(answer_to(pulse(20., 0., 1000., "1e-4")), -0.00316044717, 1e-4, "pulse");

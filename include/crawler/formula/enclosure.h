@@ -32,6 +32,6 @@ namespace crawler
 
     Interval value, rate;
     unsigned int number = no_number; ///< of the value in its formula
-    bool on_s           = false;     ///< the value depends on s
+    bool jumps_known    = false;     ///< jumps in time are left out: they move with the place, or their times are known
   };
 } // namespace crawler

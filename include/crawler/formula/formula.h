@@ -44,10 +44,12 @@ namespace crawler
     friend class FormulaBound;
     friend class FormulaReader;
 
-    /// Dependence of a value on the variables.
+    /// Dependence of a value on the variables; in steps: only by operations on this variable alone that are constant
+    /// but for jumps.
     struct Dependence
     {
       bool on_s, on_t;
+      bool on_s_in_steps = false, on_t_in_steps = false;
     };
 
     static constexpr unsigned int s_ = 0, t_ = 1; ///< Numbers of the values s and t, if these are the variables.

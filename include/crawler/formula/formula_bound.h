@@ -21,8 +21,32 @@ namespace crawler
     Enclosure
     operator()(const Interval &s, const Interval &t);
 
+    /// Leaves out jumps at the times that formula_breaks() finds.
+    void
+    leave_out_jumps()
+    {
+      leaves_out_jumps_ = true;
+    }
+
+    enum class Variable
+    {
+      s,
+      t
+    };
+
+    /// Encloses the sides of operations on this variable that have several: one number for each. If @p in_steps, also
+    /// of those that depend on the other variable in steps.
+    std::vector<Interval>
+    sides(Variable variable, const Interval &s, const Interval &t, bool in_steps);
+
   private:
+    /// Encloses all values; see(operation) is called for each operation while its arguments are there.
+    template <typename See>
+    void
+    compute(const Interval &s, const Interval &t, const See &see);
+
     const std::shared_ptr<const Formula> formula_;
     std::vector<Enclosure> values_, arguments_;
+    bool leaves_out_jumps_ = false;
   };
 } // namespace crawler

@@ -40,6 +40,7 @@ namespace crawler
     Loop loop                           = nullptr;
     Tangent tangent                     = nullptr; ///< null: the result is constant except for jumps
     Bound bound                         = nullptr;
+    Bound side                          = nullptr; ///< Encloses the number of the smooth piece; null: there is one.
     Function function                   = nullptr; ///< Of any type, for loops that call a function.
     std::vector<unsigned int> arguments = {};      ///< Values; for a skip the condition.
     unsigned int result                 = 0;       ///< Value.

@@ -12,6 +12,11 @@ namespace crawler
   FormulaOperation::Bound
   bound_of(const std::string &operation);
 
+  /// Returns the rule that encloses the side on which an operation by its name as above is computed, a whole number
+  /// that changes where the operation jumps or has a kink; null if it does neither.
+  FormulaOperation::Bound
+  side_of(const std::string &operation);
+
   /// Returns the differentiation rule of an operation by its name as above; null if it is constant except for jumps.
   /// Throws std::logic_error for an unknown name.
   FormulaOperation::Tangent

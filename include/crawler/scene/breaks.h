@@ -29,6 +29,11 @@ namespace crawler
   std::vector<double>
   distinct_breaks_in_space(std::vector<double> places, double length);
 
+  /// Moves points at an end of the body inwards if one of the @p breaks is there: with floor(4*s/L) a fifth segment
+  /// begins at s = L, which is none.
+  std::vector<double>
+  off_breaks_at_ends(std::vector<double> points, const std::vector<double> &breaks, double length);
+
   /**
    * The pieces of [0, T] between the times when the active stress, or a derivative of it, jumps. Within a piece from
    * t_b to t_c it is evaluated at times in [t_b + 2 d, t_c - d], d = 1e-12 T: the values of a generator at the very

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/formula/formula_breaks.h>
 #include <crawler/formula/formula_gradient.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/expression.h>
 #include <crawler/scene/active_stress/formula_input.h>
+#include <crawler/scene/breaks.h>
 #include <crawler/scene/period.h>
 
 namespace crawler
@@ -41,11 +43,17 @@ namespace crawler
     , bound_(compiled_)
   {
     require_finite_values(*this, input_of(parameters), "", length, end_time);
+    const FormulaBreaks breaks = formula_breaks(compiled_, length, end_time);
+    facts_.breaks_in_space     = breaks.in_space.value_or(std::vector<double>());
+    facts_.breaks_in_time      = breaks.in_time.value_or(std::vector<double>());
+    if (breaks.in_time)
+      bound_.leave_out_jumps();
   }
 
   std::unique_ptr<ActiveStressAtPoints>
-  Expression::evaluator(const std::vector<double> &points, const bool rate) const
+  Expression::evaluator(const std::vector<double> &places, const bool rate) const
   {
+    const std::vector<double> points = off_breaks_at_ends(places, facts_.breaks_in_space, length_);
     return rate ? stress_at_points(FormulaRateAtPoints(compiled_, points))
                 : stress_at_points(FormulaAtPoints(compiled_, points));
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/formula/formula_breaks.h>
 #include <crawler/formula/formula_gradient.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/formula_input.h>
@@ -99,10 +100,17 @@ namespace crawler
                                         .distance      = formula->uses(w_near) ? parameters.distance : 0.,
                                         .delay         = formula->uses(w_delayed) ? parameters.delay : 0.,
                                         .sensor_length = formula->uses(w_near) ? sensor : 0.};
+    const FormulaBreaks breaks       = formula_breaks(formula, length, end_time);
     feedback_                        = std::make_unique<KnownFeedback>(
-      facts, [formula](const std::vector<double> &points) { return formula_feedback(formula, points); });
+      facts,
+      [formula, ends = breaks.in_space.value_or(std::vector<double>()), length](const std::vector<double> &points) {
+        return formula_feedback(formula, off_breaks_at_ends(points, ends, length));
+      });
     facts_.has_rate        = false;
     facts_.breaks_in_space = kinks_in_space(length);
+    facts_.breaks_in_time  = breaks.in_time.value_or(std::vector<double>());
+    if (breaks.in_space)
+      facts_.breaks_in_space.insert(facts_.breaks_in_space.end(), breaks.in_space->begin(), breaks.in_space->end());
     // The past begins at t = 0, which causes kinks at the first multiples of the delay.
     constexpr int most = 6; // each is smoother than the previous one
     for (int i = 1; i <= most && facts.delay > 0. && i * facts.delay < end_time; ++i)

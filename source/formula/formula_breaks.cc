@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/formula/formula_bound.h>
+#include <crawler/formula/formula_breaks.h>
+
+#include <algorithm>
+#include <functional>
+
+namespace crawler
+{
+  namespace
+  {
+    using Places = std::optional<std::vector<double>>;
+
+    constexpr double same = 1e-14; ///< breaks are closer by round-off, relative to the end
+
+    /// Search for the points of [0, end] at which the sides of operations change.
+    class BreakSearch
+    {
+    public:
+      using Sides = std::function<std::vector<Interval>(const Interval &)>;
+
+      BreakSearch(Sides sides, const double end)
+        : sides_(std::move(sides))
+        , end_(end)
+      {
+      }
+
+      Places
+      find()
+      {
+        look(0., end_);
+        return n_bounds_ <= allowed() ? Places(breaks_) : std::nullopt;
+      }
+
+    private:
+      /// Number of bounds that may be computed; a break takes about a hundred.
+      std::size_t
+      allowed() const
+      {
+        constexpr std::size_t first = 20000, of_break = 400, most_breaks = 5000;
+        return breaks_.size() <= most_breaks ? first + of_break * breaks_.size() : 0;
+      }
+
+      void
+      look(const double from, const double to)
+      {
+        if (++n_bounds_ > allowed())
+          return;
+        const std::vector<Interval> sides = sides_({from, to});
+        if (std::ranges::all_of(sides, [](const Interval &side) { return singleton(side); }))
+          return;
+        const double middle = 0.5 * (from + to);
+        if (middle > from && middle < to && to > same * end_) // neighbours: `to` is the first number on its side
+        {
+          look(from, middle);
+          look(middle, to);
+        }
+        else if ((breaks_.empty() || to - breaks_.back() > same * end_) &&
+                 !std::ranges::equal(sides_(from), sides_(to), [](const Interval &a, const Interval &b) {
+                   return a.lower() == b.lower() && a.upper() == b.upper();
+                 }))
+          breaks_.push_back(from > 0. ? to : 0.);
+      }
+
+      const Sides sides_;
+      const double end_;
+      std::size_t n_bounds_ = 0;
+      std::vector<double> breaks_;
+    };
+
+    /// Breaks of a formula in one variable; the other one is called u.
+    class BreaksInVariable
+    {
+    public:
+      BreaksInVariable(FormulaBound &bound, const FormulaBound::Variable variable, const double end)
+        : bound_(bound)
+        , variable_(variable)
+        , end_(end)
+      {
+      }
+
+      /// Breaks of operations that do not depend on u.
+      Places
+      alone() const
+      {
+        return BreakSearch([this](const Interval &x) { return sides(x, 0., false); }, end_).find();
+      }
+
+      /// Breaks of all operations on each piece between those of u, in [0, end_of_u], where it does not matter.
+      Places
+      on_pieces(const Places &alone, const Places &breaks_of_u, const double end_of_u) const
+      {
+        if (!alone || !breaks_of_u || sides(0., 0., true).size() == sides(0., 0., false).size())
+          return alone;
+        std::vector<double> all, ends = {0.};
+        ends.insert(ends.end(), breaks_of_u->begin(), breaks_of_u->end());
+        ends.push_back(end_of_u);
+        for (std::size_t i = 1; i < ends.size(); ++i)
+        {
+          if (ends[i] - ends[i - 1] <= same * end_of_u)
+            continue;
+          const double u = 0.5 * (ends[i - 1] + ends[i]);
+          const auto its = BreakSearch([&](const Interval &x) { return sides(x, u, true); }, end_).find();
+          if (!its)
+            return std::nullopt;
+          all.insert(all.end(), its->begin(), its->end());
+        }
+        std::ranges::sort(all);
+        const auto is_same = [&](const double a, const double b) { return b - a <= same * end_; };
+        all.erase(std::ranges::unique(all, is_same).begin(), all.end());
+        return all;
+      }
+
+    private:
+      std::vector<Interval>
+      sides(const Interval &x, const double u, const bool in_steps) const
+      {
+        return variable_ == FormulaBound::Variable::s ? bound_.sides(variable_, x, u, in_steps)
+                                                      : bound_.sides(variable_, u, x, in_steps);
+      }
+
+      FormulaBound &bound_;
+      const FormulaBound::Variable variable_;
+      const double end_;
+    };
+  } // namespace
+
+  FormulaBreaks
+  formula_breaks(const std::shared_ptr<const Formula> &formula, const double length, const double end_time)
+  {
+    FormulaBound bound(formula);
+    const BreaksInVariable in_space(bound, FormulaBound::Variable::s, length),
+      in_time(bound, FormulaBound::Variable::t, end_time);
+    const Places places = in_space.alone(), times = end_time > 0. ? in_time.alone() : Places(std::vector<double>());
+    return {in_space.on_pieces(places, times, end_time), in_time.on_pieces(times, places, length)};
+  }
+} // namespace crawler
