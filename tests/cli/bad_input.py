@@ -61,7 +61,6 @@ def state(folder):
 
 
 def expect_refusal(folder, arguments, code, parts, what):
-    """Runs a command that must be refused."""
     before = state(folder)
     done = call([CRAWLER, *arguments], folder, input="")
     words = done.stderr
@@ -82,7 +81,6 @@ def rows():
 
 
 def test_rows(folder):
-    """All rows of the table."""
     for text, code, parts in rows():
         bad, arguments = folder / "bad.prm", ["run", "bad.prm", "--output", "results"]
         bad.unlink(missing_ok=True)

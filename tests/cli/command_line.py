@@ -28,7 +28,6 @@ check = checks.expect
 
 
 def crawler(*arguments, launcher=(), **more):
-    """One call of the program."""
     return call([*launcher, PROGRAM, *arguments], **more)
 
 
@@ -264,7 +263,6 @@ def without_mpi():
 
 
 def several_processes():
-    """They speak once."""
     two = on_ranks(MPIEXEC, 2)
     check(crawler("--version", launcher=two).stdout.count("deal.II") == 1, "two processes print the version once")
     wrong = crawler("runn", launcher=two)
@@ -298,7 +296,6 @@ def without_scratch(folder):
 
 
 def main():
-    """All of it."""
     with tempfile.TemporaryDirectory() as first, tempfile.TemporaryDirectory() as second:
         templates(pathlib.Path(first))
         sections()

@@ -139,10 +139,7 @@ namespace
     TemporaryFolder folder;
     const fs::path results = folder.path / "results";
   };
-} // namespace
 
-namespace
-{
   /// Does something with the entry of that name in its section.
   template <typename Action>
   void
@@ -411,13 +408,6 @@ TEST_F(Commands, WhatHasNoEffectIsNoted)
   }
 }
 
-TEST_F(Commands, PetscOptionsAreRecorded)
-{
-  ASSERT_EQ(run({"--", "-ts_type", "bdf"}).exit_code, 0);
-  EXPECT_TRUE(contains(read_text(results / "log.txt"), "-ts_type bdf"));
-  EXPECT_EQ(summary_of(results)["integrator"], "bdf");
-}
-
 TEST_F(Commands, QuietPrintsNothing)
 {
   const ProgramResult result = run({"--quiet"});
@@ -478,6 +468,7 @@ TEST_F(Commands, UnusedPetscOptionsAreReported)
     summary_of(results).at("command_line"),
     "crawler run scene.prm --output results --set Output/Statistics=false -- -ts_adapt_clp '0.1;2' -ts_type bdf");
 
+  EXPECT_EQ(summary_of(results).at("integrator"), "bdf");
   write_text(folder.path / "scene.prm", scene + in_section("Sweep", "set Axes = Body/Elastic modulus : 1, 2"));
   const ProgramResult sweep = run_program(
     folder.path, {"sweep", "scene.prm", "--quiet", "--", "-ts_adapt_clp", "-1", "-ts_max_snes_failures", "3"});
@@ -622,20 +613,5 @@ TEST_F(Commands, SignalsStopARunInOrder)
     EXPECT_LE(output_times.back(), summary.at("end_time").get<double>() + 1e-11);
     xml(results / "kymograph.vts");
     EXPECT_TRUE(contains(read_text(results / "log.txt"), "Stopped at t = "));
-  }
-}
-
-TEST_F(Commands, ASignalDuringThePilotRunsLeavesNoFiles)
-{
-  write_text(folder.path / "scene.prm",
-             "subsection Active stress\nset Generator = expression\nsubsection Expression\n"
-             "set Active stress = 0.1*sin(2*pi*(s+t))*(1+1e-5*t)\nend\nend\n" + // no stride is like another
-               in_section("Time", "set End time = 1e4"));
-  for (const std::string name : {"TERM", "INT"})
-  {
-    Program program(folder.path, {"run", "scene.prm", "--output", "results"}, "", "pilot:20:" + name);
-    EXPECT_EQ(program.exit_code(), 5) << program.err();
-    EXPECT_EQ(program.err(), "crawler: stopped by a signal during the pilot runs; nothing was written\n");
-    EXPECT_FALSE(fs::exists(results));
   }
 }

@@ -61,7 +61,6 @@ def read_only(cases, disk, has_disk, inputs):
 
 
 def main():
-    """All of it."""
     with tempfile.TemporaryDirectory() as name:
         place = pathlib.Path(name)
         inputs, disk = place / "inputs", Disk(place / "disk")

@@ -116,7 +116,6 @@ def bad_entries(text, names):
 
 
 def main():
-    """Prints what is wrong and returns how much."""
     program = str(pathlib.Path(sys.argv[1]).resolve())
     problems = []
     for file, form in GENERATED:

@@ -47,7 +47,6 @@ def some(things):
 
 
 def crawler(*arguments, **options):
-    """The finished process."""
     return call([CRAWLER, *arguments], **options)
 
 

@@ -40,7 +40,6 @@ check = checks.expect
 
 
 def crawler(*arguments, stop_at=None):
-    """Runs the program."""
     return call([PROGRAM, *arguments], os.getcwd(), stop_at)
 
 
@@ -196,7 +195,6 @@ def refuses():
 
 
 def main():
-    """All of it, in a folder of its own."""
     for name in ("fit_worm.prm", "fit_worm.csv"):
         shutil.copy(STUDIES / name, name)
     ended = crawler("fit", "fit_worm.prm")

@@ -34,7 +34,6 @@ def run(study, folder, *settings, options=(), ranks=1, stop_at=None, picture=Fal
 
 
 def summary(folder):
-    """summary.json."""
     return json_of(folder / "summary.json")
 
 
@@ -375,7 +374,6 @@ def test_obstacles(place):
 
 
 def test_bad_input(place):
-    """One sentence, exit code 2, no folder."""
     no_limit = ["Optimize/Smallest strain=automatic", "Optimize/Largest strain=automatic"]
     for settings, words in ((["Optimize/Variables="], 'Variables" is empty'),
                             (["Optimize/Variables=Body/Lenght : 1 to 2"], "nearest name is \"Body/Length\""),
@@ -400,7 +398,6 @@ def test_bad_input(place):
 
 
 def main():
-    """All tests in a folder of their own."""
     with tempfile.TemporaryDirectory() as name:
         place = pathlib.Path(name)
         for test in tests_of_part((test_merits, test_theorem, test_simulations, test_pulling_limits, test_many_crests, test_far_start, test_narrow_stress,

@@ -71,7 +71,6 @@ def test_numbers(out, printed):
 
 
 def main():
-    """Makes the figures."""
     program = pathlib.Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory() as name:
         out = pathlib.Path(name) / "paper"

@@ -83,7 +83,6 @@ def run(folder, name, command, entries=()):
 
 
 def read(reader, path):
-    """The data set in a file."""
     reader.SetFileName(str(path))
     reader.Update()
     if reader.GetErrorCode() != 0 or reader.GetOutput().GetNumberOfPoints() == 0:
@@ -314,7 +313,6 @@ def check_killed(folder, program):
 
 
 def vtu_frames(output):
-    """The fields of the lines of a run."""
     frames = []
     for parts in listed(output, "line.pvd")[1]:
         data = read(vtk.vtkXMLUnstructuredGridReader(), parts["line"])
@@ -325,7 +323,6 @@ def vtu_frames(output):
 
 
 def main():
-    """Runs on one and two ranks."""
     if len(sys.argv) != 3:
         sys.exit("usage: paraview_files.py PATH_TO_CRAWLER MPIEXEC")
     with tempfile.TemporaryDirectory() as name:

@@ -96,7 +96,6 @@ check = checks.expect
 
 
 def crawler(*arguments, **variables):
-    """Runs the program."""
     return call([PROGRAM, *arguments], variables=variables)
 
 
@@ -137,7 +136,6 @@ def words(picture):
 
 
 def make_folders():
-    """One of each kind."""
     pathlib.Path("study.prm").write_text(STUDY, encoding="utf-8")
     pathlib.Path("many.csv").write_text("t,a,b,c\n0,1,2,3\n", encoding="utf-8")
     pathlib.Path("calibration.csv").write_text(CALIBRATION, encoding="utf-8")
@@ -328,7 +326,6 @@ def test_python(folder):
 
 
 def main():
-    """In a folder of its own, with a name that a shell would stumble over."""
     with tempfile.TemporaryDirectory(suffix=" $(x); 'y'") as folder:
         os.chdir(folder)
         make_folders()

@@ -97,7 +97,6 @@ class Place:
         self.folder, self.output = pathlib.Path(folder), ""
 
     def write(self, name, text):
-        """A file of the user."""
         (self.folder / name).write_text(text, encoding="utf-8")
 
     def give(self, code, *words, ranks=1):
@@ -110,7 +109,6 @@ class Place:
 
 
 def main():
-    """Prints what differs, and returns how much; or writes it into the guide."""
     guide = GUIDE.read_text(encoding="utf-8")
     problems = []
     with tempfile.TemporaryDirectory() as folder:

@@ -44,7 +44,6 @@ class Screen:
         self.rows, self.row, self.column, self.seen = [""], 0, 0, []
 
     def write(self, text):
-        """Follows the text."""
         for part in re.findall(r"\x1b\[\d*[A-Za-z]|\r|\n|[^\x1b\r\n]+|\x1b", text):
             if part == "\n":
                 self.row += 1
@@ -144,7 +143,6 @@ def run(folder):
 
 
 def quiet(folder):
-    """--quiet shows nothing."""
     screen, code = on_terminal([PROGRAM, "run", str(PRM / "examples/earthworm.prm"), "--quiet", "--output", "quiet"],
                                folder)
     check(code == 0 and not any(shown(screen)), "--quiet shows nothing")
@@ -197,7 +195,6 @@ def optimise(folder):
 
 
 def main():
-    """All of it."""
     with tempfile.TemporaryDirectory() as folder:
         for test in tests_of_part((run, quiet, optimise), (sweep,)):
             test(pathlib.Path(folder))

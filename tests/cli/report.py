@@ -409,7 +409,6 @@ def test_point_command(program, browser):
 
 
 def main():
-    """Everything in a folder of its own."""
     with tempfile.TemporaryDirectory() as name:
         program = Program(str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(name))
         make_studies(program)

@@ -49,7 +49,6 @@ def killed(scene):
 
 
 def signals_in_pilots(scene):
-    """Nothing is written."""
     for how in ("TERM", "INT", "USR1"):
         scene.expect("pilots", [], 5, "nothing was written", stop_at=f"pilot:20:{how}")
         expect(not (scene.place / "pilots").exists(), f"{how} in the pilots: there are files")
@@ -170,7 +169,6 @@ def two_ranks(place):
 
 
 def main():
-    """All of it."""
     with tempfile.TemporaryDirectory() as name:
         place = pathlib.Path(name)
         for test in tests_of_part((one_rank,), (two_ranks,)):

@@ -42,7 +42,6 @@ check = checks.expect
 
 
 def computed(folder, command, entries, output, instruction_set=None):
-    """Runs the command."""
     return call([CRAWLER, command, "scene.prm", "--quiet", "--output", output, *sets(entries)], folder,
                 variables={} if instruction_set is None else {"CRAWLER_INSTRUCTION_SET": instruction_set})
 
@@ -76,12 +75,10 @@ def content(path):
 
 
 def files(folder):
-    """Contents by name."""
     return {str(path.relative_to(folder)): content(path) for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
 def same_files(folder, command, entries):
-    """Twice the same."""
     results = [computed(folder, command, entries, f"{command}_{name}") for name in ("first", "second")]
     one, two = (files(folder / f"{command}_{name}") for name in ("first", "second"))
     differ = sorted(name for name in one.keys() | two.keys() if one.get(name) != two.get(name))
@@ -113,7 +110,6 @@ def same_answer(folder):
 
 
 def main():
-    """All of it."""
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         (folder / "scene.prm").write_text(BASE, encoding="utf-8")

@@ -125,7 +125,6 @@ def with_a_given_strain(folder):
 
 
 def main():
-    """All of it."""
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         result, summary = crawler(folder, WAVE, "Output/Sensitivities=all")

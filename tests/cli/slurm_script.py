@@ -50,7 +50,6 @@ class Cluster:
         self.variables = {"PATH": f"{folder / 'bin'}:{os.environ['PATH']}", "CRAWLER": program, "CRAWLER_LAUNCHER": ""}
 
     def write(self, entries="  set Axes = Body/Anchoring exponent : 1.5, 2, 3"):
-        """Writes sweep.prm."""
         (self.folder / "sweep.prm").write_text(f"subsection Sweep\n{entries}\nend\n", encoding="utf-8")
 
     def start(self, *arguments, status="stopped", job="17", stop_at=None, **plays):
@@ -137,7 +136,6 @@ def test_program(folder, program):
 
 
 def main():
-    """Each test in a folder of its own."""
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         test_usage(folder / "usage")

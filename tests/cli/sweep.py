@@ -498,22 +498,6 @@ def test_what_cannot_be_checked(folder):
         expect(bad.returncode == 2 and words in bad.stderr and not (folder / "bad").exists(), f"{entry}: {bad}")
 
 
-def test_kill_of_cross_check(folder):
-    """Rank 1 of two is killed: what is computed is kept, and --resume makes the rest, bit for bit."""
-    # Rank 0 waits from its first row on, until mpirun ends it: it may make more rows in its last moments.
-    axes = f"{CHI} : linspace(0.1, 0.3, 12); {P} : 0, 2"
-    whole, _ = checked(folder, "whole", axes)
-    command = [PROGRAM, "sweep", "sweep.prm", "--output", "killed", "--resume", "--set", "Accuracy=1e-3"]
-    killed = call(ranks_that_stop(MPIRUN, command, "row:1:STOP", "row:4:KILL"), folder)
-    before = table(folder / "killed")
-    done = np.flatnonzero(computed(before))
-    last = call([*on_ranks(MPIRUN, 2), *command], folder)
-    rest = table(folder / "killed")
-    expect(whole.returncode == last.returncode == 0 and killed.returncode == 128 + signal.SIGKILL and len(done) >= 4
-           and same_columns(table(folder / "whole"), rest) and all(rest["seconds"][i] == before["seconds"][i] for i in done),
-           f"{len(done)} rows, then all: {killed} {last}")
-
-
 def test_full_disk(folder):
     """A disk that is full when the table begins, or when all but results.csv is written."""
     write(folder, f"{P} : linspace(1.5, 4, 12); {CHI} : linspace(0.05, 0.5, 12)")
@@ -589,12 +573,11 @@ def test_damaged_table(folder):
 
 
 def main():
-    """Each test in a folder of its own."""
     with tempfile.TemporaryDirectory() as name:
         for test in tests_of_part((test_bad_input, test_damaged_table, test_places_of_files, test_rows_that_fail,
                                    test_time_limits, test_changed_inputs, test_killed_at_files, test_two_at_once,
                                    test_crashes, test_full_disk, test_cross_check, test_what_cannot_be_checked),
-                                  (test_grid, test_designs, test_signals, test_kills, test_kill_of_cross_check)):
+                                  (test_grid, test_designs, test_signals, test_kills)):
             folder = pathlib.Path(name, test.__name__)
             folder.mkdir()
             test(folder)

@@ -101,7 +101,6 @@ def expect_picture(folder, name, wanted, *arguments, alone=False):
 
 
 def test_pictures(folder):
-    """Each design."""
     texts = expect_picture(folder, "line", ["Perturbation parameter", "displacement $D$ [length]"], alone=True)
     check("Anchoring exponent" not in texts, "what is no axis is not named")
     expect_picture(folder, "grid", ["Perturbation parameter", "Anchoring exponent", "displacement $D$ [length]"])
@@ -227,7 +226,6 @@ def test_columns(folder, program):
 
 
 def main():
-    """Makes the sweeps and draws them."""
     with tempfile.TemporaryDirectory() as name:
         folder, program = pathlib.Path(name), pathlib.Path(sys.argv[1]).resolve()
         for scene, modulus in (("soft", 1), ("stiff", 10)):

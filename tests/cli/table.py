@@ -79,7 +79,6 @@ check = checks.expect
 
 
 def crawler(*arguments):
-    """Runs the program."""
     return call([PROGRAM, *arguments])
 
 
@@ -91,7 +90,6 @@ def displacement(scene, folder, *options):
 
 
 def table(path):
-    """Columns of numbers."""
     return np.loadtxt(path, delimiter=",", skiprows=1).T
 
 
@@ -173,7 +171,6 @@ def refusals():
 
 
 def main():
-    """All of it, in a folder of its own."""
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         for kind, name in (("stress", "larva_raw.csv"), ("tracks", "tracks_raw.csv")):

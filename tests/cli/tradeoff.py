@@ -58,7 +58,6 @@ def table(folder):
 
 
 def summary_of(folder):
-    """summary.json."""
     return json_of(folder / "summary.json")
 
 
@@ -302,7 +301,6 @@ def check_old_folder(output, whole):
 
 
 def main():
-    """All checks in a folder of their own."""
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         (folder / "small.prm").write_text(BODY + STUDY, encoding="utf-8")

@@ -4,8 +4,7 @@
 #include "../support/exact_solution.h"
 #include "../support/lane_runs.h"
 #include "../support/observed_order.h"
-
-#include <gtest/gtest.h>
+#include "../support/test.h"
 
 using namespace crawler;
 using test::LaneRun;

@@ -3,13 +3,10 @@
 // Active stresses that jump: full orders where the jumps are declared, and lost orders where they are not.
 #include "../support/lane_runs.h"
 #include "../support/observed_order.h"
+#include "../support/test.h"
 #include "../support/with_breaks.h"
 
 #include <crawler/time/integrators.h>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
 
 using namespace crawler;
 using test::LaneRun;

@@ -4,14 +4,11 @@
 // to another mesh and integrated on, takes the steps of one that is not. bdf, which starts anew each time, takes many
 // more.
 #include "../support/run_text.h"
+#include "../support/test.h"
 
 #include <crawler/equation/general_position_form.h>
 #include <crawler/equation/mesh_transfer.h>
 #include <crawler/time/integrators.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 using namespace crawler;
 
@@ -120,9 +117,7 @@ TEST(Remesh, CostsBdfManySteps)
 TEST(Remesh, AnAdaptiveRunTakesTheStepsOfAFineMesh)
 {
   auto parameters = test::parameters_with(
-    {{"Body/Anchoring exponent", "2"},
-     {"Active stress/Generator", "expression"},
-     {"Active stress/Expression/Active stress", "0.3*(1-exp(-(t/0.1)^2))*exp(-((s-0.2-0.6*t)/0.03)^2)"}});
+    test::set("p = 2; expression; Active stress = 0.3*(1-exp(-(t/0.1)^2))*exp(-((s-0.2-0.6*t)/0.03)^2)"));
   const Scene scene = parameters.create_scene();
   for (const std::string name : {"radau 5", "radau 9"})
     for (const double tolerance : {1e-5, 1e-6, 1e-7})

@@ -4,12 +4,9 @@
 // degree 1.
 #include "../support/exact_solution.h"
 #include "../support/observed_order.h"
+#include "../support/test.h"
 
 #include <crawler/output/field_sampler.h>
-
-#include <gtest/gtest.h>
-
-#include <tuple>
 
 using namespace crawler;
 

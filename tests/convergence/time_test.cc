@@ -4,10 +4,10 @@
 // case (chi = 0.3), against the same mesh with a far smaller tolerance.
 #include "../support/observed_order.h"
 #include "../support/run_text.h"
+#include "../support/test.h"
 
 #include <crawler/time/integrators.h>
 
-#include <gtest/gtest.h>
 #include <petscsys.h>
 
 using namespace crawler;
@@ -41,9 +41,7 @@ TEST(Time, RadauReachesItsOrder)
 {
   const auto displacement = [](const std::string &name, const unsigned int n, const std::string &krylov) {
     auto parameters =
-      test::parameters_with({{"Body/Anchoring exponent", "2"},
-                             {"Active stress/Generator", "expression"},
-                             {"Active stress/Expression/Active stress", "0.4*sin(pi*t)^8*cos(2*pi*(s-t))"}});
+      test::parameters_with(test::set("p = 2; expression; Active stress = 0.4*sin(pi*t)^8*cos(2*pi*(s-t))"));
     parameters.time.integrator   = name;
     parameters.time.step_control = StepControl::fixed;
     parameters.time.initial_step = 1. / n;

@@ -67,7 +67,6 @@ def small_disks(case, disk, inputs, whole):
 
 
 def main():
-    """All of it."""
     print(f"seed {SEED}", flush=True)
     with tempfile.TemporaryDirectory() as name:
         place = pathlib.Path(name)

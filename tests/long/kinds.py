@@ -153,7 +153,6 @@ def limits(checks, at_random):
 
 
 def main():
-    """Kind by kind, each with scenes of its own."""
     kinds = {one.__name__: one for one in (formulas, directions, profiles, inversions, units, limits)}
     number, seed, *names = sys.argv[2:]
     checks = Checks()

@@ -115,14 +115,12 @@ def page_of(browser, path, **look):
 
 
 def move(browser, key, steps):
-    """Moves a slider."""
     browser.ask(f"""(() => {{ const slider = document.getElementById({json.dumps(key)});
       slider.value = Number(slider.value) + {steps} * Number(slider.step); slider.dispatchEvent(new Event('input')); }})()""")
     browser.settle()
 
 
 def choose(browser, scene):
-    """Chooses a scene."""
     browser.ask(f"""(() => {{ const choice = document.querySelector('select'); choice.value = '{scene}';
       choice.dispatchEvent(new Event('change')); }})()""")
     browser.settle()

@@ -128,7 +128,6 @@ def wait_for_more_rows(process, folder, n):
 
 
 def main():
-    """All of it; the exit status says whether something failed."""
     if os.geteuid() != 0 or shutil.which("ip") is None:
         print("namespaces need root and iproute2")
         sys.exit(77)

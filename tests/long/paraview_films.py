@@ -36,7 +36,6 @@ def coloured(picture):
 
 
 def main():
-    """Draws one run in both formats, on a screen of its own, whose number the X server chooses."""
     missing = [name for name in (sys.argv[2], "Xvfb", "ffmpeg") if shutil.which(name) is None]
     if missing:
         print(f"not installed: {', '.join(missing)} (Debian: python3-paraview, not beside python3-vtk9; xvfb, ffmpeg)")

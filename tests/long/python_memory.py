@@ -16,13 +16,11 @@ FILE = pathlib.Path(__file__).resolve().parents[2] / "prm/paper/fig_s1.prm"
 
 
 def resident():
-    """MiB."""
     pages = int(pathlib.Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
     return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
 
 
 def main():
-    """All of it."""
     n, sizes, checks = int(sys.argv[2]) if len(sys.argv) > 2 else 2000, [], Checks()
     for i in range(n + 1):
         crawler.run(FILE, fields=i % 10 == 0, set={"Body/Elastic modulus": 1 + 1e-4 * i})

@@ -66,7 +66,6 @@ def disturb(scene, n, chance, checks, how="KILL"):
 
 
 def main():
-    """All of it."""
     n, seed = (int(word) if word else default for word, default in zip((sys.argv[3:5] + ["", ""])[:2], (20, 1)))
     names, chance, checks = sys.argv[5:] or list(SCENES), random.Random(seed), Checks()
     print(f"seed {seed}", flush=True)

@@ -84,7 +84,6 @@ def ratios_of_block(program, mpirun, folder, seed, checks):
 
 
 def main():
-    """Block by block, each of a seed of its own."""
     program, mpirun, number, seed = pathlib.Path(sys.argv[1]).resolve(), *sys.argv[2:5]
     checks = Checks()
     with tempfile.TemporaryDirectory() as name:

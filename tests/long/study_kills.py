@@ -64,7 +64,6 @@ class Study:
         self.command, self.files, self.most_rows = command, files, most_rows
 
     def start(self, output, *more, ranks=1):
-        """To its end."""
         return call([*on_ranks(MPIRUN, ranks), PROGRAM, *self.command, "--output", output.name, *more], output.parent)
 
     def done(self, output):
@@ -129,7 +128,6 @@ class Chance:
         self.random, self.study, self.most = random.Random(SEED), study, {"row": study.most_rows, "step": 4096}
 
     def place(self):
-        """PLACE, and PLACE:NUMBER."""
         what = self.random.choice(("row", "row", "step", "write") if self.study.most_rows else ("write",))
         if what == "write":
             return what, f"write:{self.random.choice(self.study.files)}"
@@ -206,7 +204,6 @@ def write(folder, axes, more=""):
 
 
 def test_kills(folder):
-    """Of each study."""
     point_study = {"sweep": PointStudy(("sweep", "scene.prm"), "results", "results", "status", "seconds"),
                    "cross-check": PointStudy(("sweep", "scene.prm", "--set", "Accuracy=1e-3", *CHECKED, "--set",
                                               f"Sweep/Axes={CHI} : linspace(0.1, 0.3, 60); {P} : 0, 2"), "results", "results",
@@ -314,7 +311,6 @@ def test_more_bad_input(folder):
 
 
 def main():
-    """Each test in a folder of its own."""
     print(f"{N_KILLS} kills, seed {SEED}", flush=True)
     ctypes.CDLL(None).prctl(36, 1)  # PR_SET_CHILD_SUBREAPER: the ranks of a killed mpirun become children of this process
     with tempfile.TemporaryDirectory() as name:

@@ -69,7 +69,6 @@ def same_answer(name, scene, ranks, *where):
 
 
 def main():
-    """All of it."""
     if len(sys.argv) != 3:
         sys.exit("usage: same_answer.py PATH_TO_CRAWLER MPIRUN")
     with tempfile.TemporaryDirectory() as folder:

@@ -112,7 +112,6 @@ def test_refusals(folder):
 
 
 def test_commands():
-    """Commands in Python."""
     def call(*words):
         end = subprocess.run([sys.executable, "-m", "crawler", *words], capture_output=True, text=True, check=False)
         return end.returncode, end.stderr.strip()
@@ -132,7 +131,6 @@ def test_commands():
 
 
 def main():
-    """All tests."""
     warnings.simplefilter("error")
     check("site-packages" in crawler.__file__ and set(crawler.run(SCENE).versions) == {"crawler", "revision"}, f"the wheel is used: {crawler.__file__}")
     test_answers()

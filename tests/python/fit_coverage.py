@@ -114,7 +114,6 @@ def rise_at(truth, one):
 
 
 def main():
-    """Prints the table and returns how much is wrong."""
     warnings.simplefilter("ignore")
     return print_table([errors_of(number) for number in range(FIRST, FIRST + ALL)])
 

@@ -283,7 +283,6 @@ class Trackers(unittest.TestCase):
 
     @classmethod
     def x(cls):
-        """Places [time, marker]."""
         wave = 0.4 / PI * (np.cos(PI * (cls.S / 2 - cls.T[:, np.newaxis] / 0.8)) - np.cos(PI * cls.T[:, np.newaxis] / 0.8))
         return cls.S + wave + 0.05 * cls.T[:, np.newaxis]
 

@@ -27,7 +27,6 @@ def row(cells, error, seconds, bar=1e-12, **others):
 
 
 def gap(cells, reason):
-    """A row without a result."""
     return {**row(cells, 0.0, 0.0), "status": "stopped" if reason else "", "reason": reason, "error": "", "shown error": "", "seconds": "",
             "memory": "", "below bar": "false"}
 

@@ -119,7 +119,6 @@ class Browser:
         return answer["result"].get("value")
 
     def key(self, name):
-        """Presses a key."""
         code = {" ": 32, "Enter": 13, "ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40, "Tab": 9}[name]
         text = {" ": " ", "Enter": "\r"}.get(name)
         more = {"text": text} if text else {}

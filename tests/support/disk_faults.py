@@ -192,7 +192,6 @@ class Disk:
         return self.mount("size=64M")
 
     def used(self):
-        """Used pages."""
         return sum(-(-path.stat().st_size // PAGE) for path in self.place.rglob("*") if path.is_file())
 
     def mount(self, options):

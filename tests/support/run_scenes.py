@@ -120,7 +120,6 @@ class Scene:
         return done
 
     def copy(self, folder, other):
-        """Copies a folder."""
         shutil.rmtree(self.place / other, ignore_errors=True)
         shutil.copytree(self.place / folder, self.place / other)
 

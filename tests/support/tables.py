@@ -9,7 +9,6 @@ import h5py
 
 
 def json_of(file):
-    """Content of a JSON file."""
     return json.loads(pathlib.Path(file).read_text(encoding="utf-8"))
 
 

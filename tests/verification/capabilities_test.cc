@@ -3,14 +3,10 @@
 // Which scene has which fast paths and numbers? Every cell of the table "What each scene has" in the developer guide is
 // a run here; the guide must have the lines that come out.
 #include "../support/lane_runs.h"
+#include "../support/test.h"
 
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/run/cycle_stop.h>
-
-#include <gtest/gtest.h>
-
-#include <fstream>
-#include <set>
 
 using namespace crawler;
 using test::Settings;

@@ -2,13 +2,10 @@
 //
 // Runs that end when their cycles repeat, against runs to the end time.
 #include "../support/run_text.h"
+#include "../support/test.h"
 
 #include <crawler/base/exceptions.h>
 #include <crawler/studies/core/compute.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 using namespace crawler;
 

@@ -2,14 +2,10 @@
 //
 // Errors by the adjoint against true ones.
 #include "../support/run_text.h"
+#include "../support/test.h"
 
 #include <crawler/adjoint/error_sweep.h>
 #include <crawler/studies/core/parameters.h>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 
 using namespace crawler;
 

@@ -4,15 +4,9 @@
 // that said otherwise.
 #include "../support/answers.h"
 #include "../support/expect_within.h"
+#include "../support/test.h"
 
 #include <crawler/base/gauss_panels.h>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <numbers>
 
 using namespace crawler;
 using test::answer_to;

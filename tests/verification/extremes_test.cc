@@ -3,15 +3,9 @@
 // The extremes of what can be asked for: each ends in the right outcome, under its name, with the right number. The
 // exponents, moduli and collapses of an independent solver are in extremes.cc.
 #include "../support/run_text.h"
+#include "../support/test.h"
 
 #include <crawler/base/exceptions.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <set>
 
 using namespace crawler;
 using test::with;
@@ -109,27 +103,6 @@ TEST(Extremes, StepsAndTolerances)
     else
       EXPECT_NE(result.time.message, "") << name;
   }
-}
-
-/// A crawler of any size, from a micrometre to a thousand kilometres, in metres, seconds and newtons.
-TEST(Extremes, Lengths)
-{
-  const auto displacement = [](const double L, const double T) {
-    const double c = L / T, gamma = 7.3, k = gamma * c * L;
-    const auto result = test::run_with(with(test::wave(-1., 0.4, c, T, k),
-                                            {{"Body/Length", test::text(L)},
-                                             {"Body/Friction coefficient", test::text(gamma)},
-                                             {"Active stress/Optimal wave/Sine coefficients", test::text(c)}}))
-                          .result;
-    EXPECT_EQ(result.time.status, Status::finished);
-    return result.displacement / L;
-  };
-  const double reference = displacement(1., 1.);
-  EXPECT_NEAR(reference / fig_s1, 1., 1e-6);
-  // Round-off can decide whether Newton's method makes one more correction.
-  for (const double L : {1e-6, 3e-3, 0.7, 1e6})
-    for (const double T : {2e-4, 5e3})
-      EXPECT_NEAR(displacement(L, T) / reference, 1., 2e-8) << "L = " << L << ", T = " << T;
 }
 
 /// Numbers that double precision cannot carry are refused before anything is computed; what is harmless is not.

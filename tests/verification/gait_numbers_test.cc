@@ -2,11 +2,7 @@
 //
 // Gait numbers of runs against theory.md: sections 4, 5 and 10.
 #include "../support/lane_runs.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
+#include "../support/test.h"
 
 using namespace crawler;
 

@@ -3,13 +3,9 @@
 // Whole runs of general bodies and grounds (doc/theory.md) against plain scenes, closed forms and symmetries. Every run
 // must close its energy balance and balance its friction.
 #include "../support/run_text.h"
+#include "../support/test.h"
 
 #include <crawler/base/exceptions.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
 
 using namespace crawler;
 

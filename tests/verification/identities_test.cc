@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // What holds exactly (doc/theory.md, "Consequences"), in whole runs, on any number of ranks.
-#include "../support/exact_solution.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
+#include "../support/test.h"
 
 using namespace crawler;
 using test::with;
@@ -96,22 +91,6 @@ TEST(Identities, MirroredStressMirrorsTheDisplacement)
   const double forward = run("0.3*sin(2*pi*(s+t))*s"), mirrored = run("0.3*sin(2*pi*(1-s+t))*(1-s)");
   EXPECT_GT(std::abs(forward), 1e-4);
   EXPECT_NEAR(forward, -mirrored, 1e-7 * std::abs(forward));
-}
-
-/// The whole solution for a = +1, known in closed form.
-TEST(Identities, ExactSolution)
-{
-  const test::ExactSolution exact;
-  const auto result =
-    test::run_with(
-      with(exact.settings(0.75),
-           {{"Discretization/Degree", "6"}, {"Discretization/Number of cells", "8"}, {"Time/Tolerance", "1e-12"}}))
-      .result;
-  EXPECT_NEAR(result.displacement / exact.displacement(0.75), 1., 1e-8);
-  // The extreme stretches over s and t are 1 -+ 2E, reached at t = 1/2.
-  EXPECT_NEAR(result.min_stretch.value, 1. - 2. * exact.E, 1e-3);
-  EXPECT_NEAR(result.max_stretch.value, 1. + 2. * exact.E, 1e-3);
-  EXPECT_NEAR(result.min_stretch.t, 0.5, 0.02);
 }
 
 /// A step to the end time whose state the mesh refuses is done again: the last state is that of the end.

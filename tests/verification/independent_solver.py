@@ -32,7 +32,6 @@ SCENES = {
 
 
 def call(*arguments):
-    """Calls a program, which must succeed."""
     done = started.call(arguments)
     if done.returncode != 0:
         sys.exit(f"{' '.join(arguments)}\nexits with {done.returncode}:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
@@ -87,7 +86,6 @@ def crawler(program, *scene):
 
 
 def main():
-    """Compares every scene; 1 if any quantity differs."""
     if len(sys.argv) != 2:
         sys.exit("usage: independent_solver.py PATH_TO_CRAWLER")
     failures = 0

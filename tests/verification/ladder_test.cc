@@ -3,16 +3,12 @@
 // The levels of the model (doc/theory.md, "The model hierarchy") against each other, and the choice among them.
 #include "../support/complaint.h"
 #include "../support/run_text.h"
+#include "../support/test.h"
 
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/run/reduced_model.h>
 #include <crawler/studies/core/compute.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <tuple>
 
 using namespace crawler;
 using test::with;
@@ -116,8 +112,7 @@ TEST(Ladder, AutomaticChoice)
 TEST(Ladder, ScenesThatDoNotFitAreRefused)
 {
   const test::Settings expression = {{"Active stress/Generator", "expression"}},
-                       prescribed = {{"Active stress/Generator", "prescribed strain"},
-                                     {"Body/Friction profile", "1+s"}};
+                       prescribed = test::set("Body/Friction profile = 1+s; prescribed strain");
   const std::vector<std::tuple<test::Settings, test::Settings, std::string>> cases = {
     {expression, {{"Model", "perturbation"}}, "Model: Model is perturbation, which is a series"},
     {test::wave(-1., 0.1),

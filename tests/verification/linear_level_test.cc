@@ -3,14 +3,10 @@
 // The equation at a = 0 against closed forms. With L = gamma = 1, zeta_t = m_s + k zeta_ss, w - 1 = -m/k at the ends;
 // for m = A(t) sin(pi j s), which vanishes there, u = U(t) cos(pi j s) with U' = pi j A - k (pi j)^2 U, U(0) = 0.
 #include "../support/answers.h"
+#include "../support/test.h"
 
 #include <crawler/base/exceptions.h>
 #include <crawler/run/result_table.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
 
 using namespace crawler;
 

@@ -41,7 +41,6 @@ checks = Checks()
 
 
 def sweep(program, folder, settings, axes, points, seed, accuracy, more=()):
-    """The rows of a sweep."""
     text = (f"set Accuracy = {accuracy}\nsubsection Sweep\n  set Design = latin hypercube\n  set Number of points = {points}\n"
             f"  set Seed = {seed}\n  set Axes = {axes}\nend\n")
     (folder / "sweep.prm").write_text(text, encoding="utf-8")
@@ -65,7 +64,6 @@ def judge(rows, reference, judged):
 
 
 def main():
-    """Runs, prints, judges."""
     program = str(pathlib.Path(sys.argv[1]).resolve())
     points, seed = (int(sys.argv[i]) if len(sys.argv) > i else default for i, default in ((2, 6), (3, 1)))
     judged = {}

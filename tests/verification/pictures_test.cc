@@ -2,13 +2,9 @@
 //
 // Pictures come from the dense output of the integrator (doc/numerics.md, "Pictures").
 #include "../support/run_text.h"
+#include "../support/test.h"
 
 #include <crawler/output/field_sampler.h>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 
 using namespace crawler;
 using test::Settings;

@@ -44,7 +44,6 @@ def expectation(text):
 
 
 def crawler(*arguments):
-    """Calls the program, which must succeed."""
     done = subprocess.run(arguments, capture_output=True, text=True, timeout=600)
     if done.returncode != 0:
         reason = (done.stderr.strip() or done.stdout.strip() or "no message").splitlines()[-1]
@@ -84,7 +83,6 @@ def check(program, path, row):
 
 
 def main():
-    """Goes through all files; 1 if any fails."""
     if len(sys.argv) != 2:
         sys.exit("usage: prm_files.py PATH_TO_CRAWLER")
     files = sorted(FOLDER.rglob("*.prm"))

@@ -2,14 +2,11 @@
 //
 // Derivatives of the displacement by the adjoint, against differences of runs.
 #include "../support/run_text.h"
+#include "../support/test.h"
 
 #include <crawler/adjoint/run_gradient.h>
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/studies/core/compute.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 using namespace crawler;
 using test::with;
@@ -278,8 +275,7 @@ TEST(RunGradient, LocalSensitivitiesAddUp)
   const double step         = 1e-3;
   std::vector<Scene> k, gamma;
   // In these the stress is a formula, so it does not change with the body.
-  const test::Settings fixed = {{"Active stress/Generator", "expression"},
-                                {"Active stress/Expression/Active stress", "0.2*sin(2*pi*(s+t))*sin(2*pi*t)"}};
+  const test::Settings fixed = test::set("expression; Active stress = 0.2*sin(2*pi*(s+t))*sin(2*pi*t)");
   const Scene own            = test::parameters_with(fixed).create_scene();
   for (const int i : {-2, -1, 1, 2})
   {

@@ -37,7 +37,6 @@ def sensitivities(program, file, accuracy, folder):
 
 
 def main():
-    """Prints the coverage of each number."""
     ratios, checks, reference = collections.defaultdict(list), Checks(), float(sys.argv[2])
     with tempfile.TemporaryDirectory() as folder:
         for file in sys.argv[3:]:

@@ -3,14 +3,10 @@
 // Answers with numerics that neighbours in a sweep share (studies/sweep/sweep_numerics.h), against answers of runs that
 // are alone and a hundred times as accurate.
 #include "../support/answers.h"
+#include "../support/test.h"
 
 #include <crawler/run/result_table.h>
 #include <crawler/studies/sweep/sweep_numerics.h>
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 using namespace crawler;
 using test::never;

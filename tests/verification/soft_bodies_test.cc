@@ -3,12 +3,9 @@
 // Soft bodies whose answers were once wrong, with bounds that said otherwise, or that had none.
 #include "../support/answers.h"
 #include "../support/expect_within.h"
+#include "../support/test.h"
 
 #include <crawler/run/result_table.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 using namespace crawler;
 using test::answer_to;

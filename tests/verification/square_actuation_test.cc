@@ -2,13 +2,12 @@
 //
 // Robots switch: square actuation by automatic numerics, with its error bounds.
 #include "../support/lane_runs.h"
+#include "../support/test.h"
 
 #include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/graded_choice.h>
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/accuracy/stress_scales.h>
-
-#include <gtest/gtest.h>
 
 using namespace crawler;
 using test::Settings;

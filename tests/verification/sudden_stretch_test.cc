@@ -4,14 +4,10 @@
 // "Extremes after sudden changes"): exact ones for a = 0, where v = w + m/k solves the heat equation with v = 1 at the
 // ends, and those of finer and finer runs.
 #include "../support/answers.h"
+#include "../support/test.h"
 
 #include <crawler/run/result_table.h>
 #include <crawler/scene/breaks.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
 
 using namespace crawler;
 using test::answer_to;

@@ -2,19 +2,13 @@
 //
 // Whatever is thrown while a body is computed, the run has an end with a name.
 #include "../../support/run_text.h"
+#include "../../support/test.h"
 
 #include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/petsc_object.h>
 #include <crawler/time/failure.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-#include <new>
-#include <numbers>
 
 using namespace crawler;
 
@@ -153,11 +147,10 @@ TEST(Failures, OfTheSecondRunLeaveTheAnswer)
 TEST(Failures, MeshesThatChangeLoseNoSample)
 {
   auto settings = test::wave(17., 0.37, 1., 2e4);
-  settings.insert(settings.end(),
-                  {{"Discretization/Mesh", "adaptive"},
-                   {"Discretization/Mesh tolerance", "1e-5"},
-                   {"Time/Tolerance", "1e-5"},
-                   {"Time/Maximum number of steps", "3000"}});
+  settings =
+    test::with(settings,
+               test::set("Discretization/Mesh = adaptive; Discretization/Mesh tolerance = 1e-5; Time/Tolerance = "
+                         "1e-5; Time/Maximum number of steps = 3000"));
   const Parameters parameters = test::parameters_with(settings);
   const Scene scene           = parameters.create_scene();
   Numerics numerics           = {.degree = 4, .n_cells = 8, .tolerance = 1e-5, .initial_step = 1e-2};

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/run_text.h"
+#include "../../support/test.h"
 
 #include <crawler/accuracy/stress_scales.h>
 #include <crawler/scene/fast_changes.h>
 #include <crawler/scene/period.h>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 
 using namespace crawler;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/accuracy/form_choice.h>
+#include "../../support/test.h"
 
-#include <gtest/gtest.h>
+#include <crawler/accuracy/form_choice.h>
 
 using namespace crawler;
 

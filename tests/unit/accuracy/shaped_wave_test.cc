@@ -4,14 +4,11 @@
 // its leading order, and what it refuses.
 #include "../../support/program.h"
 #include "../../support/stress.h"
+#include "../../support/test.h"
 
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/base/gauss_panels.h>
 #include <crawler/scene/active_stress/shaped_wave.h>
-
-#include <gtest/gtest.h>
-
-#include <numbers>
 
 using namespace crawler;
 using test::Settings;
@@ -118,16 +115,6 @@ TEST(ShapedWave, GaussianHasItsIntegral)
   }
   EXPECT_EQ(stress->period(), std::nullopt);
   test::expect_rate(*stress, L, {0.3, 0.9, 1.6}, 1e-7);
-}
-
-/// The ends are free of stress to leading order: m + k e = 0 with e = (chi/c) ( V(s+ct) - V(s) ).
-TEST(ShapedWave, FitsTheStressFreeEnds)
-{
-  const auto stress = stress_with(by_formula("x^2/10 - 0.3*x + exp(sin(2*x))"));
-  const auto V      = [](const double x) { return x * x / 10. - 0.3 * x + std::exp(std::sin(2. * x)); };
-  for (const double t : {0.5, 2., 4.9})
-    for (const double s : {0., 2.})
-      EXPECT_NEAR(values(*stress, {s}, t)[0], -3. * 0.3 / 1.3 * (V(s + 1.3 * t) - V(s)), 1e-12);
 }
 
 /// Of a polynomial of degree 3 a cubic spline is exact, also with unequal knots.

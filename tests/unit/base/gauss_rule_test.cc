@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Points and weights are those of deal.II, up to the last bit of a few.
+#include "../../support/test.h"
+
 #include <crawler/base/gauss_rule.h>
 
 #include <deal.II/base/quadrature_lib.h>
-
-#include <gtest/gtest.h>
 
 namespace crawler
 {

@@ -4,16 +4,9 @@
 #include "../../support/complaint.h"
 #include "../../support/hdf5_file.h"
 #include "../../support/program.h"
+#include "../../support/test.h"
 
 #include <crawler/base/grid_interpolation.h>
-#include <fmt/format.h>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <random>
 
 using namespace crawler;
 

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/test.h"
+
 #include <crawler/base/process.h>
-
-#include <gtest/gtest.h>
-
-#include <csignal>
-#include <cstdlib>
-#include <stdexcept>
-#include <string>
 
 using namespace crawler;
 

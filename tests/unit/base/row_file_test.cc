@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A table into which all ranks write; run on several, too.
+#include "../../support/test.h"
+
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/base/row_file.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdlib>
 
 namespace
 {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/test.h"
+
 #include <crawler/base/step_limits.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 using namespace crawler;
 

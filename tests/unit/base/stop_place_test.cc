@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/test.h"
+
 #include <crawler/base/exceptions.h>
 #include <crawler/base/stop_place.h>
-
-#include <gtest/gtest.h>
-
-#include <csignal>
 
 using namespace crawler;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/told_apart.h>
+#include "../../support/test.h"
 
-#include <gtest/gtest.h>
+#include <crawler/base/told_apart.h>
 
 using namespace crawler;
 

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/test.h"
+
 #include <crawler/base/communication.h>
 #include <crawler/base/work_queue.h>
 
-#include <gtest/gtest.h>
-
 #include <unistd.h>
-
-#include <fstream>
-#include <set>
-#include <string>
-#include <thread>
-#include <vector>
 
 using namespace crawler;
 

@@ -3,14 +3,10 @@
 // What a change of the mesh keeps, also on several ranks.
 #include "../../support/ranks.h"
 #include "../../support/run_text.h"
+#include "../../support/test.h"
 
 #include <crawler/equation/general_position_form.h>
 #include <crawler/equation/mesh_transfer.h>
-
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 using namespace crawler;
 

@@ -3,16 +3,10 @@
 // What the stretch form says of a state: identities of the velocity and its energies, and the rules for the mobility of
 // a node (stretch_loops.h).
 #include "../../support/features.h"
+#include "../../support/test.h"
 
 #include <crawler/equation/stretch_form.h>
 #include <crawler/equation/stretch_loops.h>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
 
 using namespace crawler;
 using generic::directed_velocity;
@@ -153,15 +147,13 @@ TEST(StretchForm, IdentitiesOfAState)
 /// trapezoidal rule in each cell.
 TEST(StretchForm, FrictionIsThatOfTheLaws)
 {
-  for (const Feature &feature : {plain(0.),
-                                 plain(0.5),
-                                 plain(2.),
-                                 Feature{"general",
-                                         {{"Body/Friction profile", "2-s^2"},
-                                          {"Ground/Friction law", "expression"},
-                                          {"Ground/Expression", "0.5+0.5*w^2"},
-                                          {"Ground/Backward ratio", "3"},
-                                          {"Ground/Switching velocity", "0.2"}}}})
+  for (const Feature &feature :
+       {plain(0.),
+        plain(0.5),
+        plain(2.),
+        Feature{"general",
+                test::set("Body/Friction profile = 2-s^2; Ground/Friction law = expression; Ground/Expression = "
+                          "0.5+0.5*w^2; Ground/Backward ratio = 3; Ground/Switching velocity = 0.2")}})
   {
     Case test(feature);
     ASSERT_EQ(stretch_method(test.scene).node_rule, NodeRule::friction) << feature.name;

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/test.h"
+
 #include "../../verification/random_scenes.h"
 
 #include <crawler/formula/formula_bound.h>
 #include <crawler/formula/formula_gradient.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 using namespace crawler;
 

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/test.h"
+
 #include <crawler/formula/formula.h>
 
-#include <gtest/gtest.h>
 #include <muParser.h>
-
-#include <bit>
-#include <cmath>
-#include <cstdint>
 
 using namespace crawler;
 

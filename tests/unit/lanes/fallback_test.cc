@@ -2,8 +2,7 @@
 //
 // What the fused engine cannot do it hands over: a batch gives no answer, a simulation the one of PETSc.
 #include "../../support/lane_runs.h"
-
-#include <gtest/gtest.h>
+#include "../../support/test.h"
 
 using namespace crawler;
 using test::expression;

@@ -3,15 +3,9 @@
 // No operation of the engine mixes lanes: what comes out for a body is the same to the last bit, whatever is computed
 // beside it.
 #include "../../support/lane_runs.h"
+#include "../../support/test.h"
 
 #include <crawler/lanes/lane_control.h>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <limits>
-#include <numeric>
-#include <random>
 
 using namespace crawler;
 using test::LaneRun;
@@ -29,8 +23,7 @@ namespace
     runs.push_back(std::make_unique<LaneRun>(settings, integrator, numerics));
   }
 
-  const test::Settings other_units = {
-    {"Body/Length", "2.5"}, {"Body/Friction coefficient", "0.3"}, {"Active stress/Optimal wave/Wave speed", "2"}};
+  const test::Settings other_units = test::set("L = 2.5; gamma = 0.3; Active stress/Optimal wave/Wave speed = 2");
 
   /// Bodies that have little in common: friction by products and by powers, some that are given up in different ways.
   LaneRuns
@@ -96,22 +89,6 @@ TEST(LaneEngine, AResultDoesNotDependOnWhatSharesTheBatch)
         for (std::size_t i = 0; i < order.size(); ++i)
           EXPECT_TRUE(test::same_bits(mixed[i], together[order[i]])) << engine->instruction_set << ", run " << order[i];
       }
-}
-
-TEST(LaneEngine, CopiesOfABodyAgreeInAllLanes)
-{
-  for (const LaneEngine *engine : test::batch_engines())
-    for (const double a : {-1., 2.5})
-    {
-      LaneRuns runs;
-      add(runs, wave(a, 0.2), "radau 5", {.degree = 6, .n_cells = 4, .tolerance = 1e-7, .initial_step = 1e-4});
-      const std::vector<BatchRun> copies(3 * engine->lanes + 1, runs.front()->entry());
-      const auto results = run_batch(copies, {.energy_balance = true}, {}, *engine);
-      const auto alone   = test::run_alone(*runs.front(), {.energy_balance = true}, *engine);
-      ASSERT_TRUE(alone);
-      for (const auto &result : results)
-        EXPECT_TRUE(test::same_bits(result, alone)) << engine->instruction_set << ", a = " << a;
-    }
 }
 
 /// Runs of different methods are batches of their own; the answers come back in the order of the questions.

@@ -2,10 +2,7 @@
 //
 // The fused engine carries out what the PETSc type "radau" does.
 #include "../../support/lane_runs.h"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
+#include "../../support/test.h"
 
 using namespace crawler;
 using test::LaneRun;
@@ -17,11 +14,7 @@ namespace
   in_other_units(test::Settings settings)
   {
     return test::with(std::move(settings),
-                      {{"Body/Length", "2"},
-                       {"Body/Friction coefficient", "0.3"},
-                       {"Body/Elastic modulus", "0.7"},
-                       {"Active stress/Optimal wave/Wave speed", "1.5"},
-                       {"Time/End time", "1.7"}});
+                      test::set("L = 2; gamma = 0.3; k = 0.7; Active stress/Optimal wave/Wave speed = 1.5; T = 1.7"));
   }
 
   /// A stress that starts smoothly, with extremes inside and at the ends.

@@ -3,16 +3,12 @@
 // The equations of the stretch form in the fused engine, and their linear systems, for one body and in packs.
 #include "../../support/derivative.h"
 #include "../../support/features.h"
+#include "../../support/test.h"
 
 #define CRAWLER_PACK pack2 // of what is compiled here
 #include <crawler/lanes/lane_states.h>
 #include <crawler/lanes/lane_stretch.h>
 #include <crawler/lanes/lane_tables.h>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 
 using namespace crawler;
 using test::Feature;

@@ -4,18 +4,13 @@
 // of its own are all that it needs. The loops over cells then have it in the residual, in the Jacobian (against
 // differences), in the energies, and in the lanes.
 #include "../../support/derivative.h"
+#include "../../support/test.h"
 
 #define CRAWLER_PACK pack2 // of what is compiled here
 
 #include <crawler/equation/cell_kernels.h>
 #include <crawler/equation/cell_loops.h>
 #include <crawler/lanes/pack.h>
-
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <numeric>
 
 namespace
 {

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // The block-tridiagonal elimination against a dense solution, also on several ranks and with more ranks than cells.
-#include "../../support/ranks.h"
+#include "../../support/test.h"
 
 #include <crawler/mesh/block_tridiagonal_matrix.h>
 
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/vector.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
 
 using namespace crawler;
 
@@ -88,16 +83,4 @@ TEST(BlockTridiagonalMatrix, ReportsASingularMatrix)
   if (d.rank() == 0)
     matrix.blocks()[5] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(matrix.factorize()); // on every rank
-}
-
-TEST(Discretization, CellsAndUnknownsAreShared)
-{
-  for (const unsigned int n_cells : {1u, 2u, 10u})
-  {
-    const Discretization d(MPI_COMM_WORLD, 3., n_cells, 4);
-    EXPECT_EQ(test::over_ranks(d.n_local_cells()), n_cells);
-    EXPECT_EQ(test::over_ranks(static_cast<unsigned int>(d.n_owned())), d.n_unknowns());
-    for (const double h : d.cell_size())
-      EXPECT_NEAR(h, 3. / n_cells, 1e-14);
-  }
 }

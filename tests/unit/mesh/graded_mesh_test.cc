@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/test.h"
+
 #include <crawler/mesh/discretization.h>
 #include <crawler/mesh/graded_mesh.h>
 #include <crawler/mesh/mesh_marking.h>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 
 using namespace crawler;
 

@@ -2,15 +2,9 @@
 //
 // Which cells are divided and joined, and what meshes that gives; also on several ranks.
 #include "../../support/ranks.h"
+#include "../../support/test.h"
 
 #include <crawler/mesh/mesh_marking.h>
-
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numeric>
 
 using namespace crawler;
 

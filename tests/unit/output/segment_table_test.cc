@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/program.h"
 #include "../../support/stress.h"
+#include "../../support/test.h"
 
 #include <crawler/output/active_stress_table.h>
 #include <crawler/scene/active_stress/segments.h>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <fstream>
-#include <iterator>
-#include <optional>
 
 using namespace crawler;
 

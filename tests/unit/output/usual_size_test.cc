@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/test.h"
+
 #include <crawler/output/usual_size.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
 
 using namespace crawler;
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/complaint.h"
+#include "../../support/test.h"
 
 #include <crawler/parameters/axis.h>
 #include <crawler/parameters/declarations.h>
-
-#include <gtest/gtest.h>
 
 using namespace crawler;
 

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/complaint.h"
+#include "../../support/test.h"
 
 #include <crawler/base/nearest_name.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/parameters/entry_lists.h>
-
-#include <gtest/gtest.h>
-
-#include <sstream>
 
 using namespace crawler;
 
@@ -31,12 +28,6 @@ namespace
       declarations.choice("Word", word, {"yes", "no"}).means("A choice.");
     }
   };
-
-  std::string
-  error_of(Example &example, const std::string &path, const std::string &value)
-  {
-    return test::complaint_of([&]() { example.declarations.set(path, value); });
-  }
 } // namespace
 
 TEST(Declarations, MembersFollowEntries)
@@ -52,27 +43,6 @@ TEST(Declarations, MembersFollowEntries)
   EXPECT_EQ(example.word, "no");
   example.declarations.set("Body/Cells", "automatic");
   EXPECT_FALSE(example.cells.has_value());
-}
-
-TEST(Declarations, RefusesValuesOutOfRange)
-{
-  Example example;
-  for (const char *value : {"0", "-1", "nan", "inf", "1e999", "2x", "", "0x10", "1,5"})
-    EXPECT_NE(error_of(example, "Body/Length", value).find("a positive number is expected"), std::string::npos)
-      << value;
-  for (const char *value : {"0", "11", "-1", "2.5", "99999999999999999999"})
-    EXPECT_NE(error_of(example, "Body/Cells", value).find("from 1 to 10"), std::string::npos) << value;
-  for (const char *value : {"", "1,", "1,,2", "a"})
-    EXPECT_NE(error_of(example, "List", value), "nothing") << value;
-  EXPECT_NE(error_of(example, "Word", "mo").find("the nearest is \"no\""), std::string::npos);
-}
-
-TEST(Declarations, NamesTheNearestEntry)
-{
-  Example example;
-  EXPECT_NE(error_of(example, "Body/Lenght", "1").find("\"Length\""), std::string::npos);
-  EXPECT_NE(error_of(example, "Boddy/Length", "1").find("\"Body\""), std::string::npos);
-  EXPECT_NE(error_of(example, "Length", "1").find("\"Body/Length\""), std::string::npos);
 }
 
 /// In brackets behind the name: places of a list, constants by their names.
@@ -102,21 +72,6 @@ TEST(Declarations, NumbersOfAnEntryHaveNames)
                                    std::pair("X/List[0]", "a whole number from 1 to 10000")})
     EXPECT_NE(test::complaint_of([&, &path = path]() { declarations.value(path); }).find(part), std::string::npos)
       << path;
-}
-
-TEST(Declarations, PrintsAllEntries)
-{
-  Example example;
-  std::ostringstream prm, json, markdown;
-  example.declarations.print_prm(prm);
-  print_json(example.declarations, json);
-  print_markdown(example.declarations, markdown);
-  for (const char *name : {"Length", "Cells", "List", "Word"})
-  {
-    EXPECT_NE(prm.str().find(name), std::string::npos);
-    EXPECT_NE(json.str().find(name), std::string::npos);
-    EXPECT_NE(markdown.str().find(name), std::string::npos);
-  }
 }
 
 TEST(NearestName, RanksByDistance)

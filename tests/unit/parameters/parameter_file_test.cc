@@ -2,12 +2,9 @@
 #include "../../support/complaint.h"
 #include "../../support/program.h"
 #include "../../support/run_text.h"
+#include "../../support/test.h"
 
 #include <crawler/base/exceptions.h>
-
-#include <gtest/gtest.h>
-
-#include <fstream>
 
 using namespace crawler;
 
@@ -71,18 +68,6 @@ TEST(ParameterFile, OverridesAreStronger)
   const std::string text = "subsection Body\n  set Length = 3\nend\n";
   EXPECT_EQ(read(text, {"Body/Length=4"}).body.length, 4.);
   EXPECT_EQ(read(text, {"Body/Length=4", " Body / Length = 5 "}).body.length, 5.);
-}
-
-TEST(ParameterFile, ErrorsNameTheLine)
-{
-  EXPECT_NE(error_of("set Accuracy = 1e-4\nset Accuracy = 1e-5\n").find("file.prm, line 2"), std::string::npos);
-  EXPECT_NE(error_of("subsection Body\n  set Length = 1\nend\nset Body / Length = 2\n").find("line 4: \"Body/Length\""),
-            std::string::npos);
-  EXPECT_NE(error_of("subsection Body\n\n  set Length = -1\nend\n").find("file.prm, line 3"), std::string::npos);
-  EXPECT_NE(error_of("\nsubsection Body\n  set Length = 1\n").find("line 2: \"subsection Body\" has no \"end\""),
-            std::string::npos);
-  EXPECT_NE(error_of("set Accuracy = 1e-4\nend\n").find("line 2"), std::string::npos);
-  EXPECT_NE(error_of("subsection Boddy\nend\n").find("\"Body\""), std::string::npos);
 }
 
 /// Whoever mixes files and overrides must tell them apart, however they are written.

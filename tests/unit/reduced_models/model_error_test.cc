@@ -2,15 +2,11 @@
 //
 // The estimated errors of the approximate levels against the nonlinear model.
 #include "../../support/random_waves.h"
+#include "../../support/test.h"
 
 #include <crawler/reduced_models/kinematic.h>
 #include <crawler/reduced_models/perturbation.h>
 #include <crawler/reduced_models/reduced_scene.h>
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 
 using namespace crawler;
 

@@ -3,13 +3,10 @@
 // The series in natural units against wave_roots.h, which has the same formulas in the user's units, and against
 // integrals of its own fields.
 #include "../../support/run_text.h"
+#include "../../support/test.h"
 
 #include <crawler/reduced_models/perturbation.h>
 #include <crawler/reduced_models/reduced_scene.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 using namespace crawler;
 

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/test.h"
+
 #include <crawler/reduced_models/kinematic.h>
 #include <crawler/reduced_models/strain_functional.h>
 #include <crawler/scene/evaluators.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
 
 using namespace crawler;
 
@@ -115,26 +112,8 @@ TEST(StrainFunctional, RefusesABodyThatInverts)
   EXPECT_FALSE(grid.values(samples, {scene, grid.points()}));
 }
 
-/// The transpose of running integrals: x . (R f) = (R^T x) . f
-TEST(GaussPanels, RunningIntegralIsTransposed)
+TEST(GaussPanels, EndAtBreaks)
 {
-  const GaussPanels panels(0., 2., 3);
-  const std::size_t n = panels.points().size();
-  std::vector<double> f(n), x(n), of_f(n), of_x(n);
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    f[i] = std::sin(1.3 * static_cast<double>(i));
-    x[i] = std::cos(0.7 * static_cast<double>(i));
-  }
-  panels.running_integral(f, of_f);
-  panels.running_integral_transposed(x, of_x);
-  double left = 0., right = 0.;
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    left += x[i] * of_f[i];
-    right += of_x[i] * f[i];
-  }
-  EXPECT_NEAR(left, right, 1e-13);
   EXPECT_EQ(GaussPanels::number_ending_at({0.1, 0.7}, 4, 128), 20u);
   EXPECT_EQ(GaussPanels::number_ending_at({1. / std::numbers::pi}, 4, 128), 4u);
 }

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Gait numbers of motions that are known in closed form.
+#include "../../support/test.h"
+
 #include <crawler/run/gait.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <numbers>
 
 namespace
 {

@@ -3,13 +3,10 @@
 // Prescribed strain by other generators, and the recovered active stress written as a table and read again.
 #include "../../support/program.h"
 #include "../../support/stress.h"
+#include "../../support/test.h"
 
 #include <crawler/output/active_stress_table.h>
 #include <crawler/run/reduced_model.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 using namespace crawler;
 using test::Settings;
@@ -39,8 +36,8 @@ namespace
     test::expect_complaint(settings, {"Active stress/Prescribed strain/Given by: ", words});
   }
 
-  const Settings wave = {{"Active stress/Travelling wave/Amplitude", "0.3"},
-                         {"Active stress/Travelling wave/Wave number", "1"}};
+  const Settings wave =
+    test::set("Active stress/Travelling wave/Amplitude = 0.3; Active stress/Travelling wave/Wave number = 1");
 } // namespace
 
 /// theory.md: e = 0.3 sin 2 pi (s + t) at a = -1 has D = 1 - sqrt(1 - 0.09), whoever writes it.
@@ -65,13 +62,10 @@ TEST(GeneratedStrain, IsTheSameStrainFromAnyGenerator)
 TEST(GeneratedStrain, ItsActiveStressAsATableDrivesTheFullModel)
 {
   Settings settings = strain_by("travelling wave", wave);
-  settings.insert(settings.end(),
-                  {{"Active stress/Travelling wave/Ramp duration", "0.5"},
-                   {"Accuracy", "1e-6"},
-                   {"Body/Length", "2"},
-                   {"Body/Elastic modulus", "3"},
-                   {"Body/Friction coefficient", "0.5"},
-                   {"Time/End time", "1.5"}});
+  settings          = test::with(
+    settings,
+    test::set(
+      "Active stress/Travelling wave/Ramp duration = 0.5; Accuracy = 1e-6; L = 2; k = 3; gamma = 0.5; T = 1.5"));
   const double kinematic = kinematic_displacement(settings);
   EXPECT_GT(std::abs(kinematic), 0.01);
   const auto full = test::run_with(settings).result;

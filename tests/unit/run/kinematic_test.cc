@@ -2,13 +2,10 @@
 //
 // The kinematic level against closed forms and theory.md, sections 5 and 6.
 #include "../../support/run_text.h"
+#include "../../support/test.h"
 
 #include <crawler/reduced_models/perturbation.h>
 #include <crawler/run/reduced_model.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 using namespace crawler;
 

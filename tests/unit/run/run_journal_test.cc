@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/test.h"
+
 #include <crawler/base/clock.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/run/run_journal.h>
-
-#include <gtest/gtest.h>
 
 namespace
 {

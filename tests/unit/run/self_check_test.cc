@@ -2,14 +2,11 @@
 //
 // Made-up results, and which of them are failures; and the scenes whose gait has a bound.
 #include "../../support/run_text.h"
+#include "../../support/test.h"
 
 #include <crawler/run/gait_efficiency.h>
 #include <crawler/run/result_table.h>
 #include <crawler/run/self_check.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 using namespace crawler;
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/run_text.h"
+#include "../../support/test.h"
 
 #include <crawler/run/stress_watch.h>
-
-#include <gtest/gtest.h>
 
 using namespace crawler;
 
@@ -53,10 +52,8 @@ TEST(StressWatch, LetsAStepBeMadeAgain)
     time.integrator = "radau 5";
     return Simulation(MPI_COMM_WORLD, scene, time, numerics).run({}, {});
   };
-  const double exact = test::run_with({{"Active stress/Generator", "expression"},
-                                       {"Active stress/Expression/Active stress",
-                                        "0.1*sin(2*pi*(s+t))*tanh(5*t)+0.3*sin(2*pi*s)*exp(-((t-0.5)/0.02)^2)"},
-                                       {"Accuracy", "1e-8"}})
+  const double exact = test::run_with(test::set("Accuracy = 1e-8; expression; Active stress = "
+                                                "0.1*sin(2*pi*(s+t))*tanh(5*t)+0.3*sin(2*pi*s)*exp(-((t-0.5)/0.02)^2)"))
                          .result.displacement;
   const auto without = run(active, 0.), with = run(active, 0.03);
   EXPECT_EQ(with.time.status, Status::finished);

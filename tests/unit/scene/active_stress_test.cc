@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/stress.h"
+#include "../../support/test.h"
 
 #include <crawler/scene/active_stress/expression.h>
 #include <crawler/scene/active_stress/none.h>
 #include <crawler/scene/active_stress/optimal_wave.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
 
 using namespace crawler;
 

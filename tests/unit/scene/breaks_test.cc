@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/test.h"
 #include "../../support/with_breaks.h"
 
 #include <crawler/scene/active_stress/none.h>
 #include <crawler/scene/profile.h>
 #include <crawler/scene/scene.h>
-
-#include <gtest/gtest.h>
 
 using namespace crawler;
 

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/test.h"
+
 #include <crawler/scene/friction_law.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
 
 using namespace crawler;
 

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/program.h"
 #include "../../support/stress.h"
+#include "../../support/test.h"
 
 #include <crawler/base/exceptions.h>
 #include <crawler/formula/formula_gradient.h>
 #include <crawler/scene/active_stress/formula_input.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 using namespace crawler;
 

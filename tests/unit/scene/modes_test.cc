@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/test.h"
+
 #include <crawler/base/exceptions.h>
 #include <crawler/scene/active_stress/modes.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
 
 using namespace crawler;
 

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/run_text.h"
+#include "../../support/test.h"
 
 #include <crawler/scene/period.h>
-
-#include <gtest/gtest.h>
-
-#include <random>
-#include <tuple>
-
-#include <cmath>
 
 using namespace crawler;
 
@@ -81,21 +75,6 @@ TEST(Period, OfWavesIsKnown)
   EXPECT_DOUBLE_EQ(period_of_wave("0, 1, 0, 0, 0, 0.1", "0, 0, 0, 0.2, 0, 0", 0.5).value(), 2.);
   EXPECT_DOUBLE_EQ(period_of_wave("0, 0, 1, 0, 0, 0.1", "0", 0.5).value(), 4. / 3.);
   EXPECT_FALSE(period_of_wave("1", "0", 0.5, 0.));
-}
-
-/// The declared period of a wave is one of its stress, and half of it is not.
-TEST(Period, OfAWaveRepeatsItsStress)
-{
-  const Scene scene = test::parameters_with(test::wave(-1., 0.4, 0.7, 20.)).create_scene();
-  const double P    = scene.active_stress->period().value();
-  const auto stress = scene.active_stress->at({0.1, 0.37, 0.8});
-  std::vector<double> now(3), later(3), half(3);
-  stress->values(0.3, now);
-  stress->values(0.3 + P, later);
-  stress->values(0.3 + 0.5 * P, half);
-  for (unsigned int i = 0; i < 3; ++i)
-    EXPECT_NEAR(now[i], later[i], 1e-14);
-  EXPECT_GT(std::abs(now[1] - half[1]), 0.01);
 }
 
 TEST(Period, OfFormulasIsFound)

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Switching profiles with fronts of a stated width, and windows and ramps made of them.
+#include "../../support/test.h"
+
 #include <crawler/base/exceptions.h>
 #include <crawler/base/gauss_panels.h>
 #include <crawler/scene/active_stress/envelope.h>
 #include <crawler/scene/active_stress/profile.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 using namespace crawler;
 

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/run_text.h"
+#include "../../support/test.h"
 
 #include <crawler/base/exceptions.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
 
 using namespace crawler;
 

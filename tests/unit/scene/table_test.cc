@@ -4,14 +4,10 @@
 #include "../../support/hdf5_file.h"
 #include "../../support/program.h"
 #include "../../support/stress.h"
+#include "../../support/test.h"
 
 #include <crawler/scene/active_stress/optimal_wave.h>
 #include <crawler/scene/active_stress/table.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
 
 using namespace crawler;
 using test::values;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/complaint.h"
 #include "../../support/run_text.h"
+#include "../../support/test.h"
 
 #include <crawler/base/exceptions.h>
 #include <crawler/scene/unit_names.h>
-
-#include <gtest/gtest.h>
 
 using namespace crawler;
 

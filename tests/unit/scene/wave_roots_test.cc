@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Numbers of doc/theory.md, section "The optimal wave" (gamma = k = L = 1, a = -1, a_1 = 1 unless stated).
+#include "../../support/test.h"
+
 #include <crawler/base/exceptions.h>
 #include <crawler/scene/active_stress/optimal_wave.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <sstream>
 
 using namespace crawler;
 

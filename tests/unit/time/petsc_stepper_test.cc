@@ -2,19 +2,9 @@
 //
 // The time stepper on a scalar equation with a mass that depends on the state, no mesh: (1 + y^2) y' = (1 + sin^2 t)
 // cos t, whose solution from y(0) = 0 is y = sin t.
-#include "../../support/observed_order.h"
+#include "../../support/test.h"
 
-#include <crawler/base/exceptions.h>
-#include <crawler/time/integrators.h>
 #include <crawler/time/petsc_stepper.h>
-
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <tuple>
 
 using namespace crawler;
 
@@ -37,9 +27,6 @@ namespace
     bool
     residual(double t, ConstVector y, ConstVector y_dot, Vector F) override
     {
-      ++evaluations;
-      if (throw_at > 0. && t >= throw_at)
-        throw FileError("from the system");
       F[0] = (1. + y[0] * y[0]) * y_dot[0] - (1. + std::sin(t) * std::sin(t)) * std::cos(t) + added_to_residual;
       return y[0] < largest_admissible;
     }
@@ -103,8 +90,6 @@ namespace
         states.push_back(y[0]);
         if (seen)
           seen(*made);
-        if (made->time >= stop_at)
-          break;
       }
       return stepper.outcome();
     }
@@ -114,11 +99,10 @@ namespace
     std::function<void(const Step &)> seen;
     std::vector<double> y, states;
     std::vector<Step> steps;
-    double jacobian = 1., largest_admissible = 10., stop_at = 1e9, throw_at = 0., added_to_residual = 0.;
+    double jacobian = 1., largest_admissible = 10., added_to_residual = 0.;
     std::array<double, 5> by_state{}, by_rate{}; ///< of the stages
     std::vector<Complex> complex_jacobians;
     bool singular = false, wrong_direction = false;
-    unsigned long evaluations = 0;
   };
 
   TimeParameters
@@ -131,24 +115,6 @@ namespace
     return parameters;
   }
 } // namespace
-
-/// bdf starts with steps of lower order: its orders are in convergence/time_test.cc.
-TEST(PetscStepper, RadauReachesItsOrder)
-{
-  for (const auto &[name, order, steps] : {std::tuple("radau 5", 5., std::vector<double>{12, 24, 48}),
-                                           std::tuple("radau 9", 9., std::vector<double>{2, 3, 4})})
-  {
-    std::vector<double> errors;
-    for (const double n : steps)
-    {
-      ScalarEquation equation(parameters_for(name, StepControl::fixed));
-      ASSERT_EQ(equation.solve(1e-12, 1.5 / n).status, Status::finished) << name;
-      errors.push_back(std::abs(equation.y[0] - std::sin(1.5)));
-    }
-    EXPECT_GE(test::observed_order(name, steps, errors), (1. - 0.05) * order)
-      << name << " " << errors[0] << " " << errors[2];
-  }
-}
 
 TEST(PetscStepper, StepsEndExactlyAtOutputTimes)
 {
@@ -203,24 +169,6 @@ TEST(PetscStepper, SolvesAgainWithTheSameResult)
   EXPECT_EQ(again.newton_iterations, first.newton_iterations);
 }
 
-TEST(PetscStepper, TheCallerCanStop)
-{
-  ScalarEquation equation(parameters_for("bdf"));
-  equation.stop_at   = 0.5;
-  const auto outcome = equation.solve(1e-8, 1e-4);
-  EXPECT_EQ(outcome.status, Status::none);
-  EXPECT_GE(outcome.time, 0.5);
-  EXPECT_LT(outcome.time, 0.7);
-  EXPECT_NEAR(equation.y[0], std::sin(outcome.time), 1e-6);
-}
-
-TEST(PetscStepper, AnExceptionOfTheSystemComesThrough)
-{
-  ScalarEquation equation(parameters_for("bdf"));
-  equation.throw_at = 0.5;
-  EXPECT_THROW(equation.solve(1e-8, 1e-4), FileError);
-}
-
 /// y = sin t would pass 0.5 at t = 0.5236: no step, however small, goes on from there.
 TEST(PetscStepper, ARefusedStateIsADomainError)
 {
@@ -252,15 +200,6 @@ TEST(PetscStepper, FailuresHaveNames)
     EXPECT_EQ(outcome.status, Status::failed);
     EXPECT_NE(outcome.reason, "");
   }
-  {
-    TimeParameters parameters = parameters_for("bdf");
-    parameters.max_steps      = 3;
-    ScalarEquation equation(parameters);
-    const auto outcome = equation.solve(1e-8, 1e-4);
-    EXPECT_EQ(outcome.status, Status::stopped);
-    EXPECT_EQ(outcome.reason, "step_limit");
-    EXPECT_EQ(outcome.steps, 3u);
-  }
 }
 
 /// Radau's complex systems are only made if the real one could be factored; otherwise none of them may be solved.
@@ -273,24 +212,5 @@ TEST(PetscStepper, FactorsThatAreNotThereAreNotUsed)
     const auto outcome = equation.solve(1e-8, 1e-4);
     EXPECT_EQ(outcome.status, Status::failed) << name;
     EXPECT_NE(outcome.reason, "") << name;
-  }
-}
-
-TEST(PetscStepper, UnsoundIntegratorsAreRefusedWithTheReason)
-{
-  for (const char *name : {"rosw", "irk", "glle", "cn", "rk"})
-  {
-    EXPECT_NE(reason_against(name), "") << name;
-    EXPECT_FALSE(is_offered(name)) << name;
-    TimeParameters parameters = parameters_for(name);
-    EXPECT_THROW(parameters.validate(), InputError) << name;
-  }
-  for (const Integrator &method : integrators())
-  {
-    EXPECT_EQ(reason_against(method.petsc_type), "");
-    EXPECT_TRUE(is_offered(method.name));
-    TimeParameters parameters = parameters_for(method.name);
-    parameters.initial_step   = 0.1;
-    EXPECT_NO_THROW(parameters.validate());
   }
 }

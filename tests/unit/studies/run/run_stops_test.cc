@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../../support/test.h"
+
 #include <crawler/base/clock.h>
 #include <crawler/studies/run/run_stops.h>
-
-#include <gtest/gtest.h>
-
-#include <csignal>
-#include <filesystem>
-#include <fstream>
 
 using namespace crawler;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/studies/sweep/cross_check.h>
+#include "../../../support/test.h"
 
-#include <gtest/gtest.h>
+#include <crawler/studies/sweep/cross_check.h>
 
 using namespace crawler;
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../../support/test.h"
+
 #include <crawler/studies/sweep/sweep_blocks.h>
-
-#include <gtest/gtest.h>
-
-#include <set>
 
 namespace
 {

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../../support/test.h"
+
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/studies/sweep/sweep_design.h>
 
-#include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <set>
 
 namespace
 {

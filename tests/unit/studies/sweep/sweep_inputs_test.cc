@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../../support/test.h"
+
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/studies/sweep/sweep_inputs.h>
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 namespace

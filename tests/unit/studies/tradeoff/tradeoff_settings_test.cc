@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../../support/test.h"
+
 #include <crawler/base/exceptions.h>
 #include <crawler/studies/core/form.h>
 #include <crawler/studies/tradeoff/tradeoff_reference.h>
 #include <crawler/studies/tradeoff/tradeoff_settings.h>
-
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
 
 using namespace crawler;
 
@@ -34,16 +31,6 @@ namespace
     return settings_to_try(input(lists, override));
   }
 } // namespace
-
-TEST(TradeoffSettings, BadListsAreRefused)
-{
-  for (const char *bad : {"set Degrees = 0\n",
-                          "set Tolerances = 1\n",
-                          "set Integrators = rosw\n",
-                          "set Engines =\n",
-                          "set Cells = automatic\n"})
-    EXPECT_THROW(settings_of(bad), InputError) << bad;
-}
 
 /// Meshes from the coarsest on; on each the tolerances from the loosest on.
 TEST(TradeoffSettings, ThoseOfOneMeshFollowEachOther)
