@@ -7,9 +7,9 @@ import csv
 import glob
 import json
 import os
+import pathlib
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 
@@ -17,35 +17,30 @@ import numpy as np
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, call, on_ranks, sets  # noqa: E402
+from tables import csv_rows  # noqa: E402
+
 CMAKE, BUILD, MPIRUN = sys.argv[1:4]
-HERE = os.path.dirname(os.path.abspath(__file__))
-PLUGIN_SOURCE = os.path.join(HERE, "..", "..", "contrib", "plugin")
-ENVIRONMENT = dict(os.environ, LANG="C")
-failed = 0
-
-
-def expect(condition, what):
-    global failed
-    if not condition:
-        failed += 1
-        print("NOT AS EXPECTED:", what)
+HERE = pathlib.Path(__file__).resolve().parent
+PLUGIN_SOURCE = HERE.parents[1] / "contrib/plugin"
+checks = Checks()
+expect = checks.expect
 
 
 def command(*words):
-    result = subprocess.run(words, capture_output=True, text=True, env=ENVIRONMENT)
-    if result.returncode != 0:
-        sys.exit(f"{' '.join(words)} failed:\n{result.stdout}\n{result.stderr}")
+    done = call(words)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(map(str, words))} failed:\n{done.stdout}\n{done.stderr}")
 
 
-def run(name, generator, entries, more="", command="run", before=()):
-    """Runs a scene; gives the exit code, standard error and output folder."""
-    section = generator.capitalize()
+def run(name, generator, entries, more=None, command="run", before=()):
+    """Runs a scene with these entries of its generator, and more that are set; gives the finished process."""
     lines = "\n".join(f"set {entry} = {value}" for entry, value in entries.items())
-    with open(f"{name}.prm", "w") as file:
-        file.write(f"{more}\nsubsection Active stress\nset Generator = {generator}\nsubsection {section}\n{lines}\nend\nend\n")
-    words = [*before, PROGRAM, command, f"{name}.prm"] + ([] if command == "check" else ["--output", name, "--overwrite"])
-    result = subprocess.run(words, capture_output=True, text=True, env=ENVIRONMENT)
-    return result.returncode, result.stderr, result.stdout
+    pathlib.Path(f"{name}.prm").write_text(f"subsection Active stress\nset Generator = {generator}\nsubsection "
+                                           f"{generator.capitalize()}\n{lines}\nend\nend\n", encoding="utf-8")
+    return call([*before, PROGRAM, command, f"{name}.prm", *sets(more or {}),
+                 *([] if command == "check" else ["--output", name, "--overwrite"])], variables={"LANG": "C"})
 
 
 def no_constant(name):
@@ -53,8 +48,7 @@ def no_constant(name):
 
 
 def summary(name):
-    with open(os.path.join(name, "summary.json")) as file:
-        return json.load(file, parse_constant=no_constant)
+    return json.loads(pathlib.Path(name, "summary.json").read_text(encoding="utf-8"), parse_constant=no_constant)
 
 
 def is_finite(file):
@@ -68,37 +62,31 @@ def is_finite(file):
 
 def refused(name, entries, *words):
     """The program must refuse this with exit code 2 and one sentence that has these words in it, and write nothing."""
+    if isinstance(entries, str):
+        entries = {"File": FAULTY, "Parameters": entries}
     for kind in ("run", "check"):
-        code, err, _ = run(name, "library", entries, command=kind)
-        lines = err.strip().splitlines()
-        expect(code == 2, f"{name}: exit code {code} of {kind} instead of 2")
-        expect(len(lines) == 1 and lines[0].startswith("crawler: "), f"{name}: not one sentence: {err}")
-        for word in words:
-            expect(word in err, f"{name}: \"{word}\" is not in: {err}")
+        done = run(name, "library", entries, command=kind)
+        expect(done.returncode == 2 and done.stderr.count("\n") == 1 and done.stderr.startswith("crawler: ")
+               and all(word in done.stderr for word in words), f"{kind} {name}: {done.returncode}, {done.stderr}")
     expect(not os.path.exists(name), f"{name}: something was written")
 
 
-def fails(name, parameters, words, last_time, n_frames, before=(), snapshots=20, more=""):
-    """The run must fail with the reason nonfinite, name function, place and time, and keep what it has written."""
-    code, err, out = run(name, "library", {"File": FAULTY, "Parameters": parameters},
-                         f"{more}\nsubsection Output\nset Number of snapshots = {snapshots}\nend", before=before)
-    expect(code == 3, f"{name}: exit code {code} instead of 3: {err} {out[-500:]}")
-    expect("nonfinite" in err, f"{name}: nonfinite is not in: {err}")
-    for word in words:
-        expect(word in err, f"{name}: \"{word}\" is not in: {err}")
+def fails(name, parameters, words, last_time, n_frames, n_ranks=1, **more):
+    """The run must fail with the reason nonfinite, name function, place and time, and keep what it has written; gives the
+    times of its statistics."""
+    settings = {"Output/Number of snapshots": 20, **{key.replace("__", "/").replace("_", " "): value for key, value in more.items()}}
+    done = run(name, "library", {"File": FAULTY, "Parameters": parameters}, settings, before=on_ranks(MPIRUN, n_ranks))
     result = summary(name)
-    expect(result["status"] == "failed" and result["reason"] == "nonfinite", f"{name}: {result['status']} {result['reason']}")
+    expect(done.returncode == 3 and all(word in done.stderr for word in ("nonfinite", *words))
+           and (result["status"], result["reason"]) == ("failed", "nonfinite"),
+           f"{name}: {done.returncode}, {done.stderr} {done.stdout[-500:]}")
     frames = glob.glob(os.path.join(name, "solution", "[0-9]*.vtu"))
-    expect(len(frames) in (n_frames if isinstance(n_frames, range) else [n_frames]),
-           f"{name}: {len(frames)} frames instead of {n_frames}")
-    for file in frames:
-        expect(is_finite(file), f"{name}: not finite: {file}")
-    times = []  # a run that fails at once has no row, and no file
-    if os.path.exists(os.path.join(name, "statistics.csv")):
-        with open(os.path.join(name, "statistics.csv")) as file:
-            times = [float(row["time [time]"]) for row in csv.DictReader(file)]
+    expect(len(frames) in n_frames, f"{name}: {len(frames)} frames instead of {n_frames}")
+    expect(all(map(is_finite, frames)), f"{name}: not finite")
+    table = pathlib.Path(name, "statistics.csv")  # a run that fails at once has no row, and no file
+    times = [float(row["time [time]"]) for row in csv_rows(table)] if table.exists() else []
     expect(not times or max(times) <= last_time, f"{name}: the statistics end at {max(times, default=0)}")
-    return result, times
+    return times
 
 
 with tempfile.TemporaryDirectory() as folder:
@@ -113,38 +101,25 @@ with tempfile.TemporaryDirectory() as folder:
     good = {"File": "source/build/libperistalsis.so", "Parameters": "height=0.4, waves=1, frequency=1, start=0.2"}
     formula = {"Active stress": "height*(1-cos(2*pi*(s+t)))/2*(1-exp(-t/start))", "Constants": "height=0.4, start=0.2"}
     for accuracy in ("1e-4", "1e-8"):
-        code, err, out = run("plugin", "library", good, f"set Accuracy = {accuracy}")
-        expect(code == 0, f"the example: {err}")
-        expect('Plug-in "peristalsis"' in out, f"the plug-in is not named: {out}")
-        code, err, _ = run("formula", "expression", formula, f"set Accuracy = {accuracy}")
+        one, other = (run(name, generator, entries, {"Accuracy": accuracy})
+                      for name, generator, entries in (("plugin", "library", good), ("formula", "expression", formula)))
+        expect(one.returncode == 0 and 'Plug-in "peristalsis"' in one.stdout, f"the example: {one}")
         a, b = summary("plugin"), summary("formula")
         error = abs(a["displacement"] / b["displacement"] - 1)
-        expect(error <= 1e-12, f"plug-in and formula differ by {error} at accuracy {accuracy}")
-        expect(a["steps"] == b["steps"], "plug-in and formula need different steps")
+        expect(error <= 1e-12 and a["steps"] == b["steps"], f"plug-in and formula differ by {error} at accuracy {accuracy}: {other}")
     for engine in ("petsc", "automatic"):
-        code, err, _ = run("adaptive", "library", good,
-                           f"subsection Discretization\nset Mesh = adaptive\nend\nsubsection Time\nset Engine = {engine}\nend")
+        done = run("adaptive", "library", good, {"Discretization/Mesh": "adaptive", "Time/Engine": engine})
         error = abs(summary("adaptive")["displacement"] / b["displacement"] - 1)
-        expect(code == 0 and error <= 2e-6, f"adaptive mesh, engine {engine}: {err}, error {error}")
+        expect(done.returncode == 0 and error <= 2e-6, f"adaptive mesh, engine {engine}: {done.stderr}, error {error}")
 
     # Its values as a strain, which is not 0 at an end: the formula, and the table that both write.
-    library = "\n".join(f"set {entry} = {value}" for entry, value in good.items())
-    more = f"""subsection Active stress
-subsection Library
-{library}
-end
-end
-subsection Output
-set Active stress table = 9, 5
-end
-"""
+    library = {f"Active stress/Library/{entry}": value for entry, value in good.items()}
+    as_strain = {"Strain": formula["Active stress"], "Constants": formula["Constants"]}
     for model, error in (("kinematic", 1e-12), ("nonlinear", 1e-6)):
-        model = f"set Model = {model}\n"
-        code, err, _ = run("strain", "prescribed strain", {"Given by": "library"}, model + more)
-        expect(code == 0, f"the example as a strain: {err}")
-        code, err, _ = run("strain_formula", "prescribed strain",
-                           {"Strain": formula["Active stress"], "Constants": formula["Constants"]}, model + more)
-        expect(code == 0, f"the formula as a strain: {err}")
+        more = {"Model": model, **library, "Output/Active stress table": "9, 5"}
+        for name, entries in (("strain", {"Given by": "library"}), ("strain_formula", as_strain)):
+            done = run(name, "prescribed strain", entries, more)
+            expect(done.returncode == 0, f"{name}: {done.stderr}")
         a, b = summary("strain")["displacement"], summary("strain_formula")["displacement"]
         expect(abs(a / b - 1) <= error, f"{model}: plug-in and formula differ as strains: {a}, {b}")
         with open("strain/active_stress.csv") as one, open("strain_formula/active_stress.csv") as other:
@@ -156,8 +131,7 @@ end
     # Its own parameter file, from its folder, and the number that this promises.
     with open("source/peristalsis.prm") as file:
         expected, tolerance = re.search(r"# Expect: displacement (\S+), tolerance (\S+)", file.read()).groups()
-    result = subprocess.run([PROGRAM, "run", "peristalsis.prm", "--output", "../peristalsis"], cwd="source", env=ENVIRONMENT,
-                            capture_output=True, text=True)
+    result = call([PROGRAM, "run", "peristalsis.prm", "--output", "../peristalsis"], "source")
     expect(result.returncode == 0, f"peristalsis.prm: {result.stderr}")
     displacement = summary("peristalsis")["displacement"]
     expect(abs(displacement / float(expected) - 1) <= float(tolerance), f"peristalsis.prm: displacement {displacement}")
@@ -167,8 +141,7 @@ end
     for file in glob.glob(os.path.join(share, "prm", "examples", "*.prm")):
         if os.path.basename(file) not in ("earthworm.prm", "measured_table.prm"):
             os.remove(file)
-    result = subprocess.run([sys.executable, os.path.join(share, "python/crawler/plot", "gallery.py"), PROGRAM], env=ENVIRONMENT,
-                            capture_output=True, text=True)
+    result = call([sys.executable, os.path.join(share, "python/crawler/plot", "gallery.py"), PROGRAM])
     expect(result.returncode == 0 and os.path.exists("gallery.png") and "measured_table" in result.stdout,
            f"the installed gallery: {result.stdout} {result.stderr}")
 
@@ -178,14 +151,14 @@ end
     os.mkdir("drawn")
     with open("drawn/results.h5", "w"):
         pass
-    result = subprocess.run([PROGRAM, "plot", "drawn"], env=ENVIRONMENT, capture_output=True, text=True)
+    result = call([PROGRAM, "plot", "drawn"])
     expect(result.returncode == 0 and os.path.exists("drawn/installed_script"), f"plot: {result.stdout} {result.stderr}")
 
     # What does not even start.
     FAULTY = os.path.join(folder, "faulty.so")
     include = f"-I{folder}/installed/include"
     compiler = os.environ.get("CXX", "c++")
-    command(compiler, "-std=c++20", "-shared", "-fPIC", include, os.path.join(HERE, "faulty_plugin.cc"), "-o", FAULTY)
+    command(compiler, "-std=c++20", "-shared", "-fPIC", include, HERE / "faulty_plugin.cc", "-o", FAULTY)
     refused("missing", {"File": "no.so"}, "there is no file", f"{folder}/no.so", "missing.prm, line ")
     refused("folder", {"File": "source"}, "is not a file")
     refused("text", {"File": "text.prm"}, "cannot be loaded", "invalid ELF header", "compiled with -shared on this machine")
@@ -212,59 +185,41 @@ end
                        f"{{ static const Old old = {{{interface}, {version}}}; return &old; }}\n")
         command(compiler, "-std=c++20", "-shared", "-fPIC", include, "old.cc", "-o", f"{name}.so")
         refused(name, {"File": f"{name}.so"}, "was built against crawler", "but this program is crawler", "build it again")
-    refused("factory", {"File": FAULTY, "Parameters": "kind=factory"}, "refuses the scene: this body is too short")
-    refused("number", {"File": FAULTY, "Parameters": "t=soon"}, 'the parameter "t" is "soon"', "a number is expected")
-    refused("nothing", {"File": FAULTY, "Parameters": "kind=nothing"}, "returned nothing")
-    refused("period", {"File": FAULTY, "Parameters": "kind=period"}, "its period is -1")
-    refused("breaks", {"File": FAULTY, "Parameters": "kind=breaks"}, "breaks_in_space(): no breaks here")
-    refused("unknown", {"File": FAULTY, "Parameters": "knd=nan"}, 'does not know the parameter "knd"', '"kind"')
-    refused("words", {"File": FAULTY, "Parameters": "kind"}, 'found "kind"', "name=value")
-    refused("twice", {"File": FAULTY, "Parameters": "t=1, t=2"}, '"t"', "a second time")
+    refused("factory", "kind=factory", "refuses the scene: this body is too short")
+    refused("number", "t=soon", 'the parameter "t" is "soon"', "a number is expected")
+    refused("nothing", "kind=nothing", "returned nothing")
+    refused("period", "kind=period", "its period is -1")
+    refused("breaks", "kind=breaks", "breaks_in_space(): no breaks here")
+    refused("unknown", "knd=nan", 'does not know the parameter "knd"', '"kind"')
+    refused("words", "kind", 'found "kind"', "name=value")
+    refused("twice", "t=1, t=2", '"t"', "a second time")
 
-    # What goes wrong on the way. Frames every 0.05 of the time.
-    throws, petsc = 'plug-in "faulty" threw an exception in values() at s = 0.5', "subsection Time\nset Engine = petsc\nend"
-    half = "kind=throw, s=0.5, t=0.68"
-    # What follows the last accepted step is lost.
-    THROWN = range(12, 15)
-    result, times = fails("throws", half, [throws, "the valve is shut"], 0.68, THROWN)
-    expect(max(times) > 0.6, f"throws: the statistics end at {max(times)}")
-    fails("throws_petsc", half, [throws, "the valve is shut"], 0.68, THROWN, more=petsc)
-    fails("throws_linear", half, [throws, "the valve is shut"], 0.68, THROWN,
-          more="set Model = linear\nsubsection Body\nset Anchoring exponent = 1\nend")
-    fails("throws_adaptive", half, [throws, "the valve is shut"], 0.68, THROWN,
-          more="subsection Discretization\nset Mesh = adaptive\nend")
-    fails("throws_number", "kind=throw number, t=0.68", ["something that is not a std::exception"], 0.68, THROWN)
-    fails("gives_nan", "kind=nan, s=0.5, t=0.43", ["returned nan in values() at s = 0.5", "a finite number"], 0.43, 9)
+    # What goes wrong on the way. Frames every 0.05 of the time; what follows the last accepted step is lost.
+    half, late, thrown = "kind=throw, s=0.5, t=0.68", "kind=throw, s=0.75, t=0.68", range(12, 15)
+    throws, throws_late = ([f'plug-in "faulty" threw an exception in values() at s = {s}', "the valve is shut"] for s in (0.5, 0.75))
+    place, at_place = "kind=nan at place, s=0.5, t=0.35", ["returned nan in values() at s = 0.5, t = 0.35"]
+    shared = {"n_ranks": 2, "Discretization__Number_of_cells": 300, "Discretization__Degree": 2, "Discretization__Share_cells": "yes"}
+    expect(max(fails("throws", half, throws, 0.68, thrown)) > 0.6, "throws: the statistics end early")
+    for name, more in (("petsc", {"Time__Engine": "petsc"}), ("linear", {"Model": "linear", "Body__Anchoring_exponent": 1}),
+                       ("adaptive", {"Discretization__Mesh": "adaptive"})):
+        fails(f"throws_{name}", half, throws, 0.68, thrown, **more)
+    fails("throws_number", "kind=throw number, t=0.68", ["something that is not a std::exception"], 0.68, thrown)
+    fails("gives_nan", "kind=nan, s=0.5, t=0.43", ["returned nan in values() at s = 0.5", "a finite number"], 0.43, [9])
     # Only where the pictures look, and at an end, whose stress is no part of the equation inside.
-    fails("place", "kind=nan at place, s=0.5, t=0.35", ["nonfinite", "returned nan in values() at s = 0.5, t = 0.35"], 0.36, 7)
-    fails("end", "kind=nan at place, s=1, t=0.35", ["returned nan in values() at s = 1, t = "], 0.5, 0, snapshots=0)
-    fails("at_once", "kind=throw", ["threw an exception in values() at s = ", "t = 0: "], 0., 0)
-    fails("no_evaluator", "kind=no evaluator", ["returned no evaluator in at()"], 0., 0)
-    fails("two_ranks", "kind=throw, s=0.75, t=0.68", [throws.replace("0.5", "0.75"), "the valve is shut"], 0.68, THROWN,
-          before=(MPIRUN, "--oversubscribe", "-n", "2"))
-    fails("shared", "kind=throw, s=0.75, t=0.68", [throws.replace("0.5", "0.75"), "the valve is shut"], 0.68, THROWN,
-          before=(MPIRUN, "--oversubscribe", "-n", "2"), more="subsection Discretization\nset Number of cells = 300\nset Degree = 2\nset Share cells = yes\nend")
-    fails("shared_place", "kind=nan at place, s=0.5, t=0.35", ["returned nan in values() at s = 0.5, t = 0.35"], 0.36, 7,
-          before=(MPIRUN, "--oversubscribe", "-n", "2"), more="subsection Discretization\nset Number of cells = 300\nset Degree = 2\nset Share cells = yes\nend")
-    code, err, _ = run("term", "sum", {}, f"""subsection Active stress
-subsection Sum
-subsection Term 1
-set Generator = library
-set Factor = 0.5
-subsection Library
-set File = {FAULTY}
-set Parameters = {half}
-end
-end
-subsection Term 2
-set Factor = 0.1
-end
-end
-end
-""")
-    expect(code == 3 and "nonfinite: the " + throws in err and summary("term")["status"] == "failed", f"a term that throws: {code} {err}")
-    code, err, out = run("warned", "library", {"File": FAULTY, "Parameters": "kind=throw, t=0.7"}, command="check")
-    expect(code == 0 and "warning: the plug-in" in err, f"check does not warn: {code} {err}")
+    fails("place", place, at_place, 0.36, [7])
+    fails("end", "kind=nan at place, s=1, t=0.35", ["returned nan in values() at s = 1, t = "], 0.5, [0], Output__Number_of_snapshots=0)
+    fails("at_once", "kind=throw", ["threw an exception in values() at s = ", "t = 0: "], 0., [0])
+    fails("no_evaluator", "kind=no evaluator", ["returned no evaluator in at()"], 0., [0])
+    fails("two_ranks", late, throws_late, 0.68, thrown, n_ranks=2)
+    fails("shared", late, throws_late, 0.68, thrown, **shared)
+    fails("shared_place", place, at_place, 0.36, [7], **shared)
+    term = "Active stress/Sum/Term 1/"
+    done = run("term", "sum", {}, {term + "Generator": "library", term + "Factor": 0.5, term + "Library/File": FAULTY,
+                                   term + "Library/Parameters": half, "Active stress/Sum/Term 2/Factor": 0.1})
+    expect(done.returncode == 3 and "nonfinite: the " + throws[0] in done.stderr and summary("term")["status"] == "failed",
+           f"a term that throws: {done}")
+    done = run("warned", "library", {"File": FAULTY, "Parameters": "kind=throw, t=0.7"}, command="check")
+    expect(done.returncode == 0 and "warning: the plug-in" in done.stderr, f"check does not warn: {done}")
     os.chdir("/")
 
-sys.exit(failed > 0)
+checks.end()
