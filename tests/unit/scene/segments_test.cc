@@ -25,23 +25,6 @@ namespace
     return test::rates(stress, {s}, t)[0];
   }
 
-  /// The mean over a period, by the midpoint rule between the times when it jumps.
-  double
-  mean(const Segments &stress, const double s, const double period)
-  {
-    List ends = stress.breaks_in_time();
-    ends.insert(ends.begin(), 0.);
-    ends.push_back(period);
-    double sum = 0.;
-    for (std::size_t i = 1; i < ends.size(); ++i)
-    {
-      constexpr unsigned int n = 4000;
-      for (unsigned int j = 0; j < n; ++j)
-        sum += value(stress, s, ends[i - 1] + (ends[i] - ends[i - 1]) * (j + 0.5) / n) * (ends[i] - ends[i - 1]) / n;
-    }
-    return sum / period;
-  }
-
   /// @p message is what is said, behind the name of the entry.
   void
   expect_complaint(const SegmentsParameters &parameters, const std::string &entry, const std::string &message)
@@ -109,30 +92,6 @@ TEST(Segments, PhaseLagShifts)
         EXPECT_NEAR(value(stress, 0.5, t), value(stress, 0.5, t + 0.5), 1e-12);
       }
     }
-}
-
-/// Square, smooth, and limited in its rate: the mean over a period is D A.
-TEST(Segments, MeanIsDutyCycleTimesAmplitude)
-{
-  for (const double D : {0.2, 0.5, 0.7})
-  {
-    const auto mean_of = [&](const std::string &switching, const std::optional<double> limit) {
-      const Segments stress({.number      = 1,
-                             .amplitude   = {0.3},
-                             .frequency   = 0.25,
-                             .duty_cycle  = D,
-                             .switching   = switching,
-                             .front_width = 0.2,
-                             .phase       = 0.1,
-                             .rate_limit  = limit},
-                            1.,
-                            /*end_time=*/4.);
-      return mean(stress, 0.5, 4.);
-    };
-    EXPECT_NEAR(mean_of("square", {}), 0.3 * D, 1e-12);
-    EXPECT_NEAR(mean_of("smooth", {}), 0.3 * D, 1e-8);
-    EXPECT_NEAR(mean_of("square", 0.5), 0.3 * D, 1e-12);
-  }
 }
 
 /// A = 1 at the rate 10 needs 0.1 of a period of 1: a trapezoid.
