@@ -2,6 +2,7 @@
 #include <crawler/base/csv_numbers.h>
 #include <crawler/base/cubic_spline.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/formula/formula_breaks.h>
 #include <crawler/formula/formula_gradient.h>
 #include <crawler/parameters/plain_text.h>
