@@ -176,6 +176,52 @@ def resumes_a_comparison():
     check(ended.returncode == 2 and "fit_worm.prm: the scene cannot be run" in ended.stderr and not pathlib.Path("new").exists(), f"no scene runs: {ended.stderr}")
 
 
+def overwrites():
+    """Earlier results are lost when new ones are there, not before: a refusal, a stop or a kill brings them back or leaves them aside."""
+    no_run = sets({"Active stress/Travelling wave/Amplitude": 0.79, "Body/Elastic modulus": 0.31})
+    both = (*THREE, "fit_worm.prm")
+    for words, place, inner in ((THREE, "step:700:TERM", "."), (both, "step:1500:TERM", "three")):
+        ended = crawler(*words, "--output", "kept", "--set", "Fit/Starts=2")
+        whole = contents("kept")
+        for name in whole:
+            os.utime(pathlib.Path("kept", name), (0, 0))  # as of another day: the files themselves come back
+        def is_kept():
+            return not list(pathlib.Path("kept").rglob("replaced*")) and contents("kept") == whole and pathlib.Path("kept/summary.json").stat().st_mtime == 0
+        again = (*words, "--output", "kept", "--set", "Fit/Starts=3")
+        ended = crawler(*again, *no_run, "--overwrite")
+        check(ended.returncode == 2 and ended.stderr.count("\n") == 1 and is_kept(), f"--overwrite without a run: {ended.returncode}, {ended.stderr}")
+        ended = crawler(*words, "--output", "kept", "--set", "Fit/Starts=1", *no_run, "--overwrite")
+        check(ended.returncode == 2 and "cannot be run at the start" in ended.stderr and "inverted" not in ended.stdout and is_kept(), f"a start without a run: {ended.stdout}{ended.stderr}")
+        ended = crawler(*again, "--overwrite", stop_at="step:1:TERM")
+        check(ended.returncode == 5 and "the earlier results stay" in ended.stderr and is_kept(), f"--overwrite and a stop: {ended.returncode}, {ended.stderr}")
+        ended = crawler(*again, "--overwrite", stop_at=place)
+        check(ended.returncode == 5 and contents(f"kept/{inner}/replaced") == contents_of(whole, inner), f"--overwrite and a stop behind values: {ended.returncode}, {ended.stderr}")
+        check(('"kept/replaced"' in ended.stderr) == (words is THREE), f"it is not said where the earlier results are: {ended.stderr}")
+        ended = crawler(*again, *no_run, "--overwrite")
+        check(ended.returncode == 2 and is_kept(), f"--overwrite without a run, behind a stop: {ended.returncode}, {ended.stderr}")
+        ended = crawler(*again, "--overwrite", stop_at=place.replace("TERM", "KILL"))
+        check(ended.returncode == 3 and contents(f"kept/{inner}/replaced") == contents_of(whole, inner), f"--overwrite and a kill: {ended.returncode}, {ended.stderr}")
+        ended = crawler(*again, "--resume")
+        check(ended.returncode == 0 and not list(pathlib.Path("kept").rglob("replaced*")) and len(json_of(f"kept/{inner}/summary.json")["starts"]) == 3, f"--resume behind a kill: {ended.stderr}")
+        shutil.rmtree("kept")
+    crawler(*THREE, "--output", "kept")
+    whole = contents("kept")
+    pathlib.Path("kept/replaced.part").mkdir()
+    for name in ("summary.json", "inputs.json", "starts"):
+        pathlib.Path("kept", name).rename(pathlib.Path("kept/replaced.part", name))
+    ended = crawler(*THREE, "--output", "kept", "--resume")
+    check(ended.returncode == 0 and "3 of 3 starts" in ended.stdout and contents("kept") == whole, f"a move that was interrupted: {ended.stdout}{ended.stderr}")
+
+
+def contents_of(whole, inner):
+    """Those of contents() that are in a folder within it."""
+    if inner == ".":
+        return whole
+    files = {name.removeprefix(f"{inner}/"): content for name, content in whole.items() if name.startswith(f"{inner}/")}
+    files["summary.json"] = {key: value for key, value in json.loads(files["summary.json"]).items() if key not in ("command_line", "seconds")}
+    return files
+
+
 def refuses():
     """Every mistake is one sentence and a code, and nothing is lost."""
     pathlib.Path("other").mkdir()
@@ -240,6 +286,7 @@ def main():
     ended = crawler("run", "fit_worm.prm", "--output", "run")
     check(ended.returncode == 0 and 'section "Fit" has no effect with "crawler run"' in ended.stdout, f"a run does not note section Fit: {ended.stdout}")
     resumes()
+    overwrites()
     resumes_a_comparison()
     fits_two_kinds_together()
 

@@ -69,6 +69,10 @@ def origin_of(model, options, start):
             "command_line": shlex.join(["crawler", *(word for word in sys.argv[1:] if word not in ("--resume", "--overwrite", "--quiet"))])}
 
 
+class StoppedEarly(Stopped):
+    """Stop before there were values."""
+
+
 def found_and_written(name, folder, model, options, say):
     """Finds the Fit and writes its files to the folder. Raises Stopped when interrupted, after writing the files,
     too."""
@@ -90,16 +94,11 @@ def found_and_written(name, folder, model, options, say):
         if so_far is None:
             message = f"{str(stop) or 'stopped by a signal before there were values'}; --resume continues"
             folder.write_summary({"status": "stopped", "reason": "signal", "message": message, **origin_of(model, options, start)})
-            raise Stopped(message) from None
+            raise StoppedEarly(message) from None
         write(so_far)
         for line in [*lines_of(so_far), f"Files in {folder.path}/"]:
             say(line)
-        raise Stopped(so_far.message) from None
-    except (InputError, Failed):
-        folder.clear()  # a repetition would end in the same way
-        raise
-    finally:
-        folder.leave()
+        raise Stopped(so_far.message + (f'; until then the earlier results are in "{folder.earlier.aside}"' if folder.earlier.are_aside() else "")) from None
 
 
 @contextlib.contextmanager
@@ -156,6 +155,15 @@ class Screen:
             raise self.problem
 
 
+def give_up(folders, name, comparison):
+    """Leaves nothing of the fit with this name, and all earlier results as they were."""
+    for one, folder in folders.items():
+        if one == name or folder.earlier.are_aside():
+            folder.give_up()
+    if comparison:
+        comparison.give_up()
+
+
 def fitted(models, folders, comparison, options, say):
     """Fits all models and writes their files: {name of a parameter file: Fit}."""
     fits = {}
@@ -169,8 +177,20 @@ def fitted(models, folders, comparison, options, say):
                 fits[name] = found_and_written(name, folder, model, options, lambda text: say(f"  {text}"))
             if comparison:
                 comparison.note([one for one, found in fits.items() if found.status == "finished"])
+        for folder in folders.values():
+            folder.earlier.drop()
         return fits
+    except (InputError, Failed):
+        give_up(folders, name, comparison)
+        raise
+    except StoppedEarly:
+        if fits or not folders[name].earlier.are_aside():
+            raise
+        give_up(folders, name, comparison)
+        raise Stopped("stopped by a signal before there were values; the earlier results stay") from None
     finally:
+        for folder in folders.values():
+            folder.leave()
         if comparison:
             comparison.leave()
 
@@ -182,7 +202,7 @@ def main():
     say = Screen(options.quiet)
     require_sense(options)
     comparison = Comparison(path_of(options.files[0], options).parent, options) if len(options.files) > 1 else None
-    folders = {name: Folder(path_of(name, options), options.resume, options.overwrite) for name in options.files}
+    folders = {name: Folder(path_of(name, options), options.resume, options.overwrite, comparison) for name in options.files}
     models = {name: prepared_by(name, options) for name in folders}
     if comparison:
         require_comparable({name: model for name, (model, _) in models.items()})

@@ -7,7 +7,8 @@ import pathlib
 import numpy as np
 
 from ..needs import FileError, InputError, write_whole
-from .folder import bytes_of, drawn, require_usable
+from .earlier import Earlier
+from .folder import bytes_of, drawn, is_finished, require_usable
 
 TABLE, SUMMARY, PAGES = "comparison.csv", "summary.json", ("comparison.png", "report.html")
 # Entries that weigh the data.
@@ -20,17 +21,19 @@ class Comparison:
     def __init__(self, path, options):
         """Constructor; writes nothing yet. Raises InputError if the folder has content that must not be replaced or
         resumed."""
-        self.path, self.files = path, options.files
+        self.path, self.files, self.was_finished = path, options.files, False
+        self.earlier = Earlier(path, (TABLE, SUMMARY, *PAGES))
         require_usable(path, "comparison", (TABLE,), options.resume, options.overwrite)
 
     def begin(self):
         """Makes the folder with a mark that the comparison has not ended. Raises FileError."""
         try:
             self.path.mkdir(parents=True, exist_ok=True)
+            self.earlier.recover()
+            self.was_finished = is_finished(self.path)
+            self.earlier.move_aside(self.was_finished)
         except OSError as error:
             raise FileError(f'cannot write to "{self.path}": {error.strerror or error}') from None
-        for name in PAGES:
-            (self.path / name).unlink(missing_ok=True)
         write_whole(self.path / TABLE, b"scene,folder\n")
         self.note([])
 
@@ -39,6 +42,11 @@ class Comparison:
         there = f"finished: {', '.join(finished)}, each in a folder of its own" if finished else "none of them is finished"
         write_whole(self.path / SUMMARY, bytes_of({"status": "stopped", "reason": "signal", "comparison": [], "message":
                                                    f"the comparison of {', '.join(self.files)} has not ended ({there}); --resume continues"}))
+
+    def give_up(self):
+        """Restores the earlier comparison if there was one."""
+        if self.earlier.are_aside():
+            self.earlier.move_back()
 
     def leave(self):
         """Removes the folder if no scene has left anything in it."""
@@ -61,6 +69,7 @@ class Comparison:
         csv.writer(text, lineterminator="\n").writerows([rows[0] if rows else ["scene"], *(row.values() for row in rows)])
         write_whole(self.path / TABLE, text.getvalue().encode())
         write_whole(self.path / SUMMARY, bytes_of(summary))
+        self.earlier.drop()
         return [*(table_of(rows) if rows else ()), *filter(None, [message, rows and drawn(self.path)]), f"Files in {self.path}/"]
 
 

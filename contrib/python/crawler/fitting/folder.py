@@ -15,11 +15,12 @@ from .. import to_prm
 from ..measured.options import words_of
 from ..needs import FileError, InputError, write_whole
 from ..results import parameters_of
+from . import earlier
 
 PICTURE = pathlib.Path(__file__).absolute().parents[1] / "plot" / "fit.py"
 LOCK, INPUTS = "study.lock", "inputs.json"  # the latter: inputs of the answer besides parameters.prm
 EARLY = ("original.prm", "parameters.prm")  # written before INPUTS
-OWN = (*EARLY, INPUTS, "fitted.prm", "residuals.csv", "summary.json", "fit.png", "report.html")
+OWN = (*EARLY, INPUTS, "fitted.prm", "residuals.csv", "summary.json", "fit.png", "report.html", "starts")
 FREE = ("Fit/Starts", "Fit/Data")  # entries that --resume does not compare; of data only the numbers count
 
 
@@ -29,7 +30,7 @@ def require_usable(path, kind, marks, resume, overwrite):
     if path.exists() and not path.is_dir():
         raise InputError(f'"{path}" is a file, but a folder is expected')
     names = {file.name for file in path.iterdir()} - {LOCK} if path.exists() else set()
-    is_own = marks[0] in names or names <= {*marks[1:], *(f"{name}.part" for name in marks)}
+    is_own = any((path / place / marks[0]).exists() for place in (".", *earlier.NAMES)) or names <= {*earlier.NAMES, *marks[1:], *(f"{name}.part" for name in marks)}
     if resume and not is_own:
         raise InputError(f'"{path}" has no {kind} that can be resumed; another folder is expected for --output, or --overwrite')
     if overwrite and not is_own:
@@ -53,15 +54,16 @@ def is_finished(path):
 class Folder:
     """Folder of a fit."""
 
-    def __init__(self, path, resume, overwrite):
-        """Constructor; writes nothing yet. Raises InputError if the folder has content that must not be replaced or
-        resumed."""
-        self.path, self.resume, self.overwrite, self.lock = pathlib.Path(path), resume, overwrite, None
+    def __init__(self, path, resume, overwrite, comparison=None):
+        """Constructor; writes nothing yet. comparison: that of which the fit is a part. Raises InputError if the folder
+        has content that must not be replaced or resumed."""
+        self.path, self.resume, self.overwrite, self.comparison, self.lock = pathlib.Path(path), resume, overwrite, comparison, None
+        self.earlier, self.is_continued = earlier.Earlier(self.path, OWN), False
         self.require_usable()
 
     def require_usable(self):
         """Raises InputError if the folder is not free, not that of a fit, or not to be replaced."""
-        links = [name for name in (LOCK, "starts", *OWN) if (self.path / name).is_symlink()]
+        links = [name for name in (LOCK, *earlier.NAMES, *OWN) if (self.path / name).is_symlink()]
         if links:
             raise FileError(f'"{self.path / links[0]}" is a link, but one of the program\'s own is expected')
         require_usable(self.path, "fit", (INPUTS, *EARLY), self.resume, self.overwrite)
@@ -72,12 +74,14 @@ class Folder:
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             self.lock = _locked(self.path / LOCK)
+            self.earlier.recover()
             self.require_usable()  # the previous owner of the lock may have written
             inputs = {"data": _digest(model.data), "files": _files_of(model.parameters)}
             if self.resume and (self.path / INPUTS).exists():
                 self.require_same(model, inputs)
+                self.is_continued = True
             else:
-                self.clear()
+                self.earlier.move_aside(self.comparison.was_finished if self.comparison else is_finished(self.path))
                 (self.path / "starts").mkdir()
                 write_whole(self.path / "original.prm", pathlib.Path(name).read_bytes())
                 write_whole(self.path / "parameters.prm", model.effective.encode())
@@ -109,14 +113,10 @@ class Folder:
             raise InputError(f'the fit in "{self.path}" was made with other data; it can only be resumed with the same ones')
         write_whole(self.path / "parameters.prm", model.effective.encode())
 
-    def clear(self):
-        """Removes the files of a fit."""
-        for name in OWN:
-            (self.path / name).unlink(missing_ok=True)
-        for file in (self.path / "starts").glob("*.json*"):
-            file.unlink()
-        if (self.path / "starts").is_dir():
-            (self.path / "starts").rmdir()
+    def give_up(self):
+        """Leaves nothing of a fit that was begun, and the earlier results as they were. What is resumed stays as it is."""
+        if self.lock is not None and not self.is_continued:
+            self.earlier.move_back()
 
     def leave(self):
         """Releases the folder; removes it if it is empty."""

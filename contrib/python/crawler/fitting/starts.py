@@ -32,6 +32,8 @@ def best_of_starts(problem, kept, workers, progress):
     for found in searched(problem, missing, min(workers, len(missing))):
         kept[found["start"]] = found
         _see(problem, found)
+        if len(points) == 1 and found["squares"] == math.inf:
+            break  # its reason is that of the InputError below
         least = _root_mean_square(problem, min(one["squares"] for one in wanted_of(problem, kept)))
         progress(f"start {found['start'] + 1} of {len(points)}: " + (
             found["reason"] if found["squares"] == math.inf else f"residuals {_root_mean_square(problem, found['squares']):.6g} (root mean square{' in deviations' if len(problem.data.series) > 1 else ''}), least so far {least:.6g}"))
