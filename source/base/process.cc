@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -61,11 +62,10 @@ namespace crawler
       {
         child    = 0;
         awaiting = 0;
-        sigset_t ours;
-        sigemptyset(&ours);
+        sigemptyset(&ours_);
         for (const int number : numbers)
-          sigaddset(&ours, number);
-        sigprocmask(SIG_BLOCK, &ours, &mask_);
+          sigaddset(&ours_, number);
+        sigprocmask(SIG_BLOCK, &ours_, &mask_);
         struct sigaction action = {};
         action.sa_sigaction     = pass_on;
         action.sa_flags         = SA_SIGINFO | SA_RESTART;
@@ -86,30 +86,49 @@ namespace crawler
 
       SignalsForChild(const SignalsForChild &) = delete;
 
-      /// Starts the child with the previous signal handling. Returns whether it has started.
+      /// Starts the child with the previous signal handling, but the signals blocked. Returns whether it has started.
       bool
       start(pid_t &id, std::vector<char *> &words, const posix_spawn_file_actions_t &actions)
       {
         posix_spawnattr_t attributes;
         posix_spawnattr_init(&attributes);
-        posix_spawnattr_setsigmask(&attributes, &mask_);
+        posix_spawnattr_setsigmask(&attributes, &ours_);
         posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
         const bool started = posix_spawnp(&id, words[0], &actions, &attributes, words.data(), environ) == 0;
         posix_spawnattr_destroy(&attributes);
         if (started)
         {
           child = id;
-          if (const int number = awaiting)
+          if (const int number = waiting())
             kill(id, number);
           sigprocmask(SIG_SETMASK, &mask_, nullptr);
         }
         return started;
       }
 
+      /// Returns whether this signal is one of those that are forwarded.
+      static bool
+      has(const int number)
+      {
+        return std::ranges::find(numbers, number) != numbers.end();
+      }
+
     private:
+      /// Signal that has come before there was a child, also from a terminal; 0 without one.
+      int
+      waiting() const
+      {
+        sigset_t pending;
+        sigpending(&pending);
+        for (std::size_t i = 0; i < numbers.size(); ++i)
+          if (sigismember(&pending, numbers[i]) == 1 && before_[i].sa_handler != SIG_IGN)
+            return numbers[i];
+        return awaiting;
+      }
+
       static constexpr std::array<int, 3> numbers = {{SIGINT, SIGTERM, SIGUSR1}};
       std::array<struct sigaction, numbers.size()> before_;
-      sigset_t mask_;
+      sigset_t ours_, mask_;
     };
   } // namespace
 
@@ -156,6 +175,7 @@ namespace crawler
         return end;
     if (WIFEXITED(status))
       end.status = WEXITSTATUS(status);
+    end.stopped = WIFSIGNALED(status) && SignalsForChild::has(WTERMSIG(status));
     return end;
   }
 

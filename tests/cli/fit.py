@@ -176,6 +176,35 @@ def resumes_a_comparison():
     check(ended.returncode == 2 and "fit_worm.prm: the scene cannot be run" in ended.stderr and not pathlib.Path("new").exists(), f"no scene runs: {ended.stderr}")
 
 
+STOPPER = """import os, signal, sys
+class Stopper:
+    def find_spec(self, name, path=None, target=None):
+        if name == os.environ["STOP_AT"] and ("--multiprocessing-fork" in sys.orig_argv) == (os.environ["STOP_IN"] == "worker"):
+            number = getattr(signal, os.environ["STOP_BY"])
+            if os.environ["STOP_IN"] == "dead":
+                signal.pthread_sigmask(signal.SIG_UNBLOCK, [number])
+                signal.signal(number, signal.SIG_DFL)
+                os.kill(os.getpid(), number)
+            os.killpg(0, number)
+sys.meta_path.insert(0, Stopper())
+"""
+
+
+def stops_while_it_loads():
+    """A signal to the whole group while modules are loaded, in the program's Python or in its workers, ends a fit in order; so does
+    the death of Python by one."""
+    pathlib.Path("stopper").mkdir()
+    pathlib.Path("stopper/sitecustomize.py").write_text(STOPPER + "Stopper().find_spec('sitecustomize')\n", encoding="utf-8")
+    for module in ("sitecustomize", "argparse", "scipy.stats", "crawler.fitting.starts"):
+        for where, names in (("main", ("SIGINT", "SIGTERM", "SIGUSR1")), ("worker", ("SIGINT", "SIGUSR1")), ("dead", ("SIGINT",))):
+            for name in names if where != "worker" or module in ("argparse", "crawler.fitting.starts") else ():
+                ended = call([PROGRAM, *THREE, "--output", "early", "--workers", "2"], os.getcwd(), start_new_session=True, restore_signals=True,
+                             variables={"PYTHONPATH": os.path.abspath("stopper"), "STOP_AT": module, "STOP_BY": name, "STOP_IN": where})
+                check(ended.returncode == 5 and ended.stderr.count("\n") == 1 and "stopped by a signal" in ended.stderr and "\\x0a" not in ended.stderr,
+                      f"{name} while {module} is loaded ({where}): {ended.returncode}, {ended.stderr}")
+                shutil.rmtree("early", ignore_errors=True)
+
+
 def overwrites():
     """Earlier results are lost when new ones are there, not before: a refusal, a stop or a kill brings them back or leaves them aside."""
     no_run = sets({"Active stress/Travelling wave/Amplitude": 0.79, "Body/Elastic modulus": 0.31})
@@ -286,6 +315,7 @@ def main():
     ended = crawler("run", "fit_worm.prm", "--output", "run")
     check(ended.returncode == 0 and 'section "Fit" has no effect with "crawler run"' in ended.stdout, f"a run does not note section Fit: {ended.stdout}")
     resumes()
+    stops_while_it_loads()
     overwrites()
     resumes_a_comparison()
     fits_two_kinds_together()

@@ -5,6 +5,8 @@ cannot tell, and refusals.
 
     fit.py FOLDER_OF_THE_PYTHON_PACKAGE
 """
+import contextlib
+import io
 import pathlib
 import pickle
 import re
@@ -524,6 +526,31 @@ class Untold(unittest.TestCase):
             self.assertEqual(found.undetermined, [])
             self.assertEqual(f"there is no deviation of {GAMMA}" in " ".join(found.notes), name == GAMMA)
             self.assertAlmostEqual(abs(found.goodness.largest_residual.deviations) / size, 1, delta=0.5)
+
+
+class Screen(unittest.TestCase):
+    """Lines on the screen."""
+
+    def lines(self, every, **more):
+        """Those of a fit that may print one each so many seconds."""
+        text = io.StringIO()
+        with unittest.mock.patch("crawler.fitting.progress.EVERY", every), contextlib.redirect_stdout(text):
+            fit(STRESS, tracks(STRESS), P, K, standard_deviation=NOISE, verbose=True, **more)
+        return text.getvalue().splitlines()
+
+    def test_says_what_it_does(self):
+        """Behind each run if no time is to pass between; only beginnings and ends if that is long."""
+        lines = self.lines(0, starts=2, accuracy=1e-4)
+        for words in ("first runs: 1 runs", "start 1 of 2: 3 runs, residuals 0.", "start 2 of 2: 3 runs", "start 2 of 2: residuals", "derivatives at the best values: 1 ",
+                      "curvature at the best values: 1 ", f"profile of chi-square of {P}: 1 ", f"profile of chi-square of {K}: 1 "):
+            self.assertTrue(any(line.startswith(words) for line in lines), f"{words} is missing in {lines}")
+        counted = [int(found[1]) for line in lines if (found := re.match(r"start 1 of 2: (\d+) runs", line))]
+        self.assertEqual(counted, list(range(1, len(counted) + 1)))
+        self.assertEqual([line.split(":")[0] for line in self.lines(1e6, starts=2)], ["start 1 of 2", "start 2 of 2"])
+
+    def test_says_what_other_processes_do(self):
+        last = [line for line in self.lines(0, starts=2, workers=2) if line.startswith("searches on 2 processes")][-1]
+        self.assertRegex(last, r": [1-9]\d* runs, residuals 0\.\d+ so far")
 
 
 class Files(unittest.TestCase):

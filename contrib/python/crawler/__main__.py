@@ -5,6 +5,7 @@
 """
 import importlib
 import pathlib
+import signal
 import sys
 
 HERE = pathlib.Path(__file__).absolute().parent  # in the build folder, or installed
@@ -24,7 +25,9 @@ def place_of_package():
 
 if __name__ == "__main__":
     sys.path.insert(0, str(HERE))
-    from needs import InputError, complain, need
+    from needs import STOPPING, InputError, complain, end_with_program, need
+    signal.pthread_sigmask(signal.SIG_BLOCK, STOPPING)  # until run_script()
+    end_with_program()
     if sys.argv[1:2] == [] or sys.argv[1] not in COMMANDS:
         complain(f"one of the commands {', '.join(COMMANDS)} is expected; others need the full program (doc/install.md)")
         sys.exit(InputError.code)

@@ -130,26 +130,34 @@ class Parser(argparse.ArgumentParser):
         self.exit(InputError.code)
 
 
-def _stop(_number, _frame):
-    """Ends the script in an orderly way at the first signal; further ones are ignored."""
-    for number in STOPPING:
-        signal.signal(number, signal.SIG_IGN)
-    raise KeyboardInterrupt
+def _stop(_number, _frame, seen=[]):  # noqa: B006
+    """Ends the script in an orderly way at the first signal; further ones do nothing."""
+    if not seen:
+        seen.append(_number)
+        raise KeyboardInterrupt
 
 
-def _end_with_the_program():
-    """Ends the script when the program that waits for it is killed (prctl(2), PR_SET_PDEATHSIG)."""
-    if "CRAWLER_PROGRAM" in os.environ and hasattr(ctypes.CDLL(None), "prctl"):
-        ctypes.CDLL(None).prctl(1, signal.SIGTERM)
+def end_with_parent(number):
+    """Asks for this signal when the process that waits for this one is killed (prctl(2), PR_SET_PDEATHSIG)."""
+    if hasattr(ctypes.CDLL(None), "prctl"):
+        ctypes.CDLL(None).prctl(1, int(number))
+
+
+def end_with_program(number=signal.SIGTERM):
+    """Asks for this signal when the program, if it started this script, is killed."""
+    if "CRAWLER_PROGRAM" in os.environ:
+        end_with_parent(number)
 
 
 def run_script(main):
-    """Calls main() and reports errors in one sentence."""
-    _end_with_the_program()
+    """Calls main() and reports errors in one sentence. Signals, which the program blocks until here, stop it in
+    order."""
+    end_with_program()
     for number in STOPPING:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, _stop)
     try:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPPING)
         main()
         sys.stdout.flush()
     except (InputError, FileError, Failed, Stopped) as error:

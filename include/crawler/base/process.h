@@ -16,12 +16,14 @@ namespace crawler
   struct ProgramEnd
   {
     bool started = false;
-    int status   = -1;  ///< exit status; -1: a signal ended it, or it did not start
-    std::string errors; ///< its standard error
+    int status   = -1;    ///< exit status; -1: a signal ended it, or it did not start
+    bool stopped = false; ///< SIGINT, SIGTERM or SIGUSR1 ended it
+    std::string errors;   ///< its standard error
   };
 
   /// Runs another program, searched for in the PATH, without input, and waits for its end. Its standard output is shown
-  /// if @p shown. Signals that would stop this process (SIGINT, SIGTERM, SIGUSR1) stop that program instead.
+  /// if @p shown. Signals that would stop this process (SIGINT, SIGTERM, SIGUSR1) stop that program instead; it begins
+  /// with these signals blocked, and unblocks them when it can stop in order.
   ProgramEnd
   run_program(const std::vector<std::string> &command, bool shown);
 

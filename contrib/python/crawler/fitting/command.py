@@ -4,12 +4,13 @@ import contextlib
 import os
 import pathlib
 import shlex
+import signal
 import sys
 import time
 
 from .. import _compiled
 from ..measured.options import add_reading_options, reading_of
-from ..needs import Failed, InputError, Parser, Stopped
+from ..needs import Failed, InputError, Parser, Stopped, end_with_program
 from . import Interrupted, find, prepared
 from .comparison import Comparison, require_comparable
 from .folder import Folder, drawn
@@ -199,6 +200,7 @@ def main():
     """Fits, writes and reports."""
     start = time.monotonic()
     options = command_line().parse_intermixed_args(sys.argv[2:])
+    end_with_program(signal.SIGKILL)  # so that it does not hold its folder any longer; finished starts are kept
     say = Screen(options.quiet)
     require_sense(options)
     comparison = Comparison(path_of(options.files[0], options).parent, options) if len(options.files) > 1 else None

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ..needs import Failed, InputError
+from .progress import Progress
 from .result import NEAR, SHARE, Best, described, unfinished
 from .starts import best_of_starts, table_of_starts
 from .uncertainty import covariance, undetermined_directions
@@ -25,8 +26,9 @@ class Problem:
     """Residuals in scaled variables: 0 to 1 over the ranges, with the deviation of the data, where known, scaled to
     1."""
 
-    def __init__(self, model, data):
-        self.model, self.data = model, data
+    def __init__(self, model, data, say=lambda text: None):
+        self.model, self.data, self.progress = model, data, Progress(say)
+        model.ran = lambda: self.progress.ran(1, self.so_far)
         self.width = model.high - model.low
         units = [one.deviation or float(np.nanstd(one.values - np.nanmean(one.values, axis=0))) or 1.0 for one in data.series]
         self.scales = data.relative * data.flat(units)  # [datum]
@@ -34,6 +36,15 @@ class Problem:
         self.n_rows = len(data.places) if 0 < data.place_deviation < math.inf else 0  # rows that hold places
         self.last = None  # scaled variables, values of the last run, and the basis of the nuisance
         self.least = (math.inf, None, data.places)  # least sum of squares so far, with its scaled variables and places
+
+    def root_mean_square(self, squares):
+        """Size of residuals with this sum of squares, in the unit of the data or, for several kinds, in deviations."""
+        return math.sqrt(squares / self.data.n) * self.scale
+
+    def so_far(self, squares=None):
+        """Least residuals so far, or those of this sum of squares, in words."""
+        squares = self.least[0] if squares is None else squares
+        return f", residuals {self.root_mean_square(squares):.6g} so far" if squares < math.inf else ""
 
     def run(self, z):
         """Values of the scene [datum], and an orthonormal basis of the effects of origin and places."""
@@ -146,16 +157,18 @@ def find(model, progress=lambda text: None, kept=None, workers=1):
     """
     if workers < 1:
         raise InputError(f'"workers" is {workers}, but a number of processes from 1 is expected')
-    problem, kept = Problem(model, model.data), {} if kept is None else kept
+    problem, kept = Problem(model, model.data, progress), {} if kept is None else kept
+    progress = problem.progress
     model.accuracy = min(max(float(model.parameters["Accuracy"]), LEAST_ACCURACY), LARGEST_ACCURACY)
     try:
+        progress.begin("first runs")
         model.limit_steps()
         model.far_units = require_units(model)
         for note in model.far_units:
             progress(note)
-        z, why = best_of_starts(problem, kept, workers, progress)
+        z, why = best_of_starts(problem, kept, workers)
         for descent in range(MOST_DESCENTS + 1):
-            best, why = (None, why) if why else _refined(problem, z, progress)
+            best, why = (None, why) if why else _refined(problem, z)
             if why:
                 problem.go_to_least()
                 return unfinished(problem, table_of_starts(problem, kept), why)
@@ -165,6 +178,7 @@ def find(model, progress=lambda text: None, kept=None, workers=1):
             if residuals @ residuals - problem.least[0] < LOWER * max(best.deviation ** 2, residuals @ residuals / len(residuals)):
                 return found
             progress("a lower minimum beside the profiles of chi-square: the search goes on there")
+            progress.begin("search from there")
             problem.go_to_least()
             _, z, why = problem.search(problem.least[1])
             why = why or ("chi-square falls again and again beside its profiles" if descent == MOST_DESCENTS - 1 else "")
@@ -173,11 +187,12 @@ def find(model, progress=lambda text: None, kept=None, workers=1):
         raise Interrupted(unfinished(problem, starts) if problem.go_to_least() else None) from None
 
 
-def _refined(problem, z, progress):
+def _refined(problem, z):
     """(Best of a search from its end, "") with runs so accurate that the statistical error is larger than theirs; (None,
     why) if the search does not end in order."""
     model = problem.model
     for refinement in range(MOST_REFINEMENTS + 1):
+        problem.progress.begin("derivatives at the best values")
         try:
             best = _looked_at(problem, z)
         except Failed as error:
@@ -185,7 +200,8 @@ def _refined(problem, z, progress):
         if best.worst <= SHARE or refinement == MOST_REFINEMENTS or model.accuracy <= LEAST_ACCURACY:
             return best, ""
         model.accuracy = max(model.accuracy * min(0.3, 0.3 * SHARE / best.worst), LEAST_ACCURACY)
-        progress(f"accuracy {model.accuracy:.1g}, so that the numerical error is small compared with the statistical one")
+        problem.progress(f"accuracy {model.accuracy:.1g}, so that the numerical error is small compared with the statistical one")
+        problem.progress.begin("search with this accuracy")
         problem.last = None
         _, z, why = problem.search(z)
         if why:

@@ -43,10 +43,11 @@ class Model:
         self.far_units = []  # sentences on data that may be in other units than the scene
         self.is_refused = False  # the problem is that of a wrong input
         self.n_steps, self.most_steps = 0, self.parameters[STEP_LIMIT]
+        self.ran = lambda: None  # called behind each run
         self._runs, self._chosen_at = None, None  # FieldRuns, and the values and Accuracy at which its numerics were chosen
 
     def __getstate__(self):
-        return {**vars(self), "_runs": None, "_chosen_at": None}
+        return {**{name: value for name, value in vars(self).items() if name != "ran"}, "_runs": None, "_chosen_at": None}
 
     def _require_seen(self):
         """Raises InputError for variables that do not affect the data, or with which a body ends before its data do."""
@@ -79,6 +80,8 @@ class Model:
         except InputError as error:  # e.g. a formula that is no friction with these constants
             self.problem, self.is_refused = str(error), True
             return None
+        finally:
+            self.ran()
 
     def __call__(self, x, accuracy=None, is_similar=False):
         """Returns the values [datum], and the stretch [time, marker] if there are markers; NaN if the run does not
@@ -120,6 +123,7 @@ class Model:
         self.n_runs += 1
         settings = [*self.overrides(x), "Output/Number of snapshots=0", "Output/Statistics=false", "Output/Sensitivities=", f"Accuracy={self.accuracy!r}"]
         summary = json.loads(_compiled().run(self.scene(settings), None, None)["summary"])
+        self.ran()
         error = (summary.get("displacement_error") or {}).get("total")
         return error if error is not None else math.nan if self.parameters["Error estimate"] else 0.0
 

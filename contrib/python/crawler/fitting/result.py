@@ -94,7 +94,7 @@ def unfinished(problem, starts, why=""):
                f"stopped by a signal after {len(starts)} of {int(model.parameters['Fit/Starts'])} starts; --resume continues")
     found = {"status": "failed" if why else "stopped", "reason": "no_convergence" if why else "signal", "message": message,
              "variables": variables, "undetermined": [], "notes": [*data.notes, *model.far_units, *_of_cut_runs(model), *([message] if why else [])],
-             "goodness": goodness, "residuals": math.sqrt(squares / goodness["n_data"]) * problem.scale, "accuracy": model.accuracy,
+             "goodness": goodness, "residuals": problem.root_mean_square(squares), "accuracy": model.accuracy,
              "n_runs": model.n_runs, "starts": starts}
     return Fit(found, data, -residual * problem.scales, dict(one.split("=", 1) for one in model.overrides(values)), None)
 
@@ -134,6 +134,7 @@ def _variables(problem, best, values):
                       best.jacobian)
     at_best, basis = problem.run(best.z)
     model.choose_at(values)
+    problem.progress.begin("curvature at the best values")
     bias = curvature_bias(lambda z: problem.scaled(model(problem.real(z), is_similar=True)[0] - at_best, basis) / best.deviation, best.jacobian, best.z)
     for j, name in enumerate(model.names):
         at, is_told = best.z[j], not best.involved[j]
@@ -141,6 +142,7 @@ def _variables(problem, best, values):
                **{level: None for level in LEVELS}, "profile": [], "from": float(model.low[j]), "to": float(model.high[j]), "determined": is_told,
                "at_limit": ""}
         variables[name] = one
+        problem.progress.begin(f"profile of chi-square of {name}")
         ends, curve = profile.interval(j, spread[j]) if is_told else ({"interval_95": [None, None]}, None)
         for side, key, gap in zip(ends["interval_95"], ("from", "to"), (at, 1 - at)):
             if side is None and gap < NEAR:

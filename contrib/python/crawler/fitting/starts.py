@@ -2,41 +2,43 @@
 """Searches from several starts, in this process or in others. The result of a start depends on the start only, so that
 it is the same on any number of processes, and for a fit that was interrupted."""
 import concurrent.futures
+import contextlib
 import math
 import multiprocessing
-import os
 import signal
 import sys
-import threading
 import types
+from multiprocessing import resource_tracker
 
 import numpy as np
 
-from ..needs import InputError, Stopped
+from ..needs import STOPPING, InputError, Stopped, end_with_parent
+from . import progress
 
 
-def best_of_starts(problem, kept, workers, progress):
+def best_of_starts(problem, kept, workers):
     """Best of all starts: (scaled variables, "" or why it did not end in order); places of the data are those of this
     start then.
 
     kept: {number: result of search_from()} of starts that are finished; the others are added to it.
     """
-    model, places = problem.model, problem.data.places
+    model, places, say = problem.model, problem.data.places, problem.progress
     points = first_points(model, int(model.parameters["Fit/Starts"]), int(model.parameters["Fit/Seed"]))
     missing = {number: z for number, z in enumerate(points) if number not in kept}
     for one in wanted_of(problem, kept):
         _see(problem, one)
     if len(missing) < len(points):
-        progress(f"{len(points) - len(missing)} of {len(points)} starts already done")
+        say(f"{len(points) - len(missing)} of {len(points)} starts already done")
     searched = _searched_by_others if min(workers, len(missing)) > 1 else _searched_here
-    for found in searched(problem, missing, min(workers, len(missing))):
-        kept[found["start"]] = found
-        _see(problem, found)
-        if len(points) == 1 and found["squares"] == math.inf:
-            break  # its reason is that of the InputError below
-        least = _root_mean_square(problem, min(one["squares"] for one in wanted_of(problem, kept)))
-        progress(f"start {found['start'] + 1} of {len(points)}: " + (
-            found["reason"] if found["squares"] == math.inf else f"residuals {_root_mean_square(problem, found['squares']):.6g} (root mean square{' in deviations' if len(problem.data.series) > 1 else ''}), least so far {least:.6g}"))
+    with contextlib.closing(searched(problem, missing, min(workers, len(missing)))) as results:
+        for found in results:
+            kept[found["start"]] = found
+            _see(problem, found)
+            if len(points) == 1 and found["squares"] == math.inf:
+                break  # its reason is that of the InputError below
+            least = problem.root_mean_square(min(one["squares"] for one in wanted_of(problem, kept)))
+            say(f"start {found['start'] + 1} of {len(points)}: " + (
+                found["reason"] if found["squares"] == math.inf else f"residuals {problem.root_mean_square(found['squares']):.6g} (root mean square{' in deviations' if len(problem.data.series) > 1 else ''}), least so far {least:.6g}"))
     best = min(wanted_of(problem, kept), key=lambda one: one["squares"])
     model.n_runs, model.n_cut = (sum(one[key] for one in wanted_of(problem, kept)) for key in ("n_runs", "n_cut"))
     if best["squares"] == math.inf:
@@ -72,12 +74,8 @@ def search_from(problem, number, z, places):
 def table_of_starts(problem, kept):
     """Table [{start, residuals, reason, values}] of finished starts: residuals is their root mean square, None if there
     is no run."""
-    return [{"start": one["start"], "residuals": None if one["squares"] == math.inf else _root_mean_square(problem, one["squares"]), "reason": one["reason"],
+    return [{"start": one["start"], "residuals": None if one["squares"] == math.inf else problem.root_mean_square(one["squares"]), "reason": one["reason"],
              "values": dict(zip(problem.model.names, problem.real(one["z"]).tolist()))} for one in wanted_of(problem, kept)]
-
-
-def _root_mean_square(problem, squares):
-    return math.sqrt(squares / problem.data.n) * problem.scale
 
 
 def _see(problem, found):
@@ -92,42 +90,69 @@ def _searched_here(problem, missing, _workers):
     """Yields the results of search_from(), one after the other."""
     places = problem.data.places
     for number, z in missing.items():
+        problem.progress.begin(f"start {number + 1} of {int(problem.model.parameters['Fit/Starts'])}")
         yield search_from(problem, number, z, places)
     problem.data.places = places
 
 
 def _searched_by_others(problem, missing, workers):
     """Yields results of searches in other processes, in the order in which they end."""
-    with concurrent.futures.ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _begin_worker, (type(problem), problem.model)) as pool:
+    others, spawn = multiprocessing.active_children(), multiprocessing.get_context("spawn")
+    n_runs, least = (spawn.RawArray("d", [none] * (max(missing) + 1)) for none in (0.0, math.inf))  # [start]
+    with contextlib.ExitStack() as stack:
         try:
-            # Workers import __main__: an empty one keeps them from running a user's script.
-            main, sys.modules["__main__"] = sys.modules["__main__"], types.ModuleType("__main__")
-            try:
+            with _without_signals():
+                pool = stack.enter_context(concurrent.futures.ProcessPoolExecutor(
+                    workers, spawn, _begin_worker, (type(problem), problem.model, n_runs, least)))
                 futures = [pool.submit(_search_in_worker, number, z) for number, z in missing.items()]
-            finally:
-                sys.modules["__main__"] = main
-            for future in concurrent.futures.as_completed(futures):
-                yield future.result()
+            problem.progress.begin(f"searches on {workers} processes")
+            seen = 0
+            while futures:
+                done, futures = concurrent.futures.wait(futures, progress.EVERY, concurrent.futures.FIRST_COMPLETED)
+                yield from (future.result() for future in done)
+                seen, before = sum(n_runs), seen
+                problem.progress.ran(int(seen - before), lambda: problem.so_far(min(least)))
         except concurrent.futures.process.BrokenProcessPool:
             raise Stopped("a process of the fit was killed, perhaps for lack of memory") from None
         except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            for worker in multiprocessing.active_children():
-                worker.terminate()
+            for process in multiprocessing.active_children():
+                if process not in others:
+                    process.kill()  # so that the pool ends, too
             raise
 
 
-def _begin_worker(kind, model):
-    """Ignores Ctrl-C, which is for the parent process, and ends the worker with the parent."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=lambda: (multiprocessing.parent_process().join(), os._exit(1)), daemon=True).start()
-    _search_in_worker.problem = kind(model, model.data)
+@contextlib.contextmanager
+def _without_signals():
+    """Starts of processes within: none of them gets a signal that is for the parent, which ends them; nor does Python's
+    process for semaphores, after which each of these would print an error."""
+    main, before = sys.modules["__main__"], signal.pthread_sigmask(signal.SIG_BLOCK, STOPPING)
+    sys.modules["__main__"] = types.ModuleType("__main__")  # which workers import, instead of running a user's script
+    try:
+        resource_tracker.ensure_running()
+        signal.pthread_sigmask(signal.SIG_BLOCK, STOPPING)  # it unblocks some
+        yield
+    finally:
+        sys.modules["__main__"] = main
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _begin_worker(kind, model, n_runs, least):
+    """Makes the problem of a worker, which ends with its parent. n_runs, least: for the parent, the number of runs and
+    the least sum of squares of each start."""
+    end_with_parent(signal.SIGKILL)
+    _search_in_worker.problem, _search_in_worker.shared = kind(model, model.data), (n_runs, least)
 
 
 def _search_in_worker(number, z):
     """Calls search_from() with the problem of this process, whose places are moved by a search."""
-    problem = _search_in_worker.problem
+    problem, (n_runs, least) = _search_in_worker.problem, _search_in_worker.shared
     places = problem.data.places
+
+    def ran():
+        n_runs[number] += 1
+        least[number] = problem.least[0]
+
+    problem.model.ran = ran
     try:
         return search_from(problem, number, z, places)
     finally:
