@@ -160,9 +160,9 @@ def give_up(folders, name, comparison):
     """Leaves nothing of the fit with this name, and all earlier results as they were."""
     for one, folder in folders.items():
         if one == name or folder.earlier.are_aside():
-            folder.give_up()
-    if comparison:
-        comparison.give_up()
+            folder.earlier.move_back()
+    if comparison and comparison.earlier.are_aside():
+        comparison.earlier.move_back()
 
 
 def fitted(models, folders, comparison, options, say):

@@ -43,11 +43,6 @@ class Comparison:
         write_whole(self.path / SUMMARY, bytes_of({"status": "stopped", "reason": "signal", "comparison": [], "message":
                                                    f"the comparison of {', '.join(self.files)} has not ended ({there}); --resume continues"}))
 
-    def give_up(self):
-        """Restores the earlier comparison if there was one."""
-        if self.earlier.are_aside():
-            self.earlier.move_back()
-
     def leave(self):
         """Removes the folder if no scene has left anything in it."""
         if any((self.path / pathlib.Path(name).stem).exists() for name in self.files):

@@ -9,8 +9,8 @@ NAMES = (ASIDE, f"{ASIDE}.part")  # the latter has a part of the earlier results
 
 
 def remove(path, names):
-    """Removes files, and folders with all that is in them."""
-    for name in names:
+    """Removes files, and folders with all that is in them; the last ones first, as the first ones tell whose they are."""
+    for name in reversed(names):
         if (path / name).is_dir():
             shutil.rmtree(path / name)
         else:
@@ -22,7 +22,7 @@ class Earlier:
 
     def __init__(self, path, names):
         """Constructor; changes nothing yet."""
-        self.path, self.names = pathlib.Path(path), names
+        self.path, self.names, self.has_made_place = pathlib.Path(path), names, False
         self.aside, self.moving = (self.path / name for name in NAMES)
 
     def are_aside(self):
@@ -39,23 +39,24 @@ class Earlier:
     def move_aside(self, is_over):
         """Makes place for new results. is_over: those that are aside already have been replaced; otherwise it is the
         newer ones, which were not finished, that are removed."""
+        there = [name for name in self.names if (self.path / name).exists()]
         if self.are_aside() and not is_over:
             remove(self.path, self.names)
-            return
-        self.drop()
-        there = [name for name in self.names if (self.path / name).exists()]
-        if there:
+        elif there:
+            self.drop()
             self.moving.mkdir()
             for name in there:
                 os.replace(self.path / name, self.moving / name)
             self.moving.rename(self.aside)
+        self.has_made_place = True
 
     def move_back(self):
-        """Removes new results and moves the earlier ones back."""
-        remove(self.path, self.names)
-        if self.are_aside():
-            self.aside.rename(self.moving)
-            self.recover()
+        """Removes new results, if there was made place for them, and moves the earlier ones back."""
+        if self.has_made_place:
+            remove(self.path, self.names)
+            if self.are_aside():
+                self.aside.rename(self.moving)
+        self.recover()
 
     def drop(self):
         """Removes the earlier results for good."""

@@ -58,7 +58,7 @@ class Folder:
         """Constructor; writes nothing yet. comparison: that of which the fit is a part. Raises InputError if the folder
         has content that must not be replaced or resumed."""
         self.path, self.resume, self.overwrite, self.comparison, self.lock = pathlib.Path(path), resume, overwrite, comparison, None
-        self.earlier, self.is_continued = earlier.Earlier(self.path, OWN), False
+        self.earlier = earlier.Earlier(self.path, OWN)
         self.require_usable()
 
     def require_usable(self):
@@ -79,19 +79,25 @@ class Folder:
             inputs = {"data": _digest(model.data), "files": _files_of(model.parameters)}
             if self.resume and (self.path / INPUTS).exists():
                 self.require_same(model, inputs)
-                self.is_continued = True
             else:
-                self.earlier.move_aside(self.comparison.was_finished if self.comparison else is_finished(self.path))
-                (self.path / "starts").mkdir()
-                write_whole(self.path / "original.prm", pathlib.Path(name).read_bytes())
-                write_whole(self.path / "parameters.prm", model.effective.encode())
-                write_whole(self.path / INPUTS, bytes_of(inputs))
+                self.start_over(name, model, inputs)
             return Starts(self.path / "starts", len(model.names), len(model.data.places))
         except (OSError, InputError) as error:
             self.leave()
             if isinstance(error, (FileError, InputError)):
                 raise
             raise FileError(f'cannot write to "{self.path}": {error.strerror or error}') from None
+
+    def start_over(self, name, model, inputs):
+        """Writes the files that identify a fit. What was there stays if that is impossible or interrupted."""
+        try:
+            self.earlier.move_aside(self.comparison.was_finished if self.comparison else is_finished(self.path))
+            write_whole(self.path / "original.prm", pathlib.Path(name).read_bytes())
+            write_whole(self.path / "parameters.prm", model.effective.encode())
+            write_whole(self.path / INPUTS, bytes_of(inputs))
+        except BaseException:
+            self.earlier.move_back()
+            raise
 
     def require_same(self, model, inputs):
         """Raises InputError if the scene or the data differ from those of the fit in the folder."""
@@ -112,11 +118,6 @@ class Folder:
         if other_data:
             raise InputError(f'the fit in "{self.path}" was made with other data; it can only be resumed with the same ones')
         write_whole(self.path / "parameters.prm", model.effective.encode())
-
-    def give_up(self):
-        """Leaves nothing of a fit that was begun, and the earlier results as they were. What is resumed stays as it is."""
-        if self.lock is not None and not self.is_continued:
-            self.earlier.move_back()
 
     def leave(self):
         """Releases the folder; removes it if it is empty."""
