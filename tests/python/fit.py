@@ -362,7 +362,11 @@ class Valley(unittest.TestCase):
         self.assertIn("did not end", found.message)
         for one in found.variables.values():
             self.assertEqual([one[key] for key in ("determined", "deviation", "interval_95", "profile")], [None, None, None, []])
-        self.assertNotIn("information", found)
+        finished = self.from_start(2, 0.3)
+        self.assertEqual((finished.keys() - found.keys(), finished.goodness.keys(), finished.goodness.series[0].keys(), finished.information.keys()),
+                         (set(), found.goodness.keys(), found.goodness.series[0].keys(), found.information.keys()))
+        self.assertEqual([found.goodness.chi_square, found.goodness.probability, found.goodness.largest_residual, found.information.aic, found.correlation,
+                          found.goodness.series[0]["chi_square"]], 6 * [None])
 
 
 class NoRun(unittest.TestCase):
@@ -654,6 +658,7 @@ class Refusals(unittest.TestCase):
                 ("a list of numbers is expected", {"markers_at": "here"}), ('Variables" is empty', {"variables": {}}),
                 ("Anchoring exponent", {"variables": {BODY + "Anchoring exponnent": (1, 2)}}), ("in its range", {"variables": {P: (3, 4)}}),
                 ("whose Body/Length is 3", {"set": {BODY + "Length": 3}}), ("Standard deviation", {"place_deviation": 0.1}),
+                ('"Fit/Place deviation" is 0.5, but less than 0.5', {"place_deviation": 0.5, "standard_deviation": NOISE, "markers_at": S}),
                 ('"Body/Length" from 1.5 to 4, but the outermost marker is at 2', {"variables": {BODY + "Length": (1.5, 4)}, "markers_at": S}),
                 ("a list of places", {"variables": {BODY + "Length": (1.9, 4)}}), ("data do not depend", {"variables": {"Time/End time": (2, 4)}}),
                 ("of the type ndarray, but the name of a file or measured.Samples", {"data": np.zeros((41, 7))}),

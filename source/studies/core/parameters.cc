@@ -148,7 +148,8 @@ namespace crawler
              "the outermost markers at the ends of the body.");
     declarations.number("Place deviation", place_deviation, between(0., 1e100), "length")
       .means("Standard deviation of the places of the markers, which are found together with the variables, within "
-             "this deviation. Automatic: 0 for a list; places of the first frame are free.");
+             "this deviation, less than a quarter of the body. Automatic: 0 for a list; places of the first frame are "
+             "free.");
     declarations.choice("Origin", origin, {"unknown", "tail"})
       .means("Origin of the x of the tracks: an unknown place that is found together with the variables, or the place "
              "of the tail at the start of the run.");

@@ -10,6 +10,7 @@ from ..measured.samples import Samples, read_samples
 from ..needs import FileError, InputError
 
 SHRUNK, STRETCHED = 0.2, 3.0  # mean stretches between the outermost markers that no body has
+LARGEST_PLACE_DEVIATION = 0.25  # of markers, relative to the length of the body; places anywhere on it have 0.29
 SHORT = 0.02  # duration of the data, relative to the run, that may be one in other units
 CLOSE = 0.02  # distance of the outermost markers from the ends of the body that counts as none, relative to its length
 KINDS = {"x": "markers", "strain": "strain", "centre": "centre", "speed": "speed"}  # kinds by the quantity of Samples
@@ -183,6 +184,9 @@ def _places_of(samples, kind, parameters, name):
     length = parameters["Body/Length"]
     if kind == "markers":
         places, free = _places_of_markers(samples, parameters, length, name)
+        if LARGEST_PLACE_DEVIATION * length <= free < math.inf:
+            raise InputError(f'"Fit/Place deviation" is {free:g}, but less than {LARGEST_PLACE_DEVIATION * length:g}, {LARGEST_PLACE_DEVIATION:g} of Body/Length, '
+                             "is expected: a marker anywhere on the body has hardly more")
         _require_unit_of_markers(samples, places, name)
         return np.clip(places, 0, length), free
     if kind != "strain":

@@ -86,15 +86,17 @@ def unfinished(problem, starts, why=""):
                         **{level: None for level in LEVELS}, "profile": [], "from": float(low), "to": float(high), "determined": None,
                         "at_limit": ""}
                  for name, value, low, high in zip(model.names, values, model.low, model.high)}
-    goodness = {"n_data": data.n, "n_variables": len(z), "n_constants": data.n_constants,
-                "series": [{"kind": one.kind, "n_data": int(one.is_there.sum())} for one in data.series]}
+    goodness = {"n_data": data.n, "n_variables": len(z), "n_constants": data.n_constants, "chi_square": None,
+                "degrees_of_freedom": data.n - len(z) - data.n_constants, "probability": None, "largest_residual": None, "deviation_is_given": data.is_weighed,
+                "series": [{"kind": one.kind, "n_data": int(one.is_there.sum()), "chi_square": None, "deviation": one.deviation,
+                            "correlation_in_time": None} for one in data.series]}
     units = f"; {UNITS}" if data.is_weighed and squares > MUCH * data.n else ""
     message = (f"{why}; the values are those so far, and not the best ones, so there are no deviations; a nearer start, narrower ranges or "
                f"fewer variables are expected{units}" if why else
                f"stopped by a signal after {len(starts)} of {int(model.parameters['Fit/Starts'])} starts; --resume continues")
     found = {"status": "failed" if why else "stopped", "reason": "no_convergence" if why else "signal", "message": message,
              "variables": variables, "undetermined": [], "notes": [*data.notes, *model.far_units, *_of_cut_runs(model), *([message] if why else [])],
-             "goodness": goodness, "residuals": problem.root_mean_square(squares), "accuracy": model.accuracy,
+             "correlation": None, "goodness": goodness, "information": {"aic": None, "bic": None}, "residuals": problem.root_mean_square(squares), "accuracy": model.accuracy,
              "n_runs": model.n_runs, "starts": starts}
     return Fit(found, data, -residual * problem.scales, dict(one.split("=", 1) for one in model.overrides(values)), None)
 
