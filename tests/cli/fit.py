@@ -16,7 +16,7 @@ import tempfile
 import matplotlib.image
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, sets  # noqa: E402
+from program import Checks, call, environment, sets  # noqa: E402
 from tables import csv_rows, json_of  # noqa: E402
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
@@ -135,6 +135,17 @@ def resumes():
     check(not summary.exists() or json_of(summary)["status"] == "stopped", "a program that is killed leaves its fit behind")
     ended = crawler(*THREE, "--output", "orphan", "--resume")
     check(ended.returncode == 0 and contents("orphan") == whole, f"--resume behind a program that was killed: {ended.stderr}")
+    for workers in ("1", "2"):  # processes that wait, and cannot end in order, hold the folder no longer than the program lives
+        shutil.rmtree("held", ignore_errors=True)
+        held = (*THREE, "--output", "held", "--workers", workers)
+        with subprocess.Popen([PROGRAM, *held], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment("step:200:STOP")) as process:
+            while process.poll() is None and not pathlib.Path("held/inputs.json").exists():
+                pass
+            process.kill()
+            process.wait()
+            ended = crawler(*held, "--resume")
+            check(ended.returncode == 0 and contents("held") == whole, f"--resume at once behind a kill, {workers} processes: {ended.returncode}, {ended.stderr}")
+            process.stdout.read()  # comes to its end if no process is left
     pathlib.Path("part/starts/1.json").write_text("{", encoding="utf-8")
     pathlib.Path("part/summary.json").unlink()
     ended = crawler(*THREE, "--output", "part", "--resume")
