@@ -23,7 +23,7 @@ import crawler  # noqa: E402
 from crawler.fitting import prepared  # noqa: E402
 from crawler.fitting.fit import Problem, _looked_at  # noqa: E402
 from crawler.fitting.model import Model  # noqa: E402
-from crawler.fitting.uncertainty import covariance, curvature_bias  # noqa: E402
+from crawler.fitting.uncertainty import covariance, curvature_bias, undetermined_directions  # noqa: E402
 from crawler.measured import Samples, Settings, prepare, read_samples  # noqa: E402
 
 BODY, WAVE = "Body/", "Active stress/Travelling wave/"
@@ -148,6 +148,23 @@ class Values(unittest.TestCase):
         best = _looked_at(problem, z + 0.01)
         self.assertAlmostEqual(best.z[0], z[0], delta=1e-3)
         self.assertGreater(best.numerical[0], 0.009)
+
+    def test_each_variable_belongs_to_an_undetermined_direction(self):
+        """Also where a looser one has all its variables, and where many share the deviation of each alike."""
+        axes = np.linalg.qr(np.array([[1.0, 1, 1], [1, -1, 0], [1, 1, -2]]).T)[0].T
+        loose, members = undetermined_directions(np.diag([1e-3, 1, 100]) @ axes)
+        self.assertEqual((len(loose), members.tolist()), (1, [[True, True, True]]))
+        for size in (1, 0.01):
+            _, members = undetermined_directions(size * np.linalg.qr(np.random.default_rng(1).standard_normal((12, 12)))[0])
+            self.assertTrue(members.any(axis=0).all() and members.any(axis=1).all())
+
+    def test_few_data(self):
+        """Ten numbers for three unknowns and an origin: no sentence is about nothing."""
+        few = Samples("x", np.arange(5.0), T[:2], tracks(STRESS).values[:2, 1:6], list("abcde"))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = crawler.fit(STRESS, few, {name: RANGES[name] for name in (P, K, AMPLITUDE)}, standard_deviation=0.1, markers_at=S[1:6])
+        self.assertEqual((found.status, [one["determined"] for one in found.variables.values()], len(found.undetermined) > 0), ("finished", 3 * [False], True))
 
     def test_deviation_beside_an_undetermined_direction(self):
         """The direction is one of round-off: the deviation of a variable that is not in it is that of the variable alone."""

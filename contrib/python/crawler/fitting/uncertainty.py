@@ -26,12 +26,12 @@ MOST_LOOKS = 15     # most evaluations on one side of a profile
 def undetermined_directions(jacobian):
     """Directions in which the variables may change by more than WIDE of their ranges within one standard deviation:
     [direction, variable], and which variables belong to each: [direction, variable]. A variable belongs to a direction
-    that causes most of its deviation."""
+    that causes most of its deviation; a direction without any, whose variables all belong to looser ones, is left out."""
     _, sizes, directions = np.linalg.svd(jacobian, full_matrices=True)
     sizes = np.maximum(np.concatenate([sizes, np.zeros(directions.shape[0] - len(sizes))]), 1e-9 * sizes.max(initial=1.0))
     deviations = np.abs(directions) / sizes[:, None]  # deviations of variables, by each direction
-    members = (np.abs(directions) > PART) & (deviations > 0.5 * np.linalg.norm(deviations, axis=0))
-    loose = sizes < max(1 / WIDE, 1e-8 * sizes.max())
+    members = (np.abs(directions) > PART) & (deviations >= np.minimum(0.5 * np.linalg.norm(deviations, axis=0), deviations.max(axis=0)))
+    loose = (sizes < max(1 / WIDE, 1e-8 * sizes.max())) & members.any(axis=1)
     return directions[loose], members[loose]
 
 
