@@ -38,8 +38,8 @@ namespace crawler
       std::vector<std::string> command = {python, path->string()};
       command.insert(command.end(), arguments.begin(), arguments.end());
       if (const ProgramEnd end = run_program(command, shown); end.started)
-        return end.stopped ? PythonEnd{static_cast<int>(ExitCode::stopped), "stopped by a signal"} :
-                             PythonEnd{end.status, trimmed(end.errors)};
+        return end.stopped ? PythonEnd{static_cast<int>(ExitCode::stopped), "stopped by a signal"}
+                           : PythonEnd{end.status, trimmed(end.errors)};
     }
     return {EX_UNAVAILABLE, "python3 was not found (Debian: apt install python3-h5py python3-matplotlib)"};
   }
