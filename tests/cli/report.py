@@ -24,6 +24,9 @@ NASTY = "</script><script>window.broken = 1</script><img src=x onerror='window.b
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
 WAVE = f"""# {NASTY}
 set Accuracy = 1e-3
+subsection Body
+  set Length = 1.00
+end
 subsection Active stress
   subsection Optimal wave
     set Choose wave by = wave speed
@@ -134,8 +137,8 @@ def test_content(program):
     ground = data["run"]["runs"][0]["ground"]
     check(np.allclose(ground["factor"], 1 + 0.5 * np.sin(6 * np.array(ground["x"])), atol=1e-4), "the ground of the run")
     entries = {one["entry"]: one for one in data["run"]["parameters"]["entries"]}
-    check(entries["Accuracy"]["value"] == "1e-3" and P not in entries and entries["Ground/Profile"]["default"] == "1",
-          "entries that differ from their defaults")
+    check(entries["Accuracy"]["value"] == "1e-3" and P not in entries and "Body/Length" not in entries and entries["Ground/Profile"]["default"] == "1",
+          "entries that differ from their defaults, as numbers or as words")
     data["fit"]["table"], = data["fit"]["tables"]
     for name, file, columns in (("sweep", "results.csv", (P, CHI, "displacement", "errors.stress_power", "status", "reason")),
                                 ("checked", "results.csv", (CHI, P, "outcome", "displacement")),

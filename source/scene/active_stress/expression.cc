@@ -42,12 +42,12 @@ namespace crawler
     , compiled_(read_formula(input_of(parameters), length, end_time))
     , bound_(compiled_)
   {
-    require_finite_values(*this, input_of(parameters), "", length, end_time);
     const FormulaBreaks breaks = formula_breaks(compiled_, length, end_time);
     facts_.breaks_in_space     = breaks.in_space.value_or(std::vector<double>());
     facts_.breaks_in_time      = breaks.in_time.value_or(std::vector<double>());
     if (breaks.in_time)
       bound_.leave_out_jumps();
+    require_finite_values(*this, input_of(parameters), "", length, end_time);
   }
 
   std::unique_ptr<ActiveStressAtPoints>

@@ -14,6 +14,7 @@
 #include <cctype>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <sstream>
 
 namespace crawler
@@ -148,6 +149,21 @@ namespace crawler
     }
   }
 
+  namespace
+  {
+    /// Equal parts of [0, @p end], and the middle between each two breaks.
+    std::vector<double>
+    samples(std::vector<double> breaks, const double end)
+    {
+      constexpr unsigned int n    = 16;
+      std::vector<double> samples = equal_parts(0., end, n);
+      std::ranges::sort(breaks);
+      for (std::size_t i = 1; i < breaks.size(); ++i)
+        samples.push_back(std::midpoint(breaks[i - 1], breaks[i]));
+      return samples;
+    }
+  } // namespace
+
   void
   require_finite_values(const ActiveStress &stress,
                         const FormulaInput &input,
@@ -155,14 +171,13 @@ namespace crawler
                         const double length,
                         const double end_time)
   {
-    constexpr unsigned int n         = 16;
-    const std::vector<double> points = equal_parts(0., length, n);
-    std::vector<double> m(n + 1);
+    const std::vector<double> points = samples(stress.breaks_in_space(), length);
+    std::vector<double> m(points.size());
     const auto at_points = stress.at(points);
-    for (const double t : equal_parts(0., end_time, n))
+    for (const double t : samples(stress.breaks_in_time(), end_time))
     {
       at_points->values(t, m);
-      for (unsigned int i = 0; i <= n; ++i)
+      for (std::size_t i = 0; i < m.size(); ++i)
         if (!std::isfinite(m[i]))
           throw InputError(fmt::format("the formula \"{}\" gives {}{} at s = {}, t = {}; a finite number is expected",
                                        input.formula,

@@ -31,11 +31,19 @@ def summary_in(folder):
         raise InputError(f'"{folder / "summary.json"}" is damaged: a JSON object with the key "status" is expected') from None
 
 
+def differ(one, other):
+    """True if two texts are not the same, nor the same number (1e-6, 1e-06)."""
+    try:
+        return float(one) != float(other)
+    except ValueError:
+        return one != other
+
+
 def parameters_in(folder, effective, entries):
     """Entries that are not at their defaults, {entry, value, default, unit, meaning}, and the texts of the files, that
     of parameters.prm, @p effective, without comments."""
     bare = "".join(line + "\n" for line in effective.splitlines() if line.strip() and not line.strip().startswith("#"))
-    return {"entries": [{"entry": name, **entry} for name, entry in entries.items() if entry["value"] != entry["default"]],
+    return {"entries": [{"entry": name, **entry} for name, entry in entries.items() if differ(entry["value"], entry["default"])],
             "original": text_of(folder / "original.prm"), "effective": bare or None}
 
 
