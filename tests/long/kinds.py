@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Random scenes of the kinds in which answers once were wrong: events in long formulas, ground with two directions, jumps
-in profiles, bodies that invert, other units of measurement, limits of optimised gaits.
+"""Random scenes of the kinds in which answers once were wrong: events in long formulas, formulas that jump, ground with two
+directions, jumps in profiles, bodies that invert, other units of measurement, limits of optimised gaits.
 
     python3 kinds.py FOLDER_OF_THE_PACKAGE NUMBER SEED [KIND...]     NUMBER of scenes of each kind (default: all kinds)
 
@@ -64,6 +64,26 @@ def formulas(checks, at_random):
     checks.expect(abs(effect - expected) <= bound and abs(without.displacement) > 0.5 * duration * abs(short_without.displacement) / 20,
                   f"formulas: the event adds {effect}, expected {expected} +- {bound}\n{crawler.to_prm(scene)}")
     return bound / max(abs(effect - expected), 1e-300)
+
+
+def jumps(checks, at_random):
+    """A formula, also with feedback, with jumps and kinks in s and t."""
+    u, x = at_random.uniform, at_random.choice
+    place, time = "(s/L)", f"(t/{x((0.5, 1, 0.7))})"
+    in_space = x(("1", f"({place}<{u(0.1, 0.9):.3f} ? 1 : {u(-1, 1):.2f})", f"abs({place}-{u(0.2, 0.8):.3f})", f"floor({x((2, 3, 4, 5))}*{place})/3",
+                  f"max(0,sin({x((2, 3))}*pi*{place}))", f"({place}>{u(0.1, 0.4):.3f} && {place}<{u(0.5, 0.9):.3f})", f"mod({x((2, 3))}*{place},1)",
+                  f"min(1,{u(2, 9):.2f}*{place})", f"sign(sin({u(4, 20):.2f}*{place}))"))
+    in_time = x(("1", f"(mod({time},1)<{u(0.2, 0.8):.3f})", f"abs(sin(pi*{time}))", f"max(0,sin(2*pi*{time}))", f"min(1,{time}/0.3)",
+                 f"({time}>0.31 && {time}<{u(0.35, 0.6):.4f} ? 1 : 0.2)", f"sign(sin(2*pi*{time}+0.3))", f"floor({time})", f"rint({time})",
+                 f"(mod({time}-floor(3*{place})/3,1)<0.5)"))
+    wave = x(("1", f"sin(2*pi*({place}+{time}))", f"sin(2*pi*({place}-{time}))", f"(1+0.5*cos(pi*{place}))"))
+    modulus, length = 10 ** u(-1, 1.2), x((1, 3, 0.01))
+    formula = f"{modulus * u(0.05, 0.4)!r}*{in_space}*{in_time}*{wave}*{x(('1', '(1-exp(-5*t))'))}"
+    stress = ({"Generator": "expression", "Expression": {"Active stress": formula}} if u(0, 1) < 0.8 else
+              {"Generator": "strain feedback", "Strain feedback": {"Active stress": f"({formula})*(1+0.3*(w-1))"}})
+    scene = {"Body": {"Length": length, "Elastic modulus": modulus, "Friction coefficient": 1 / length ** 2, "Anchoring exponent": x((2, 3, u(-3, 5)))},
+             "Active stress": stress, "Time": {"End time": u(0.4, 4)}}
+    return compare(checks, "jumps", scene, 10 ** u(-6, -3))
 
 
 def directions(checks, at_random):
@@ -153,7 +173,7 @@ def limits(checks, at_random):
 
 
 def main():
-    kinds = {one.__name__: one for one in (formulas, directions, profiles, inversions, units, limits)}
+    kinds = {one.__name__: one for one in (formulas, jumps, directions, profiles, inversions, units, limits)}
     number, seed, *names = sys.argv[2:]
     checks = Checks()
     for name in names or kinds:
