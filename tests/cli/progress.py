@@ -84,9 +84,9 @@ def on_terminal(command, folder, language="C.UTF-8", term="xterm", stop=None):
                 break
             if not data:
                 break
-            # A piece may end within a character or a control sequence: these wait for their rest.
+            # A piece may end within a character, a control sequence, or a row that is written anew: these wait for their rest.
             text = waiting + decoder.decode(data)
-            whole = text[:re.search(r"(\r|\x1b(\[\d*)?)?\Z", text).start()]
+            whole = text[:re.search(r"(\r[^\r\n\x1b]*)?(\x1b(\[\d*)?)?\Z", text).start()]
             waiting = text[len(whole):]
             screen.write(whole.replace("\r\n", "\n\r"))
             if stop and stop[1](screen):
