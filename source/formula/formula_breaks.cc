@@ -107,7 +107,7 @@ namespace crawler
         }
         std::ranges::sort(all);
         const auto is_same = [&](const double a, const double b) { return b - a <= same * end_; };
-        all.erase(std::ranges::unique(all, is_same).begin(), all.end());
+        all.erase(std::unique(all.begin(), all.end(), is_same), all.end());
         return all;
       }
 
