@@ -112,6 +112,13 @@ namespace crawler
         return StressAtPlaces::difference(m_.at(t), m_.at(t + P)) <= same * largest_;
       }
 
+      /// True if m is the same P later and P earlier, as far as these are within the time.
+      bool
+      is_same_beside(const double t, const double P)
+      {
+        return (t + P > end_ || is_same_after(t, P)) && (t - P < begin_ || is_same_after(t - P, P));
+      }
+
       /// True if m is the same after P between all breaks in time, however close these are: bounds leave out its jumps.
       bool
       pieces_repeat(const double P)
@@ -124,7 +131,7 @@ namespace crawler
           const double t = std::lerp(ends[i - 1], ends[i], 0.381966);
           if (t <= begin_ || t >= end_ || ends[i] - ends[i - 1] < 4. * min_time_between_breaks * end_)
             continue;
-          if ((t + P <= end_ && !is_same_after(t, P)) || (t - P >= begin_ && !is_same_after(t - P, P)))
+          if (!is_same_beside(t, P))
             return false;
         }
         return true;
@@ -199,7 +206,7 @@ namespace crawler
           for (unsigned int i = 0; i < n; ++i)
           {
             const double t = std::clamp(from + (i + 0.381966) / n * time, begin_, end_);
-            if ((t + P <= end_ && !is_same_after(t, P)) || (t - P >= begin_ && !is_same_after(t - P, P)))
+            if (!is_same_beside(t, P))
               return false;
           }
         }
