@@ -16,7 +16,7 @@ import sys
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import check_layers  # noqa: E402
 
-LONG_FUNCTION, LONG_HEADER, MANY_MEMBERS = 80, 300, 20
+LONG_FUNCTION, LONG_HEADER, MANY_MEMBERS = 60, 250, 15
 
 
 def files_now():
@@ -56,6 +56,21 @@ def blocks(text):
                 yield (re.search(r"([\w:~]+|operator\S+)\s*\(", head) or [head])[0].rstrip("( "), "function", lines[start + 1:number]
 
 
+def n_members(body):
+    """Number of the data members that the lines of a class declare."""
+    depths = [len(line) - len(line.lstrip()) for line in body if line.strip()]
+    has_labels = any(re.fullmatch(r"\s*(public|private|protected):", line) for line in body)
+    depth, count, open_braces = min(depths, default=0) + 2 * has_labels, 0, 0
+    for line in body:
+        code = re.sub(r"//.*|\"(\\.|[^\"])*\"", "", line)
+        if open_braces == 0 and re.match(r" {%d}[\w:]" % depth, line) and code.rstrip().endswith(";"):
+            names = re.sub(r"=[^,;]*", "", re.sub(r"<.*>|\{.*\}", "", code))
+            if "(" not in names and not re.match(r"\s*(using|return|friend|static|class|struct|enum|template)\b", names):
+                count += names.count(",") + 1
+        open_braces += code.count("{") - code.count("}")
+    return count
+
+
 def measure(files):
     """All numbers of some files."""
     rooms, arrows, long_functions, long_headers, many = collections.Counter(), {}, [], [], []
@@ -70,11 +85,8 @@ def measure(files):
         for name, kind, body in blocks(text):
             if kind == "function" and len(body) > LONG_FUNCTION:
                 long_functions.append(name)
-            depth = min((len(line) - len(line.lstrip()) for line in body if line.strip()), default=0)
-            members = [line for line in body if re.match(r" {%d,%d}\w.*\w( += .*|\{.*\})?;" % (depth, depth + 2), line)
-                       and not re.search(r"\(|^\s*(using|return|friend|static|class|struct)\b", line.split("=")[0])]
-            if kind == "class" and len(members) > MANY_MEMBERS:
-                many.append(f"{name} ({len(members)})")
+            if kind == "class" and n_members(body) > MANY_MEMBERS:
+                many.append(f"{name} ({n_members(body)})")
     for unit in {other for others in arrows.values() for other in others} - set(arrows):
         arrows[unit] = set()
     return rooms, check_layers.circles(arrows), long_functions, long_headers, many
