@@ -14,13 +14,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace crawler
 {
   namespace
   {
-    using accuracy_rule::finer_run::max_refined_cells, accuracy_rule::finer_run::refined_cells;
-    using accuracy_rule::finer_run::max_refinements;
+    using namespace accuracy_rule::finer_run;
 
     /**
      * Confirms an inversion where the user chose the numerics, since a coarse mesh or long steps can fake a stretch
@@ -229,11 +229,9 @@ namespace crawler
       bool
       tries_again()
       {
-        // Choices measured on successive meshes get no further tries.
-        const bool has_tries = !first_.measured_error && answer_.refinements < max_refinements;
         if (is_for_finer_numerics(result_.time))
         {
-          if (!first_.follows_rule() || !has_tries)
+          if (!first_.follows_rule() || !has_tries())
             return false;
           make_finer(refined_cells);
           return true;
@@ -246,11 +244,11 @@ namespace crawler
         if (is_good() && (closes() || std::isnan(wanted())))
           return false;
         std::string problem;
-        if (has_tries && first_.min_error <= wanted())
+        if (has_tries() && first_.min_error <= wanted())
           try
           {
             // Smooth solutions need few more cells; where these do not help errors fall by a power of the cell size.
-            const double total = result_.error->total;
+            const double total = error_before_ = result_.error->total;
             make_finer(answer_.refinements == 0 || !(total > wanted())
                          ? refined_cells
                          : std::clamp(std::cbrt(total / wanted()), refined_cells, max_refined_cells));
@@ -265,6 +263,17 @@ namespace crawler
         if (!is_good())
           name_shortfall(problem);
         return false;
+      }
+
+      /// True if one more try is admitted: a few always are, and more while the error falls and the wanted one is near.
+      bool
+      has_tries() const
+      {
+        if (first_.measured_error) // its tries were successive meshes
+          return false;
+        const double total = result_.error ? result_.error->total : std::numeric_limits<double>::quiet_NaN();
+        const bool is_near = total <= near_factor * wanted() && total < error_before_;
+        return answer_.refinements < (is_near ? max_refinements_if_near : max_refinements);
       }
 
       void
@@ -315,6 +324,7 @@ namespace crawler
       const KeepGoing &keep_going_;
       Answer answer_;
       SimulationResult &result_ = answer_.result;
+      double error_before_      = std::numeric_limits<double>::infinity(); ///< of the try before
     };
 
     /// Answer of the family, or of the position form if that alone meets Accuracy, or comes nearer to it.

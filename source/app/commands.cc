@@ -5,7 +5,6 @@
 #include <crawler/app/help_texts.h>
 #include <crawler/app/manual.h>
 #include <crawler/app/parameter_listing.h>
-#include <crawler/app/plot.h>
 #include <crawler/app/templates.h>
 #include <crawler/app/usage_errors.h>
 #include <crawler/base/communication.h>
@@ -36,12 +35,6 @@ namespace crawler
       {"paper", "Makes a figure and a table for a journal of the output folder of a run or sweep"},
       {"report", "Makes a page for browsers, report.html, of the output folder of any other command"},
       {"table", "Turns measured samples or tracks of markers into a table that a scene can read"}};
-
-    bool
-    is_in_python(const std::string &name)
-    {
-      return std::ranges::any_of(commands_in_python, [&](const auto &command) { return name == command.first; });
-    }
 
     /// Command that reads a parameter file.
     struct Command
@@ -289,17 +282,10 @@ namespace crawler
       print_completion(app_, name_);
     else if (name == "man")
       print_manual(app_);
-    else if (is_in_python(name))
-      hand_over_to_python("__main__.py", words_);
     else if (plot_help_ && options_.file.empty())
       std::cout << app_.get_subcommands().front()->help();
     else
-    {
-      std::vector<std::string> others = app_.get_subcommands().front()->remaining();
-      if (plot_help_)
-        others.emplace_back("--help");
-      plot(options_.file, kind_, others);
-    }
+      hand_over_to_python("__main__.py", words_);
   }
 
   ExitCode

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/app/completion.h>
+#include <crawler/app/help_texts.h>
 #include <crawler/app/option_names.h>
 #include <crawler/app/parameter_listing.h>
-#include <crawler/app/plot.h>
 #include <crawler/app/templates.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/nearest_name.h>

@@ -73,6 +73,14 @@ namespace crawler
     return list;
   }
 
+  const std::vector<std::string> &
+  plot_kinds()
+  {
+    static const std::vector<std::string> kinds = {
+      "tradeoff", "optimize", "fit", "sweep", "calibration", "table", "kymograph", "sensitivity", "scaling"};
+    return kinds;
+  }
+
   std::vector<ExitCodeMeaning>
   exit_code_meanings()
   {

@@ -27,17 +27,17 @@ namespace crawler
     /// Result of the quadrature with some numbers of panels.
     struct Sums
     {
-      double displacement = 0., largest_friction = 0., largest_net_friction = 0.;
+      double displacement = 0., friction_impulse = 0., net_impulse = 0.;
       EnergyBalance energies;
       StrainExtreme smallest{HUGE_VAL, 0., 0.}, largest{-HUGE_VAL, 0., 0.};
       bool stopped = false;
     };
 
     void
-    add(Sums &sums, const KinematicBody::Integrals &now)
+    add(Sums &sums, const KinematicBody::Integrals &now, const double duration)
     {
-      sums.largest_friction     = std::max(sums.largest_friction, now.sums.abs_friction);
-      sums.largest_net_friction = std::max(sums.largest_net_friction, std::abs(now.sums.net_friction));
+      sums.friction_impulse += duration * now.sums.abs_friction;
+      sums.net_impulse += duration * std::abs(now.sums.net_friction);
       if (now.smallest.strain < sums.smallest.strain)
         sums.smallest = now.smallest;
       if (now.largest.strain > sums.largest.strain)
@@ -143,7 +143,7 @@ namespace crawler
       {
         const auto &now     = body.evaluate(start + (end - start) * panel.points()[i]);
         const double weight = (end - start) * panel.weights()[i];
-        see(now);
+        see(now, weight);
         displacement += weight * now.sums.velocity;
         add(energies, now, weight);
       }
@@ -160,12 +160,14 @@ namespace crawler
     {
       KinematicBody body(scene, strain, n_space);
       Sums sums;
-      add(sums, body.evaluate(0.));
+      add(sums, body.evaluate(0.), 0.);
       sums.energies.initial_energy = body.evaluate(0.).sums.elastic_energy;
       for (std::size_t p = 1; p < ends.size(); ++p)
       {
         sums.displacement +=
-          add_panel(body, ends[p - 1], ends[p], sums.energies, [&](const auto &now) { add(sums, now); });
+          add_panel(body, ends[p - 1], ends[p], sums.energies, [&](const auto &now, const double duration) {
+            add(sums, now, duration);
+          });
         if (keep_going && !keep_going())
         {
           sums.stopped = true;
@@ -174,7 +176,7 @@ namespace crawler
       }
       const auto &end              = body.evaluate(1.);
       sums.energies.elastic_energy = end.sums.elastic_energy;
-      add(sums, end);
+      add(sums, end, 0.);
       return sums;
     }
   } // namespace
@@ -264,7 +266,7 @@ namespace crawler
   double
   advance(KinematicBody &body, const double start, const double end, EnergyBalance &energies)
   {
-    const double displacement = add_panel(body, start, end, energies, [](const auto &) {});
+    const double displacement = add_panel(body, start, end, energies, [](const auto &, double) {});
     energies.elastic_energy   = body.evaluate(end).sums.elastic_energy;
     return displacement;
   }
@@ -348,7 +350,7 @@ namespace crawler
         result.extremes.largest = both.largest;
       result.displacement = both.displacement;
       result.energies     = both.energies;
-      result.net_friction = both.largest_friction > 0. ? both.largest_net_friction / both.largest_friction : 0.;
+      result.net_friction = both.friction_impulse > 0. ? both.net_impulse / both.friction_impulse : 0.;
       return result;
     }
   }

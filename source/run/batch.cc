@@ -320,8 +320,8 @@ namespace crawler
         for (double &work : works)
           work *= step.size * tableau_.b[i];
         lane.recorder->result.energy_balance->add_works(works);
-        const bool is_end = i + 1 == tableau_.n; // the velocity balances all forces there
-        lane.recorder->see_friction(stage.abs_friction, is_end ? std::abs(stage.net_friction) : 0.);
+        if (i + 1 == tableau_.n) // the velocity balances all forces there
+          lane.recorder->see_friction(step.size, stage.abs_friction, std::abs(stage.net_friction));
       }
 
       static void

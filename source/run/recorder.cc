@@ -115,12 +115,12 @@ namespace crawler
   }
 
   void
-  Recorder::see_friction(const double sum_of_sizes, const double size_of_sum)
+  Recorder::see_friction(const double duration, const double sum_of_sizes, const double size_of_sum)
   {
-    largest_friction_     = std::max(largest_friction_, sum_of_sizes);
-    largest_net_friction_ = std::max(largest_net_friction_, size_of_sum);
-    if (largest_friction_ > 0.)
-      result.net_friction = largest_net_friction_ / largest_friction_;
+    friction_impulse_ += duration * sum_of_sizes;
+    net_impulse_ += duration * size_of_sum;
+    if (friction_impulse_ > 0.)
+      result.net_friction = net_impulse_ / friction_impulse_;
   }
 
   const EnergyBalance *
@@ -188,7 +188,7 @@ namespace crawler
   {
     archive.require_same(cycle_stop_.has_value(), "the cycle stop");
     archive.require_same(gait_meter_.has_value(), "the gait meter");
-    archive(result, smallest_, largest_, started_, largest_friction_, largest_net_friction_, were_known_);
+    archive(result, smallest_, largest_, started_, friction_impulse_, net_impulse_, were_known_);
     if (cycle_stop_)
       archive(*cycle_stop_);
     if (gait_meter_)

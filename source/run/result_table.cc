@@ -130,7 +130,7 @@ namespace crawler
                true),
         number("net_friction",
                one,
-               "largest net friction, relative to the absolute friction",
+               "mean net friction, relative to the mean absolute friction",
                CRAWLER_PART(energy_balance, r.net_friction)),
         number("min_stretch.value",
                one,

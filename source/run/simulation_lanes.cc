@@ -89,6 +89,6 @@ namespace crawler
     EnergyBalance &energies = *result().energy_balance;
     energies.add_works(run_->quadrature.until(1.));
     energies.elastic_energy = seen.elastic_energy;
-    run_->recorder.see_friction(seen.stages[last].abs_friction, std::abs(seen.stages[last].net_friction));
+    run_->recorder.see_friction(step.size, seen.stages[last].abs_friction, std::abs(seen.stages[last].net_friction));
   }
 } // namespace crawler

@@ -259,7 +259,7 @@ namespace crawler
     energies.elastic_energy = integrals.elastic_energy;
     if (step.number == 0)
       energies.initial_energy = integrals.elastic_energy;
-    run_->recorder.see_friction(integrals.abs_friction, std::abs(integrals.net_friction));
+    run_->recorder.see_friction(step.size, integrals.abs_friction, std::abs(integrals.net_friction));
     return true;
   }
 } // namespace crawler

@@ -205,7 +205,7 @@ def test_copied_program():
     """A copy of the program alone says where its scripts are looked for."""
     shutil.copy(PROGRAM, "copied")
     end = call(["./copied", "plot", "run"])
-    check(end.returncode == 2 and "kymograph.py is neither " in end.stderr and f"{pathlib.Path.cwd()}/python/crawler/plot/kymograph.py" in end.stderr
+    check(end.returncode == 2 and "__main__.py is neither " in end.stderr and f"{pathlib.Path.cwd()}/python/crawler/__main__.py" in end.stderr
           and end.stderr.count("\n") == 1, f"a copied program: {end.returncode} {end.stderr.strip()}")
     pathlib.Path("copied").unlink()
 
@@ -315,7 +315,7 @@ def test_python(folder):
     pathlib.Path("blind").mkdir()
     pathlib.Path("blind/h5py.py").write_text("raise ImportError\n", encoding="utf-8")
     end = crawler("plot", "sweep", PATH=f"{bare}:{os.environ['PATH']}", PYTHONPATH=f"{folder}/blind")
-    check(end.returncode == 2 and f"{bare}/python3 has no numpy and no h5py and no matplotlib; /usr/bin/python3 has no h5py "
+    check(end.returncode == 2 and f"{bare}/python3 has no numpy and no matplotlib; /usr/bin/python3 has no h5py "
           "(on Debian: apt install python3-h5py)" in end.stderr and end.stderr.count("\n") == 1,
           f"which Python lacks what: {end.stderr.strip()}")
     end = crawler("plot", "run", PYTHONPATH=f"{folder}/blind")

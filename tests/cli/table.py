@@ -126,6 +126,13 @@ def tracks():
     other = crawler("table", "tracks_raw.csv", "others.csv", *TRACKS, "--scene", "kinematic.prm", "--copies", "8")
     check("with the new table, while the scene names" in other.stdout and "tracks.csv" in other.stdout,
           f"a scene that names another table is said to be computed with the new one: {other.stdout}{other.stderr}")
+    new = crawler("table", "tracks_raw.csv", "new.csv", *TRACKS, "--scene", "new.prm", "--copies", "8", "--set", "Body/Anchoring exponent=3")
+    check(new.returncode == 0 and "new.prm is a scene that reads the table" in new.stdout, f"the scene beside the table: {new.stderr}")
+    of_noise = float(new.stdout.split("displacement ")[1].split(" ")[0])
+    check(abs(displacement("new.prm", "new_run", "--set", "Body/Anchoring exponent=3") / of_noise - 1) < 1e-6, "it has the displacement of the report")
+    pathlib.Path("new.prm").write_text("# mine\n", encoding="utf-8")
+    crawler("table", "tracks_raw.csv", "new.csv", *TRACKS, "--overwrite")
+    check(pathlib.Path("new.prm").read_text(encoding="utf-8") == "# mine\n", "a scene that is there stays")
     check("the strain is held" in made.stdout and "copies" in made.stdout, "the report tells what is beyond the markers")
     check(abs(displacement("kinematic.prm", "tracks_run")) > 0.01, "the body moves by the strain")
     drawn = crawler("plot", "tracks.csv")

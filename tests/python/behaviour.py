@@ -59,7 +59,16 @@ def check_errors(folder):
     refused(lambda: crawler.run(FILE, set={"Output/Sensitivities": "a # b"}), crawler.InputError, "comment")
     refused(lambda: crawler.run("no.prm"), crawler.FileError, "no.prm", "there is no such file")
     expect(issubclass(crawler.FileError, OSError), "FileError is not an OSError")
-    refused(lambda: crawler.run(3), crawler.InputError, "the scene is 3")
+    refused(lambda: crawler.run(3), crawler.InputError, '"scene" is 3, but a text, a path or a dict is expected')
+    for action, words in ((lambda: crawler.run({3: 2}), "the entry 3 is set"), (lambda: crawler.run(FILE, set={3: 2}), "the entry 3 is set"),
+                          (lambda: crawler.run(FILE, set=["a"]), "\"set\" is ['a'], but a dict or None is expected"),
+                          (lambda: crawler.run(FILE, fields="yes"), "\"fields\" is 'yes', but True or False or a list"),
+                          (lambda: crawler.run(FILE, check="x"), '"check" is'), (lambda: crawler.run(FILE, output=3), '"output" is 3'),
+                          (lambda: crawler.batch(3), '"scenes" is 3'), (lambda: crawler.batch("x"), '"scenes" is'), (lambda: crawler.sweep(FILE, [K]), '"axes" is'),
+                          (lambda: crawler.read(None), '"folder" is None'), (lambda: crawler.to_prm("a"), '"scene" is'),
+                          (lambda: crawler.plot(folder / "no"), "is not a folder"), (lambda: crawler.plot(folder, kind="map"), '"--kind" is "map"'),
+                          (lambda: crawler.report(folder / "no"), "does not exist"), (lambda: crawler.paper(folder / "no"), "no")):
+        refused(action, crawler.InputError, words)
     refused(lambda: crawler.gradient(FILE, K, of="foo"), crawler.InputError, '"foo"', "displacement, stress_power", "gait.speed")
     refused(lambda: crawler.run({}), crawler.InputError, "sets nothing")
     refused(lambda: crawler.run(FILE, elastic_modul=2), crawler.InputError, "elastic_modul", '"elastic_modulus"')
@@ -86,6 +95,17 @@ def check_errors(folder):
         crawler.run(FILE, fields=False, set={"Active stress/Expression/Active stress": "sin(t)"})
     expect(len(caught) == 1 and "has no effect" in str(caught[0].message) and caught[0].filename == __file__,
            f"warnings {[str(one) for one in caught]}")
+
+
+def check_pictures(folder):
+    """plot, report and paper return the paths of the files that their commands make."""
+    run = folder / "drawn"
+    crawler.run(FILE, output=run)
+    made = [*crawler.plot(run), *crawler.plot(run, output=folder / "part.svg", to=0.5), crawler.report(run), *crawler.paper(run, columns=2)]
+    names = ["kymograph.png", "part.svg", "report.html", "figure.pdf", "numbers.csv", "numbers.tex"]
+    expect([path.name for path in made] == names and all(path.stat().st_size > 100 for path in made), f"files {made}")
+    refused(lambda: crawler.plot(run, output="no/where.png"), crawler.FileError, "no/where.png")
+    expect(callable(crawler.report) and set(crawler.__all__) <= set(dir(crawler)) | {"measured"}, "names of the package")
 
 
 def check_axes():
@@ -237,6 +257,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         os.chdir(name)
         check_errors(pathlib.Path(name))
+        check_pictures(pathlib.Path(name))
         check_axes()
         check_ends()
         check_signals(pathlib.Path(name))

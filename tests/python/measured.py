@@ -173,7 +173,7 @@ class Preparation(unittest.TestCase):
                                    ([(0, [0]), (2, [1, 5, 6])], tracks.t[1:], "3 gaps filled, up to 2 in a row"),
                                    ([(4, [10, 11]), (1, [9, 5])], tracks.t[:10], "2 gaps filled, up to 1 in a row")):
             table = prepared(*lost)
-            np.testing.assert_array_equal(table.t, times)
+            np.testing.assert_array_equal(table.t, times - times[0])  # a prescribed strain begins at 0
             np.testing.assert_allclose(table.values, 0, atol=1e-12)
             n = len(tracks.t) - len(times)
             left_out = [word for word in table.words if "left out" in word]
@@ -223,6 +223,33 @@ class Files(unittest.TestCase):
         text = "t;0;0.5;1;1.5\n" + "".join(f"{1580724432 + j / 10:.3f};1;2;3;{j}\n" for j in range(17))
         np.testing.assert_array_equal(read(text, shift_t="first").t, np.round(np.arange(17) / 10, 6))
 
+    def test_noise_is_no_bend(self):
+        """Markers on a straight line with noise in y are read along it, those of a body that bends along the body; a cell that is no
+        number is named by all rows of its head."""
+        noise, t, x = np.random.default_rng(1), np.arange(60), np.arange(9)
+        rows = ["scorer" + ",net" * 18, "bodyparts" + "".join(f",m{i},m{i}" for i in range(9)), "coords" + ",x,y" * 9]
+        for bend, along in ((0, "x and y lie on a straight line"), (1.5, "the body bends, by")):
+            y = bend * np.sin(0.8 * x - 0.2 * t[:, None]) + 0.06 * noise.standard_normal((60, 9))
+            lines = rows + [",".join([str(j), *(f"{x[i] + 0.01 * j:.3f},{y[j, i]:.3f}" for i in range(9))]) for j in t]
+            words = []
+            samples = read("\n".join(lines), words=words)
+            self.assertTrue([word for word in words if word.startswith(along)], words)
+            self.assertAlmostEqual(np.mean(np.diff(samples.values, axis=1)), 1 if bend == 0 else np.mean(np.hypot(1, np.diff(y, axis=1))), delta=1e-3)
+        with self.assertRaisesRegex(InputError, '"none of it" under m2 y,'):
+            read("\n".join(lines[:-1] + [lines[-1].replace(lines[-1].split(",")[6], "none of it")]))
+
+    def test_arguments_are_of_their_kinds(self):
+        """In one sentence, also of the classes."""
+        good = samples_of(lambda s, t: s + t, 5, 9, 1)
+        for action, words in ((lambda: read_samples(None), '"path" is None, but a text or a path is expected'),
+                              (lambda: read_samples("a.csv", confidence="high"), "\"confidence\" is 'high', but a number"),
+                              (lambda: prepare(None, Settings()), '"samples" is None, but a Samples'),
+                              (lambda: prepare(good, Settings(markers_at=["a"])), "a list of numbers"),
+                              (lambda: prepare(Samples("m", good.s, good.t, good.values.T), Settings()), r"\(time, place\) are expected"),
+                              (lambda: find_period(Samples("m", good.s, good.t, np.full((9, 5), np.nan))), "have gaps")):
+            with self.assertRaisesRegex(InputError, words):
+                action()
+
     def test_clock_times_and_per_cent(self):
         """Over midnight; a strain in per cent is turned into one without unit."""
         clock = "t;0;0.5;1;1.5\n" + "".join(f"{(86398 + j) % 86400 // 3600}:{(86398 + j) % 3600 // 60:02}:{(86398 + j) % 60:02};1;2;3;{j}\n"
@@ -240,6 +267,12 @@ class Files(unittest.TestCase):
         self.assertEqual(read("t;0;0.5;1;1.5\n" + "".join(f"{j};1.368,5;2,0;3,1;4,0\n" for j in range(9))).values[0, 0], 1368.5)
         with self.assertRaisesRegex(InputError, '"1,368", which may be 1.368 or 1368'):
             read(three)
+        points = "t;0;0.5;1;1.5\n" + "".join(f"{j};1.368;2.000;3.100;4.000\n" for j in range(9))
+        self.assertEqual([read(points, decimal=decimal).values[0, 0] for decimal in ("comma", "point")], [1368, 1.368])
+        self.assertEqual(read(points.replace("2.000", "2,5")).values[0, 0], 1368)
+        self.assertEqual(read(points.replace("2.000", "2.5")).values[0, 0], 1.368)
+        with self.assertRaisesRegex(InputError, '"1.368", which may be 1.368 or 1368'):
+            read(points)
 
     def test_refusals_name_the_place(self):
         rows = WIDE.split("\n", 1)[1]
@@ -254,6 +287,8 @@ class Files(unittest.TestCase):
                 (b"a\0b", "a binary file", {}), (b"\x89HDF\r\n\x1a\n", "HDF5", {}), (WIDE, '"--head"', {"head": "x1"}), (WIDE, '"--animal"', {"animal": "1"}),
                 (longer.replace("m;", "strain;", 1).replace("\n1;0;0", "\n-5;0;0"), "a strain above -1", {}),
                 (longer, 'has the column m, but "--quantity" is strain', {"quantity": "strain"}),
+                (WIDE + "4;1\n", "row 6 .* has 2 cells, but 5 are expected, as in most", {}),
+                ("t,x1,x2,x3,speed\n" + "".join(f"{j},1,2,3,4\n" for j in range(5)), "the column speed beside those of markers", {"quantity": "markers"}),
                 (longer.replace("\n1;0;0", "\n1_0;0;0"), '"1_0" under', {}), (WIDE, "NAME=COLUMN", {"columns": "q=t"}),
                 ("t,y1,y2,y3,y4\n" + "".join(f"{j},1,2,3,4\n" for j in range(5)), "but no x", {}), (WIDE, 'the column "q"', {"columns": "t=q"}),
                 ("t,x1,x2,x3,x4\n" + "".join(f"{j},1,2,3,4\n" for j in range(5)), '"--columns" has "x=x1", but', {"columns": "t=t, x=x1"})):

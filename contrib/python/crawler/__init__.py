@@ -18,20 +18,29 @@ import re
 import sys
 import tempfile
 import warnings
-from collections.abc import Mapping
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 import numpy as np
 
+from .arguments import checked
 from .needs import FileError, InputError
+from .pictures import paper, plot, report
 from .results import Numbers, Result, Study, fields_of, parameters_of, read, table_of
 
 __all__ = ["FileError", "Gradient", "InputError", "Numbers", "Result", "RunFailed", "Study", "batch", "check", "entries",
-           "fit", "gradient", "measured", "optimize", "read", "run", "sweep", "to_prm"]
+           "fit", "gradient", "measured", "optimize", "paper", "plot", "read", "report", "run", "sweep", "to_prm"]
+
+Scene = Union[str, os.PathLike, Mapping[str, Any]]  # name of a parameter file, its text, or a dict with its sections
+Values = Mapping[str, Any]                          # of entries by their full names
+Table = Any                                         # pandas.DataFrame, or a dict of arrays without pandas
+if TYPE_CHECKING:
+    from .fitting import Fit
+    from .measured import Samples
 
 
 def __getattr__(name):
-    """Loads the module measured at its first use, since it needs scipy and pandas."""
+    """Loads the module measured at its first use, since it needs scipy."""
     if name == "measured":
         return importlib.import_module(".measured", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
@@ -63,19 +72,22 @@ def _compiled():
 
 
 @functools.cache
-def entries():
+def entries() -> dict[str, dict[str, str]]:
     """Entries of a parameter file by their full names, each a dict with default, expected, unit, documentation."""
     return {one.pop("entry"): one for one in json.loads(_compiled().entries())}
 
 
-def check(scene, *, set=None, **keywords):
+@checked
+def check(scene: Scene, *, set: Values | None = None, **keywords) -> dict[str, str]:
     """Entries of a scene as used, by their full names; nothing is computed. Raises the same errors as run()."""
     effective, notes = _compiled().check(_source(scene, _overrides(set, keywords)))
     _warn(notes)
     return parameters_of(effective)
 
 
-def run(scene, *, set=None, fields=True, places=None, output=None, overwrite=False, check=False, verbose=False, **keywords):
+@checked
+def run(scene: Scene, *, set: Values | None = None, fields: bool | Sequence[float] = True, places: Sequence[float] | None = None,
+        output: str | os.PathLike | None = None, overwrite: bool = False, check: bool = False, verbose: bool = False, **keywords) -> Result:
     """Computes one scene, with the same bits as `crawler run`, and returns its Result.
 
     scene: the name of a parameter file, its text, or a dict with sections as in the file.
@@ -118,7 +130,8 @@ def run(scene, *, set=None, fields=True, places=None, output=None, overwrite=Fal
     return _checked(result, check)
 
 
-def batch(scenes, *, set=None, check=False, **keywords):
+@checked
+def batch(scenes: Iterable[Scene], *, set: Values | None = None, check: bool = False, **keywords) -> list[Result]:
     """Computes many scenes side by side in vector registers, without fields; returns the list of their Results.
 
     Displacements agree with those of run() within their error bounds, and do not depend on the neighbours. set and
@@ -131,7 +144,9 @@ def batch(scenes, *, set=None, check=False, **keywords):
     return [_checked(_result(answer), check) for answer in answers]
 
 
-def sweep(scene, axes=None, *, design=None, set=None, output=None, overwrite=False, verbose=False, **keywords):
+@checked
+def sweep(scene: Scene, axes: Mapping[str, Any] | None = None, *, design: str | None = None, set: Values | None = None,
+          output: str | os.PathLike | None = None, overwrite: bool = False, verbose: bool = False, **keywords) -> Table:
     """Computes all points of a sweep; returns the table of `crawler sweep`, a pandas.DataFrame (a dict of arrays
     without pandas).
 
@@ -162,7 +177,8 @@ class Gradient(NamedTuple):
     result: Result
 
 
-def gradient(scene, by, *, of="displacement", set=None, **keywords):
+@checked
+def gradient(scene: Scene, by: str | Sequence[str], *, of: str = "displacement", set: Values | None = None, **keywords) -> Gradient:
     """Returns a number of a run and its derivatives, as a Gradient: for user-defined objectives and fits.
 
     by: entries by their full names, or one. of: displacement, stress_power, dissipation,
@@ -188,7 +204,9 @@ def gradient(scene, by, *, of="displacement", set=None, **keywords):
     return Gradient(result[of], derivatives, errors, result)
 
 
-def optimize(scene, variables=None, *, set=None, output=None, overwrite=False, verbose=False, **keywords):
+@checked
+def optimize(scene: Scene, variables: Mapping[str, tuple[float, float]] | None = None, *, set: Values | None = None,
+             output: str | os.PathLike | None = None, overwrite: bool = False, verbose: bool = False, **keywords) -> Study:
     """Finds the best gait within limits, as `crawler optimize` does (doc/optimize.md), and returns a Study: best, the
     Results of the best gaits; optimize.optima, for each case the objective, the variables and, of each limit, its value
     and multiplier; starts and table.
@@ -210,7 +228,9 @@ def optimize(scene, variables=None, *, set=None, output=None, overwrite=False, v
         return read(os.path.join(folder, "optimum"))
 
 
-def fit(scene, data=None, variables=None, *, set=None, workers=1, verbose=False, **keywords):
+@checked
+def fit(scene: Scene, data: Union[str, os.PathLike, "Samples", Sequence, None] = None, variables: Mapping[str, tuple[float, float]] | None = None, *,
+        set: Values | None = None, workers: int = 1, verbose: bool = False, **keywords) -> "Fit":
     """Estimates numbers of a scene, with their uncertainty, from measured data, as `crawler fit` does (doc/fit.md);
     returns a Fit.
 
@@ -244,7 +264,8 @@ def _ranges(variables):
     return "; ".join(f"{_full_name(name)} : {_text(low, name)} to {_text(high, name)}" for name, (low, high) in variables.items())
 
 
-def to_prm(scene):
+@checked
+def to_prm(scene: Mapping[str, Any]) -> str:
     """Writes a dict as the text of a parameter file."""
     nested = {}
     for name, value in _flat(scene):
@@ -256,7 +277,14 @@ def to_prm(scene):
     return "\n".join(_lines(nested, "")) + "\n"
 
 
+def _require_names(settings):
+    for name in settings:
+        if not isinstance(name, str):
+            raise InputError(f"the entry {name!r} is set, but its name is expected, as \"Body/Length\"")
+
+
 def _flat(scene, before=""):
+    _require_names(scene)
     for name, value in scene.items():
         if isinstance(value, Mapping):
             yield from _flat(value, f"{before}{name}/")
@@ -323,6 +351,7 @@ def _keyword(entry):
 
 
 def _overrides(settings, keywords):
+    _require_names(settings or {})
     pairs = [*(settings or {}).items(), *((_full_name(name), value) for name, value in keywords.items())]
     return [f"{name}={_text(value, name)}" for name, value in pairs]
 
@@ -343,7 +372,7 @@ def _source(scene, overrides):
 def _warn(notes):
     """Issues warnings at the line that called this package."""
     level, frame = 2, sys._getframe(1)
-    while frame.f_back is not None and frame.f_globals.get("__name__") == __name__:
+    while frame.f_back is not None and str(frame.f_globals.get("__name__")).split(".")[0] == __name__:
         level, frame = level + 1, frame.f_back
     for note in notes:
         warnings.warn(note.removeprefix("Note: "), stacklevel=level)

@@ -11,6 +11,7 @@ import sys
 HERE = pathlib.Path(__file__).absolute().parent  # in the build folder, or installed
 COMMANDS = {"fit": ("fitting.command", ("numpy", "scipy")),  # module and the modules it needs
             "paper": ("paper", ("numpy", "h5py", "matplotlib")),
+            "plot": ("pictures", ("numpy", "matplotlib")),
             "report": ("report.command", ("numpy", "h5py")),
             "table": ("measured.command", ("numpy", "scipy")),
             "tradeoff": ("tradeoff", ("numpy",))}  # part of the command left to Python

@@ -6,12 +6,14 @@ import csv
 import dataclasses
 import functools
 import json
+import os
 import pathlib
 import re
 from xml.etree import ElementTree
 
 import numpy as np
 
+from .arguments import checked
 from .needs import FileError
 
 
@@ -94,7 +96,8 @@ class Study(Numbers):
         return f"<crawler.Study: {self.kind}, {self.status}, columns {', '.join(self.table)}>"
 
 
-def read(folder):
+@checked
+def read(folder: str | os.PathLike) -> "Result | Study":
     """Results in a folder of `crawler run`, sweep, tradeoff, optimize or fit: a Result or a Study."""
     folder = pathlib.Path(folder).expanduser()
     summary_file = folder / "summary.json"

@@ -16,6 +16,10 @@ namespace crawler
   std::vector<Example>
   examples_of(const std::string &command = "");
 
+  /// Kinds of pictures of contrib/python/crawler/pictures.py.
+  const std::vector<std::string> &
+  plot_kinds();
+
   /// Exit code with its meaning.
   struct ExitCodeMeaning
   {

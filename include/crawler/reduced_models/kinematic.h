@@ -71,7 +71,7 @@ namespace crawler
     double displacement = 0., space_error = 0., time_error = 0.; ///< errors of the quadrature
     bool stopped = false;                                        ///< keep_going returned false
     EnergyBalance energies;
-    double net_friction = 0.; ///< largest |int g v ds| over largest int |g v| ds, both over time
+    double net_friction = 0.; ///< mean of |int g v ds| over that of int |g v| ds
     StrainExtremes extremes{};
     std::optional<StrainExtreme> inversion; ///< place without a positive stretch; then the rest is unknown
     unsigned int n_space_panels = 0;

@@ -217,9 +217,9 @@ namespace crawler::accuracy_rule
     inline constexpr double soft = 1e-3, layer_cells = 3., layer_ratio = 0.25, max_layer_levels = 8.;
     /// Tolerance where one cycle stands for many: its error does not average out, so the finer run is more accurate.
     inline constexpr double finer_tolerance_of_cycles = 0.25;
-    /// Number of next tries; factors on cells and tolerance.
-    inline constexpr unsigned int max_refinements = 3;
-    inline constexpr double refined_cells = 1.2, max_refined_cells = 4., refined_tolerance = 0.1;
+    /// Number of next tries, also while the error falls and is within near_factor; factors on cells and tolerance.
+    inline constexpr unsigned int max_refinements = 3, max_refinements_if_near = 6;
+    inline constexpr double near_factor = 4., refined_cells = 1.2, max_refined_cells = 4., refined_tolerance = 0.1;
     /// Round-off of the displacement, as a part of the body length.
     inline constexpr double round_off = 1e-15;
   } // namespace finer_run

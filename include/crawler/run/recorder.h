@@ -88,9 +88,9 @@ namespace crawler
     /// Observes the extreme stretches of a state within or at the end of the step; the first call starts the run.
     void
     see_stretch(Extreme smallest, Extreme largest);
-    /// Observes int |g v| ds, and |int g v ds| where the velocity balances all forces.
+    /// Observes int |g v| ds and |int g v ds| at the end of a step of this duration.
     void
-    see_friction(double sum_of_sizes, double size_of_sum);
+    see_friction(double duration, double sum_of_sizes, double size_of_sum);
     /// Observes the end of the step, with the extreme stretches there; @p is_step_end: it is an output time or one of
     /// step_ends(). Returns true if the run may end here, since its cycles repeat.
     bool
@@ -139,6 +139,6 @@ namespace crawler
     ExtremeHistory smallest_{ExtremeHistory::smallest}, largest_{ExtremeHistory::largest};
     bool started_            = false;
     bool were_known_         = false;                          ///< sudden_changes_ knew the extremes seen last
-    double largest_friction_ = 0., largest_net_friction_ = 0.; ///< over time
+    double friction_impulse_ = 0., net_impulse_ = 0.; ///< int dt of both
   };
 } // namespace crawler

@@ -23,6 +23,7 @@ from .settings import Settings
 DESCRIPTION = """Turns measured samples or tracks of markers into a table that a scene can read. IN: s, t, m; or t, marker, x; or t
 and a column for each place or marker; or a file of DeepLabCut, SLEAP, TrackMate, Tierpsy, Tracker, FIMTrack, ImageJ or the
 Multi-Worm Tracker (doc/measured_data.md)."""
+ACCURACY_OF_COPIES = 1e-4  # relative; what noise does is known to 9 %
 
 
 def command_line():
@@ -63,6 +64,9 @@ def require_files(options):
     for name in ("copies", "seed", "set"):
         if not hasattr(options, "scene") and getattr(options, name, None):
             raise InputError(f'"--{name}" is for "--scene", which is missing')
+    for name in (options.input, getattr(options, "scene", "")):
+        if name and name != scene_of(options.output) and not os.path.exists(name):
+            raise FileError(f'cannot read "{name}": No such file or directory')
     if not options.output.endswith(".csv"):
         raise InputError(f'the table is to be "{options.output}", but a name that ends in .csv is expected')
     if os.path.exists(options.output):
@@ -70,6 +74,35 @@ def require_files(options):
             raise InputError(f'"{options.output}" is to be read and written, but another name for the table is expected')
         if not options.overwrite:
             raise InputError(f'"{options.output}" exists; another name or "--overwrite" is expected')
+
+
+def scene_of(output):
+    """Name of the parameter file beside a table, a scene to start from."""
+    return f"{output.removesuffix('.csv')}.prm"
+
+
+def scene_text(table, output):
+    """Parameter file of a scene that reads a table."""
+    is_strain = table.quantity == "strain"
+    entries = ["set Given by = table"] if is_strain else ["set Outside = periodic"] if table.period else []
+    file = os.path.basename(output)
+    return "\n".join([
+        f"# A scene that reads {file}, to start from: friction and elasticity are those of the animal.", "",
+        *(["set Model = kinematic # nothing has to be solved, since the strain is known", ""] if is_strain else []),
+        "subsection Body",
+        f"  set Length               = {table.s[-1]:.12g}",
+        "  set Elastic modulus      = 1",
+        "  set Friction coefficient = 1",
+        "  set Anchoring exponent   = 2 # friction falls with the stretch as w^(1 - p)",
+        "end", "",
+        "subsection Active stress",
+        f"  set Generator = {'prescribed strain' if is_strain else 'table'}",
+        f"  subsection {'Prescribed strain' if is_strain else 'Table'}",
+        *(f"    {entry}" for entry in [*entries, f"set File = {file}"]),
+        "  end", "end", "",
+        "subsection Time",
+        f"  set End time = {table.t[-1]:.12g}",
+        "end", ""])
 
 
 def write_columns(path, names, columns, digits):
@@ -86,14 +119,17 @@ def write_table(path, s, t, values, names):
 
 
 def displacements(scene, overrides, entry, tables):
-    """Rows of a sweep of the scene over tables, read one after the other, a dict of texts for each; and the table that
-    the scene itself names. Raises InputError and FileError with the message of the program."""
+    """Rows of a sweep of the scene over tables, read one after the other, a dict of texts for each; and the entries of
+    the scene. Raises InputError and FileError with the message of the program."""
     if "CRAWLER_PROGRAM" not in os.environ:
         raise InputError('"--scene" needs the program (doc/install.md): crawler table IN OUT --scene FILE is expected')
     with tempfile.TemporaryDirectory(prefix="crawler-table-") as folder:
         names = [os.path.join(folder, f"{k}.csv") for k in range(len(tables))]
         for name, table in zip(names, tables):
             write_table(name, table.s, table.t, table.values, ("s", "t", table.quantity))
+        if not os.path.exists(scene):  # the one that is to be written beside the table
+            scene = os.path.join(folder, os.path.basename(scene))
+            pathlib.Path(scene).write_text(scene_text(tables[0], names[0]), encoding="utf-8")
         settings = [*overrides, "Sweep/Design=grid", f"Sweep/Axes={entry} : {', '.join(names)}"]
         output = os.path.join(folder, "sweep")
         end = subprocess.run([os.environ["CRAWLER_PROGRAM"], "sweep", scene, "--output", output, "--quiet",
@@ -101,41 +137,54 @@ def displacements(scene, overrides, entry, tables):
         if end.returncode:
             problem = end.stderr.strip().removeprefix("crawler: ").replace(names[0], "the new table")
             problem = re.sub(r'^--set "Sweep/Axes=.*?": ', "", problem).replace(folder + os.sep, "")
+            problem += f" (the new table goes from s = {tables[0].s[0]:g} to {tables[0].s[-1]:.10g}, t = {tables[0].t[0]:g} to {tables[0].t[-1]:.10g})"
             raise FileError(problem) if end.returncode == FileError.code else InputError(problem)
         with open(os.path.join(output, "results.csv"), newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
-        return rows, parameters_of(pathlib.Path(output, "parameters.prm").read_text(encoding="utf-8"))[entry]
+        return rows, parameters_of(pathlib.Path(output, "parameters.prm").read_text(encoding="utf-8"))
 
 
-def _prepared(copy, prepare_copy):
-    try:
-        return prepare_copy(copy)
-    except InputError as error:
-        raise InputError(f'with noise added the samples give no table, so that the uncertainty is not known: {error}; see "--noise"') from None
+def noisy_tables(samples, noise, options, prepare_copy):
+    """Tables of copies of the samples with noise. Raises InputError if more than a tenth of the copies gives none."""
+    n, generator, tables, failed = getattr(options, "copies", 64), np.random.default_rng(getattr(options, "seed", 1)), [], []
+    for _ in range(n):
+        copy = dataclasses.replace(samples, values=samples.values + noise * generator.standard_normal(samples.values.shape))
+        try:
+            tables.append(prepare_copy(copy))
+        except InputError as error:
+            failed.append(error)
+            if len(failed) > 0.1 * n:
+                raise InputError(f"with noise of {noise:.3g} added, {len(failed)} of {len(tables) + len(failed)} copies of the samples give no table, so "
+                                 f'that the uncertainty is not known; one of them: {error}; more smoothing, or another "--noise", is expected') from None
+    return tables
 
 
 def uncertainty(options, samples, table, prepare_copy):
     """Describes the uncertainty of the displacement of a scene by the noise: copies of the samples get noise of the
     same size, are prepared in the same way, and the scene is computed with each."""
-    n, generator = getattr(options, "copies", 64), np.random.default_rng(getattr(options, "seed", 1))
-    noisy = (dataclasses.replace(samples, values=samples.values + table.noise * generator.standard_normal(samples.values.shape))
-             for _ in range(n))
     entry = "Active stress/" + ("Table/File" if table.quantity == "m" else "Prescribed strain/File")
-    noisy = [_prepared(copy, prepare_copy) for copy in noisy]
-    (first, *rows), own = displacements(options.scene, options.set, entry, [table, *noisy])
+    is_new = not os.path.exists(options.scene)
+    noisy = noisy_tables(samples, table.noise, options, prepare_copy)
+    lengths = [copy.s[-1] for copy in noisy]  # of markers; displacements are proportional to the length
+    for copy in noisy:
+        copy.s = table.s
+    (first,), parameters = displacements(options.scene, options.set, entry, [table])
     if first["status"] != "finished" or not first["displacement"]:
         raise InputError(f'"{options.scene}" with the new table: {first["message"] or first["status"]}')
-    copies = [float(row["displacement"]) for row in rows if row["status"] == "finished" and row["displacement"]]
-    if len(copies) < 0.9 * n:
+    own, accuracy = parameters[entry], max(float(parameters["Accuracy"]), ACCURACY_OF_COPIES)
+    rows, _ = displacements(options.scene, [*options.set, f"Accuracy={accuracy}", "Error estimate=false"], entry, noisy)
+    copies = [float(row["displacement"]) * length / table.s[-1] for row, length in zip(rows, lengths)
+              if row["status"] == "finished" and row["displacement"]]
+    if len(copies) < 0.9 * len(rows):
         problem = next(row["message"] for row in rows if row["status"] != "finished")
-        raise InputError(f"only {len(copies)} of {n} noisy copies could be run, so that the uncertainty is not known; one of the others: "
+        raise InputError(f"only {len(copies)} of {len(rows)} noisy copies could be run, so that the uncertainty is not known; one of the others: "
                          f"{problem}")
     if max(copies) == min(copies) and table.noise > 0:
         reader = '"table"' if table.quantity == "m" else '"prescribed strain" with Given by = table'
         raise InputError(f'"{options.scene}" does not read the table: "{entry}" does not change its displacement; the generator {reader} is '
                          "expected")
     bound, deviation = first["displacement_error.total"], np.std(copies, ddof=1)
-    note = "" if os.path.realpath(own) == os.path.realpath(options.output) else f'; with the new table, while the scene names "{own}"'
+    note = "" if is_new or os.path.realpath(own) == os.path.realpath(options.output) else f'; with the new table, while the scene names "{own}"'
     return (f"displacement {float(first['displacement']):.8g} +- {f'{float(bound):.1e}' if bound else '?'} (numerical bound) +- "
             f"{deviation:.2g} (standard deviation by noise of {table.noise:.3g}, {len(copies)} copies, known to "
             f"{100 / math.sqrt(2 * (len(copies) - 1)):.0f} %; their mean is {np.mean(copies):.8g}){note}")
@@ -154,14 +203,18 @@ def main():
         words.append(f"noise of a sample, as estimated from its neighbours in time: {table.noise:.3g}")
     if hasattr(options, "scene"):
         words.append(uncertainty(options, samples, table, lambda copy: prepare(copy, settings, table.period)))
-    words.append(f"table of {table.quantity} at {len(table.s)} places, s = {table.s[0]:g} to {table.s[-1]:g}, and {len(table.t)} times, "
+    words.append(f"table of {table.quantity} at {len(table.s)} places, s = {table.s[0]:g} to {table.s[-1]:.10g}, and {len(table.t)} times, "
                  f"t = {table.t[0]:g} to {table.t[-1]:.10g}")
-    stem = options.output.removesuffix(".csv")
+    stem, scene = options.output.removesuffix(".csv"), scene_of(options.output)
+    if is_new := not os.path.exists(scene):
+        words.append(f"{scene} is a scene that reads the table: crawler run {shlex.quote(scene)}")
     report = f"{options.input} -> {options.output}\n" + "".join(f"  {sentence}\n" for sentence in words)
     write_table(f"{stem}_before.csv", samples.s, samples.t, samples.values, ("marker" if samples.quantity == "x" else "s", "t",
                                                                                samples.quantity))
     write_whole(pathlib.Path(f"{stem}_report.txt"), report.encode())
     write_table(options.output, table.s, table.t, table.values, ("s", "t", table.quantity))
+    if is_new:
+        write_whole(pathlib.Path(scene), scene_text(table, options.output).encode())
     if not options.quiet:
         how = ("prescribed strain, Given by = table" if table.quantity == "strain" else "table")
         print(f"{report}Picture: crawler plot {shlex.quote(options.output)}. In the parameter file: Generator = {how}, File = {options.output}"

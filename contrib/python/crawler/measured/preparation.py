@@ -7,8 +7,10 @@ import math
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from ..arguments import checked
 from ..needs import InputError
 from .samples import LEAST, Samples
+from .settings import Settings
 from .splines import SmoothingSpline, periodic_spline
 from .units import number_of
 
@@ -51,7 +53,8 @@ class _Filled:
         self.largest = max(self.largest, np.max(np.abs(samples[there]), initial=0))
 
 
-def estimated_noise(samples):
+@checked
+def estimated_noise(samples: Samples) -> float:
     """Standard deviation of the noise of samples, from the residuals of polynomials through neighbours in time. Smooth
     waves leave less residual with more neighbours, but noise the same: the smallest of orders 3 to 8 is taken."""
     found = []
@@ -69,13 +72,12 @@ def estimated_noise(samples):
     return float(min(found))
 
 
-def prepare(samples, settings, period=None):
+@checked
+def prepare(samples: Samples, settings: Settings, period: float | None = None) -> Table:
     """Makes the Table of Samples. @p period: one that is known already. Raises InputError where a gap is too large,
     where there is no period, and where its ends differ by more than the noise."""
-    is_list = not isinstance(settings.markers_at, str)
-    settings = dataclasses.replace(settings, period=f"{period:.17g}" if period else str(settings.period or ""), markers_at=",".join(f"{float(s):.17g}" for s in
-                                   settings.markers_at) if is_list else settings.markers_at)
-    settings.require_sound()
+    _require_grid(samples)
+    settings = settings.in_words(period)
     if samples.quantity not in ("m", "strain", "x"):
         raise InputError(f'the samples are the {"path" if samples.quantity == "centre" else samples.quantity} of the centre of mass, which "crawler fit" reads, '
                          "but samples of m or strain, or markers, are expected for a table")
@@ -91,7 +93,8 @@ def prepare(samples, settings, period=None):
         tracks = _filled_in_time(measured, 0, settings.gap, _Filled(), is_smoothed=False)
         frames = _frames_without_ragged_ends(tracks, settings.gap, words)
         tracks = dataclasses.replace(tracks, t=tracks.t[frames], values=tracks.values[frames])
-        samples = strain_of_tracks(_filled_along_body(tracks, measured, settings.gap, _Filled()), settings, words)
+        tracks = _filled_along_body(tracks, measured, settings.gap, _Filled())
+        samples = strain_of_tracks(tracks, settings, words)
         for marker in measured.values[frames].T:
             filled.count([end - begin for begin, end in _gaps_in(~np.isnan(marker))])
     spread = estimated_noise(samples) if is_tracks or settings.noise is None else settings.noise
@@ -99,6 +102,8 @@ def prepare(samples, settings, period=None):
     if settings.period:
         full = _without_gaps(samples, settings.smooth_t, settings.gap, _Filled()) if settings.period == "find" else samples
         period = _period_of(full, settings.period, words)
+        if is_tracks:
+            words.append(_motion(tracks, period))
         table = _one_period(samples, settings, period, spread, words, filled)
     else:
         table = _without_gaps(samples, settings.smooth_t, settings.gap, filled)
@@ -116,10 +121,28 @@ def prepare(samples, settings, period=None):
         table.t = np.concatenate([table.t[:1], *(table.t[1:] + k * (table.t[-1] - table.t[0]) for k in range(settings.cycles))])
         table.values = np.concatenate([table.values[:1], *[table.values[1:]] * settings.cycles])
     _say_what_changed(settings, filled, spread, samples.s, words)
+    if table.quantity == "strain" and table.t[0] != 0 and is_tracks:
+        words.append(f"t shifted by {-table.t[0]:g}, since a prescribed strain begins at t = 0")
+        table.t = table.t - table.t[0]
     return Table(table.quantity, table.s, table.t, table.values, period, noise, words)
 
 
-def strain_of_tracks(tracks, settings, words):
+def _motion(tracks, period):
+    """Describes how far the middle of the markers moves in a period: the slope of the line through all times."""
+    slope = np.polyfit(tracks.t - tracks.t[0], tracks.values.mean(axis=1), 1)[0]
+    return f"the mean of the markers moves by {slope * period:.4g} a period (towards the head: positive)"
+
+
+def _require_grid(samples):
+    """Raises InputError for samples that are not on a grid: arrays s [place], t [time] and values [time, place]."""
+    shapes = [np.shape(one) for one in (samples.s, samples.t, samples.values)]
+    if shapes[2] != shapes[1] + shapes[0] or len(shapes[0]) != 1 or len(shapes[1]) != 1:
+        raise InputError(f"the samples have s, t and values of the shapes {', '.join(map(str, shapes))}, but (place,), (time,) and (time, place) are expected")
+    if not (np.all(np.isfinite(samples.s)) and np.all(np.isfinite(samples.t)) and not np.any(np.isinf(samples.values))):
+        raise InputError("the samples have places, times or values that are not finite, but only gaps of values (NaN) may be there")
+
+
+def strain_of_tracks(tracks: Samples, settings: Settings, words: list[str]) -> Samples:
     """Strain dx/ds - 1 of tracks x_i(t) without gaps, at equally spaced places over the body, by a spline over the
     material coordinates of the markers for each time. Raises InputError."""
     s = _material_coordinates(tracks, settings)
@@ -145,7 +168,7 @@ def strain_of_tracks(tracks, settings, words):
     how = {"first": "from the first frame, which is taken as a body without strain", "mean": "from the mean of frames"}.get(
         settings.markers_at, "as given")
     words.append(f"strain of {len(s)} markers at s = {s[0]:g} to {s[-1]:g} ({how}), at {len(places)} places of a body of length "
-                 f"{length:g}")
+                 f"{length:.10g}")
     if s[0] > 0 or s[-1] < length * (1 - 1e-9):
         words.append(f"beyond the outermost markers, over {s[0]:g} at the tail and {max(0, length - s[-1]):g} at the head, the strain "
                      f"{'is held' if settings.ends == 'hold' else 'continues linearly'}")
@@ -278,9 +301,13 @@ def _frames_without_ragged_ends(tracks, most, words):
     return slice(begin, end)
 
 
-def find_period(samples):
+@checked
+def find_period(samples: Samples) -> float | None:
     """Shortest time after which samples without gaps repeat, by the mean square difference of the samples and later
     ones; the duration must be at least 1.25 times as long. None if nothing repeats."""
+    _require_grid(samples)
+    if np.any(np.isnan(samples.values)):
+        raise InputError("the samples have gaps, but a period is found in samples without them")
     begin, duration = samples.t[0], samples.t[-1] - samples.t[0]
     curves = SmoothingSpline(samples.t, samples.values, 0)
     n = min(4 * (len(samples.t) - 1), MOST_LAGS)

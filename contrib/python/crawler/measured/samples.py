@@ -2,12 +2,14 @@
 """Samples on a grid over body and time, from sheets, tracks and HDF5 files, in the wanted units."""
 import dataclasses
 import math
+import os
 import pathlib
 
 import numpy as np
 
 from scipy.interpolate import CubicSpline
 
+from ..arguments import checked
 from ..needs import FileError, InputError
 from .formats import WITH_ANIMALS, Tracks, read_hdf5, tracks_of
 from .paths import factors_of_path, path_in
@@ -45,8 +47,10 @@ class Samples:
     deviation: np.ndarray = None
 
 
-def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", unit_of_m="", shift_s="", shift_t="",
-                 animal="", head="", confidence=0.0, decimal="", words=None):
+@checked
+def read_samples(path: str | os.PathLike, *, quantity: str = "", columns: str = "", unit_of_s: str | float = "", unit_of_t: str | float = "",
+                 unit_of_m: str | float = "", shift_s: str | float = "", shift_t: str | float = "", animal: str = "", head: str = "",
+                 confidence: float = 0.0, decimal: str = "", words: list[str] | None = None) -> Samples:
     """Reads the Samples of a file, in the wanted units.
 
     path: a table as text, or HDF5 of SLEAP, DeepLabCut, Tierpsy or with t and x, or s, t and m or strain. quantity: "m", "strain", "stretch" or
@@ -249,6 +253,9 @@ def _wide(sheet, quantity, first):
                          "measured may have gaps")
     if is_tracked:
         across = np.arange(1.0, len(names))
+        other = next((name for name in names[1:] if not name.lower().startswith(("x", "marker"))), None)
+        if other and names[1].lower().startswith(("x", "marker")):
+            raise InputError(f'"{sheet.name}" has the column {other} beside those of markers ({names[1]}, ...), but only columns of markers are expected')
         if len(set(names[1:])) < len(names) - 1:
             twice = next(name for name in names if names.count(name) > 1)
             raise InputError(f'"{sheet.name}" has {names.count(twice)} columns "{twice}", but a column for each marker with a name '
@@ -421,6 +428,14 @@ def _between_markers(x):
     return x
 
 
+def _largest_bend(sines):
+    """Amplitude in degrees of the angle between a segment and the axis, of the segment that turns most, from sines
+    [time, segment]. Noise, as second differences in time tell it, does not count."""
+    squares = np.nanmean(sines**2, axis=0)
+    noise = np.nanmean(np.diff(sines, 2, axis=0)**2, axis=0) / 6 if len(sines) >= LEAST else 0
+    return np.degrees(np.arcsin(np.clip(np.sqrt(2 * np.nanmax(np.maximum(squares - noise, 0))), 0, 1)))
+
+
 def _arc_lengths(t, x, y, words, notes):
     """Places along a body that may bend: distances between neighbours, beside the mean place along the mean axis."""
     gaps = np.isnan(x)
@@ -430,7 +445,7 @@ def _arc_lengths(t, x, y, words, notes):
         axis /= np.hypot(*axis)
         steps = np.hypot(np.diff(x, axis=1), np.diff(y, axis=1))
         straight = np.diff(x, axis=1) * axis[0] + np.diff(y, axis=1) * axis[1]
-        bend = np.degrees(np.arccos(np.clip(np.nanmin(straight / steps), -1, 1)))
+        bend = _largest_bend((np.diff(y, axis=1) * axis[0] - np.diff(x, axis=1) * axis[1]) / steps)
     along = x * axis[0] + y * axis[1]
     if bend < 5:
         words.append("x and y lie on a straight line; places are along it")

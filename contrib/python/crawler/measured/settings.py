@@ -4,6 +4,8 @@ import dataclasses
 import math
 import numbers
 
+import numpy as np
+
 from ..needs import InputError
 
 
@@ -32,6 +34,18 @@ class Settings:
         for name in ("markers_at", "first_marker", "length", "ends"):
             if getattr(self, name) != getattr(Settings, name):
                 raise InputError(f'"--{name.replace("_", "-")}" is for markers, which these samples do not have')
+
+    def in_words(self, period=None):
+        """Settings with a period and places of markers as texts, as of a command line. Raises InputError for settings that
+        can be refused without samples."""
+        places = self.markers_at
+        if isinstance(places, (list, tuple, np.ndarray)):
+            if not all(isinstance(one, numbers.Real) for one in places):
+                raise InputError(f'"markers_at" is {places!r}, but "first", "mean" or a list of numbers is expected')
+            places = ",".join(f"{float(one):.17g}" for one in places)
+        result = dataclasses.replace(self, period=f"{period:.17g}" if period else str(self.period or ""), markers_at=places)
+        result.require_sound()
+        return result
 
     def require_sound(self):
         """Raises InputError for settings that can be refused without samples."""

@@ -15,6 +15,7 @@ COMMENTS = ("#", "%", "//")
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 DECIMAL_COMMA = re.compile(r"[+-]?(\d*,\d+|\d+,)([eE][+-]?\d+)?")
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")  # 1,000: a thousand, or a number with three decimals
+GROUPED_BY_POINTS = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+(,\d*)?")
 CLOCK = re.compile(r"\d+:\d\d:\d\d([.,]\d*)?|\d{4}-\d\d-\d\d[T ].*")
 SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", " ": "blanks"}
 FOREIGN = ((b"\xff\xfe", "text in UTF-16"), (b"\xfe\xff", "text in UTF-16"), (b"PK\x03\x04", "a workbook or an archive (zip)"),
@@ -55,8 +56,11 @@ class Sheet:
         return units
 
     def label(self, column):
-        """Name of a column, for messages."""
-        return (self.names[column] if self.head else "") or f"column {column + 1}"
+        """Name of a column, for messages; of all rows of the head if the first one has the same name for many."""
+        names = self.names
+        if len(self.head) > 1 and names.count(names[column]) > 2:
+            return " ".join(row[column] for row in self.head[1:])
+        return (names[column] if self.head else "") or f"column {column + 1}"
 
     def number(self, cell):
         """Number in a cell; NaN for a gap, None for anything else."""
@@ -64,8 +68,8 @@ class Sheet:
         if is_gap(cell):
             return np.nan
         if self.comma == "decimal":
-            if re.fullmatch(r"[+-]?\d{1,3}(\.\d{3})+,\d*", cell):
-                cell = cell.replace(".", "")  # 1.234,5
+            if GROUPED_BY_POINTS.fullmatch(cell):
+                cell = cell.replace(".", "")  # 1.234,5 and 1.234
             elif "." in cell:
                 return None
             cell = cell.replace(",", ".")
@@ -152,11 +156,18 @@ def separator_of(line):
 
 def meaning_of_commas(rows, separator, name, decimal):
     """Returns whether commas in numbers stand before decimals or group thousands ("1,000"); @p decimal, "comma" or
-    "point", decides if it is given. Raises InputError if both are possible."""
+    "point", decides if it is given. Raises InputError if both are possible, also where all points may group thousands
+    between semicolons, as programs write them where decimals have commas."""
     if decimal not in ("", "comma", "point"):
         raise InputError(f'"--decimal" is "{decimal}", but "comma" or "point" is expected')
     if decimal:
         return "decimal" if decimal == "comma" and separator != "," else "thousands"
+    numbers = [cell for row in rows for cell in row if re.fullmatch(r"[+-]?\d[\d.,]*", cell)]
+    points = [cell for cell in numbers if "." in cell]
+    if separator == ";" and points and all(GROUPED_BY_POINTS.fullmatch(cell) for cell in points):
+        if any("," in cell for cell in numbers):
+            return "decimal"
+        _refuse_either(points[0], points[0], points[0].replace(".", ""), name)
     cells = [cell for row in rows for cell in row if "," in cell]
     decimal = [cell for cell in cells if DECIMAL_COMMA.fullmatch(cell) and not GROUPED.fullmatch(cell)]
     grouped = [cell for cell in cells if GROUPED.fullmatch(cell.split(".")[0]) and (cell.count(",") > 1 or "." in cell)]
@@ -178,8 +189,11 @@ def meaning_of_commas(rows, separator, name, decimal):
         return "thousands"
     if readings["decimal"] and not readings["thousands"]:
         return "decimal"
-    raise InputError(f'"{name}" has "{either[0]}", which may be {either[0].replace(",", ".")} or {either[0].replace(",", "")}; '
-                     '"--decimal comma" or "--decimal point" says which')
+    _refuse_either(either[0], either[0].replace(",", "."), either[0].replace(",", ""), name)
+
+
+def _refuse_either(cell, one, other, name):
+    raise InputError(f'"{name}" has "{cell}", which may be {one} or {other}; "--decimal comma" or "--decimal point" says which')
 
 
 def read_sheet(data, name, decimal=""):
@@ -201,12 +215,13 @@ def read_sheet(data, name, decimal=""):
         raise InputError(f'"{name}" is empty, but a table of numbers is expected')
     separator = forced or separator_of(lines[-1][1])
     rows = [(number, cells_of(line, separator)) for number, line in lines]
-    width = len(rows[-1][1])
+    widths = [len(cells) for _, cells in rows]
+    width = max(widths[::-1], key=widths.count)  # a title, or a last row that was cut off, has another one
     whole = [cells for _, cells in rows if len(cells) == width]
     sheet = Sheet(name, [], [], [], meaning_of_commas(whole[1:] or whole, separator, name, decimal), [], [])
 
     # Columns of numbers are those of the last rows; samples begin where all of them have numbers.
-    last = whole[max(-20, 1 - len(whole)):] if len(whole) > 1 else whole
+    last = whole[-min(20, max(1, len(whole) // 2)):]
     def value(cell):
         return 0.0 if CLOCK.fullmatch(cell) else sheet.number(cell)
     numeric = [i for i in range(width) if sum(value(cells[i]) is not None for cells in last) > len(last) / 2]
@@ -222,13 +237,15 @@ def read_sheet(data, name, decimal=""):
     _read_head(sheet, rows[:begin], width, numeric, (comment, separator))
     for number, cells in rows[begin:]:
         if len(cells) != width:
-            raise InputError(f'row {number} of "{name}" has {len(cells)} cells, but {width} are expected, as in row {rows[-1][0]}')
+            raise InputError(f'row {number} of "{name}" has {len(cells)} cells, but {width} are expected, as in most others')
         if all(is_gap(cells[i]) for i in filled):
             raise InputError(f'row {number} of "{name}" has no number, but at least one is expected')
         sheet.rows.append(cells)
         sheet.lines.append(number)
     _drop_empty_columns(sheet, width)
-    decimals = {"decimal": ", with decimal commas", "thousands": "; commas group thousands (1,000 is a thousand)"}
+    are_grouped = sheet.comma == "decimal" and any(GROUPED_BY_POINTS.fullmatch(cell) for cells in sheet.rows for cell in cells)
+    decimals = {"decimal": f", with decimal commas{'; points group thousands (1.000 is a thousand)' if are_grouped else ''}",
+                "thousands": "; commas group thousands (1,000 is a thousand)"}
     sheet.words.insert(0, f"{len(sheet.rows)} rows of {len(sheet.rows[0])} columns between {SEPARATORS.get(separator, repr(separator))}"
                           f"{decimals.get(sheet.comma, '')}")
     return sheet

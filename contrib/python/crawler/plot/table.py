@@ -70,7 +70,7 @@ def draw(path):
             right.plot(again, raw[:, nearest], DOTS[k], color=COLOURS[k], markersize=2.5, alpha=0.5, markeredgewidth=0)
         right.plot(t, values[:, i], color=COLOURS[k], linewidth=1.3, label=label)
     right.set(xlabel=NAMES["t"], ylabel=NAMES[name], title="lines: table" if is_tracked else "dots: samples, lines: table")
-    right.legend(fontsize=8, frameon=False)
+    right.legend(fontsize=8, frameon=False, loc="lower left", bbox_to_anchor=(1, 0))
     return figure
 
 

@@ -22,7 +22,7 @@ KINDS = (("tradeoff", "tradeoff.h5", "tradeoff.h5", "tradeoff"),
          ("optimisation", "starts.h5", "results.h5", "optimize"),
          ("optimisation", "starts.csv", "results.h5", "optimize"),
          ("sweep", "results.h5", "results.h5", "results"), ("run", "summary.json", None, None),
-         ("run", "statistics.csv", None, None))
+         ("run", "statistics.csv", None, None), ("run", "kymograph.vts", None, None), ("run", "parameters.prm", None, None))
 
 
 def kind_of(folder):
@@ -33,7 +33,7 @@ def kind_of(folder):
     for kind in KINDS:
         if os.path.exists(os.path.join(folder, kind[1])):
             return kind
-    raise InputError(f'"{folder}" has no results: none of summary.json, statistics.csv, results.h5, tradeoff.h5 '
+    raise InputError(f'"{folder}" has no results: none of summary.json, statistics.csv, kymograph.vts, results.h5, tradeoff.h5 '
                      f"exists; {expected}")
 
 
