@@ -189,7 +189,7 @@ def gradient(scene: Scene, by: str | Sequence[str], *, of: str = "displacement",
     by = [by] if isinstance(by, str) else list(by) if isinstance(by, (list, tuple)) else []
     if not by or not all(isinstance(entry, str) for entry in by):
         raise InputError("the entries are missing; a list of full names is expected, as [\"Body/Elastic modulus\"]")
-    known = _compiled().differentiated_numbers
+    by, known = [_full_name(entry) for entry in by], _compiled().differentiated_numbers
     if of not in known:
         raise InputError(f'of is "{of}", but one of {", ".join(known)} is expected')
     result = run(scene, set={**(set or {}), "Output/Sensitivities": ", ".join(by)}, fields=False, check=True, **keywords)

@@ -144,13 +144,13 @@ def displacements(scene, overrides, entry, tables):
         return rows, parameters_of(pathlib.Path(output, "parameters.prm").read_text(encoding="utf-8"))
 
 
-def noisy_tables(samples, noise, options, prepare_copy):
-    """Tables of copies of the samples with noise. Raises InputError if more than a tenth of the copies gives none."""
+def noisy_tables(samples, noise, options, settings, period):
+    """Tables of copies of the samples with noise, prepared in the same way. Raises InputError if more than a tenth of the copies gives none."""
     n, generator, tables, failed = getattr(options, "copies", 64), np.random.default_rng(getattr(options, "seed", 1)), [], []
     for _ in range(n):
         copy = dataclasses.replace(samples, values=samples.values + noise * generator.standard_normal(samples.values.shape))
         try:
-            tables.append(prepare_copy(copy))
+            tables.append(prepare(copy, settings, period))
         except InputError as error:
             failed.append(error)
             if len(failed) > 0.1 * n:
@@ -159,20 +159,42 @@ def noisy_tables(samples, noise, options, prepare_copy):
     return tables
 
 
-def uncertainty(options, samples, table, prepare_copy):
-    """Describes the uncertainty of the displacement of a scene by the noise: copies of the samples get noise of the
-    same size, are prepared in the same way, and the scene is computed with each."""
+def with_half_smoothing(samples, settings, period):
+    """Tables with half the widths of smoothing: one, or none if there is no such table."""
+    if settings.smooth_s == 0 and settings.smooth_t == 0:
+        return []
+    try:
+        return [prepare(samples, dataclasses.replace(settings, smooth_s=settings.smooth_s / 2, smooth_t=settings.smooth_t / 2), period)]
+    except InputError:
+        return []
+
+
+def others_of(row, rows):
+    """Numbers of a row beside its displacement with their deviations in rows, in words."""
+    words = []
+    for key, name in (("dissipation", "dissipation"), ("min_stretch.value", "smallest stretch"), ("max_stretch.value", "largest stretch")):
+        values = [float(one[key]) for one in rows if one[key]]
+        if row[key] and len(values) > 1:
+            words.append(f"{name} {float(row[key]):.4g} +- {np.std(values, ddof=1):.2g} (mean of copies {np.mean(values):.4g})")
+    return ", ".join(words)
+
+
+def uncertainty(options, samples, table, settings):
+    """Describes, in sentences, the uncertainty of the displacement of a scene by the noise: copies of the samples get
+    noise of the same size, are prepared in the same way, and the scene is computed with each."""
     entry = "Active stress/" + ("Table/File" if table.quantity == "m" else "Prescribed strain/File")
     is_new = not os.path.exists(options.scene)
-    noisy = noisy_tables(samples, table.noise, options, prepare_copy)
+    noisy = noisy_tables(samples, table.noise, options, settings, table.period)
+    half = with_half_smoothing(samples, settings, table.period)
     lengths = [copy.s[-1] for copy in noisy]  # of markers; displacements are proportional to the length
-    for copy in noisy:
+    for copy in [*noisy, *half]:
         copy.s = table.s
     (first,), parameters = displacements(options.scene, options.set, entry, [table])
     if first["status"] != "finished" or not first["displacement"]:
         raise InputError(f'"{options.scene}" with the new table: {first["message"] or first["status"]}')
     own, accuracy = parameters[entry], max(float(parameters["Accuracy"]), ACCURACY_OF_COPIES)
-    rows, _ = displacements(options.scene, [*options.set, f"Accuracy={accuracy}", "Error estimate=false"], entry, noisy)
+    rows, _ = displacements(options.scene, [*options.set, f"Accuracy={accuracy}", "Error estimate=false"], entry, [*noisy, *half])
+    rows, of_half = rows[:len(noisy)], rows[len(noisy):]
     copies = [float(row["displacement"]) * length / table.s[-1] for row, length in zip(rows, lengths)
               if row["status"] == "finished" and row["displacement"]]
     if len(copies) < 0.9 * len(rows):
@@ -185,9 +207,18 @@ def uncertainty(options, samples, table, prepare_copy):
                          "expected")
     bound, deviation = first["displacement_error.total"], np.std(copies, ddof=1)
     note = "" if is_new or os.path.realpath(own) == os.path.realpath(options.output) else f'; with the new table, while the scene names "{own}"'
-    return (f"displacement {float(first['displacement']):.8g} +- {f'{float(bound):.1e}' if bound else '?'} (numerical bound) +- "
-            f"{deviation:.2g} (standard deviation by noise of {table.noise:.3g}, {len(copies)} copies, known to "
-            f"{100 / math.sqrt(2 * (len(copies) - 1)):.0f} %; their mean is {np.mean(copies):.8g}){note}")
+    words = [f"displacement {float(first['displacement']):.8g} +- {f'{float(bound):.1e}' if bound else '?'} (numerical bound) +- "
+             f"{deviation:.2g} (standard deviation by noise of {table.noise:.3g}, {len(copies)} copies, known to "
+             f"{100 / math.sqrt(2 * (len(copies) - 1)):.0f} %; their mean is {np.mean(copies):.8g}){note}"]
+    if settings.cycles > 1:
+        words.append(f"that is {float(first['displacement']) / settings.cycles:.4g} +- {deviation / settings.cycles:.2g} a period")
+    if others := others_of(first, rows):
+        words.append(others)
+    for row in of_half:
+        if row["displacement"]:
+            words.append(f"with half the widths of smoothing the displacement is {float(row['displacement']):.5g}: what smoothing takes away is not in "
+                         "the deviations")
+    return words
 
 
 def main():
@@ -202,7 +233,7 @@ def main():
     if settings.noise is None:
         words.append(f"noise of a sample, as estimated from its neighbours in time: {table.noise:.3g}")
     if hasattr(options, "scene"):
-        words.append(uncertainty(options, samples, table, lambda copy: prepare(copy, settings, table.period)))
+        words += uncertainty(options, samples, table, settings)
     words.append(f"table of {table.quantity} at {len(table.s)} places, s = {table.s[0]:g} to {table.s[-1]:.10g}, and {len(table.t)} times, "
                  f"t = {table.t[0]:g} to {table.t[-1]:.10g}")
     stem, scene = options.output.removesuffix(".csv"), scene_of(options.output)

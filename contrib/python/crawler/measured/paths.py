@@ -7,7 +7,7 @@ from .units import unit_factor
 
 PATHS = {"centre": ("centre", "center", "centre of mass", "center of mass"), "speed": ("speed", "velocity")}  # names of columns
 DEVIATIONS = ("deviation", "standard deviation", "sigma")
-TIMES, ALONG = ("t", "time"), ("s", "marker", "track_id", "track n°", "track", "id", "x1", "x")  # names; the latter exclude a path
+TIMES, ALONG = ("t", "time"), ("s", "marker", "track_id", "track n°", "track", "id", "x1")  # names of columns; the latter exclude a path
 
 
 def path_in(sheet):

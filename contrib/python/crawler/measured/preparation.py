@@ -15,7 +15,7 @@ from .splines import SmoothingSpline, periodic_spline
 from .units import number_of
 
 MOST_POINTS = 20000000  # points of a table
-MUCH_OF_NOISE, LEAST_CYCLES, LEAST_PHASES, LEAST_REMAINDERS, USUAL_PLACES, MOST_LAGS = 5, 1.25, 8, 8, 33, 65536
+MUCH_OF_NOISE, MUCH_SCATTER, LEAST_CYCLES, LEAST_PHASES, LEAST_REMAINDERS, USUAL_PLACES, MOST_LAGS = 5, 1.5, 1.25, 8, 8, 33, 65536
 
 
 @dataclasses.dataclass
@@ -78,7 +78,9 @@ def prepare(samples: Samples, settings: Settings, period: float | None = None) -
     where there is no period, and where its ends differ by more than the noise."""
     _require_grid(samples)
     settings = settings.in_words(period)
-    if samples.quantity not in ("m", "strain", "x"):
+    if samples.quantity not in ("m", "strain", "x", "centre", "speed"):
+        raise InputError(f'the quantity of the samples is "{samples.quantity}", but "m", "strain", "x", "centre" or "speed" is expected')
+    if samples.quantity in ("centre", "speed"):
         raise InputError(f'the samples are the {"path" if samples.quantity == "centre" else samples.quantity} of the centre of mass, which "crawler fit" reads, '
                          "but samples of m or strain, or markers, are expected for a table")
     if len(samples.s) < LEAST or len(samples.t) < LEAST:
@@ -110,6 +112,10 @@ def prepare(samples: Samples, settings: Settings, period: float | None = None) -
     points_t = 0 if settings.period else settings.points_t
     points_s, smooth_s = (0, 0) if is_tracks else (settings.points_s, settings.smooth_s)
     table = _resampled(table, smooth_s, points_s, points_t)
+    if is_tracks and np.any(table.values <= -1):
+        j, i = np.argwhere(table.values <= -1)[0]
+        raise InputError(f"the tracks give the strain {table.values[j, i]:g} at s = {table.s[i]:g}, t = {table.t[j]:g}, where the body would have no "
+                         'length; other smoothing ("--smooth-s", "--smooth-t") is needed, or markers are misplaced ("--confidence") or mixed up')
     if is_tracks and settings.markers_at == "first" and not settings.period:
         # Zero strain is the shape in the first frame, after the smoothing, too.
         table.values = (1 + table.values) / (1 + table.values[0]) - 1
@@ -140,6 +146,8 @@ def _require_grid(samples):
         raise InputError(f"the samples have s, t and values of the shapes {', '.join(map(str, shapes))}, but (place,), (time,) and (time, place) are expected")
     if not (np.all(np.isfinite(samples.s)) and np.all(np.isfinite(samples.t)) and not np.any(np.isinf(samples.values))):
         raise InputError("the samples have places, times or values that are not finite, but only gaps of values (NaN) may be there")
+    if np.any(np.diff(samples.s) <= 0) or np.any(np.diff(samples.t) <= 0):
+        raise InputError("the samples have places s or times t that do not increase, but increasing ones are expected")
 
 
 def strain_of_tracks(tracks: Samples, settings: Settings, words: list[str]) -> Samples:
@@ -160,11 +168,6 @@ def strain_of_tracks(tracks: Samples, settings: Settings, words: list[str]) -> S
     strain = curves(inside, 1).T
     if settings.ends == "linear":
         strain += (places - inside) * curves(np.where(places < inside, s[0], s[-1]), 2).T
-    if np.any(strain <= -1):
-        j, i = np.argwhere(strain <= -1)[0]
-        raise InputError(f"the tracks give the strain {strain[j, i]:g} at s = {places[i]:g}, t = {tracks.t[j]:g}, where the body would "
-                         'have no length; more smoothing ("--smooth-s") is needed, or markers are misplaced ("--confidence") or '
-                         "mixed up")
     how = {"first": "from the first frame, which is taken as a body without strain", "mean": "from the mean of frames"}.get(
         settings.markers_at, "as given")
     words.append(f"strain of {len(s)} markers at s = {s[0]:g} to {s[-1]:g} ({how}), at {len(places)} places of a body of length "
@@ -420,6 +423,9 @@ def _require_agreement(samples, rest, counts, period, noise, words):
                          f'({spread:.3g}), so that this is not a period; "--period find" looks for one')
     words.append(f"period {period:.6g} closed: where cycles meet or repeat, {samples.quantity} differs by {scatter:.3g} (noise "
                  f"{noise:.3g}), and the mean is taken")
+    if n >= LEAST_REMAINDERS and scatter > MUCH_SCATTER * noise:
+        words.append("cycles differ by more than this noise does: what differs is not independent from time to time, or the animal changes, "
+                     'and an uncertainty from the noise is too small ("--noise" sets a larger one)')
 
 
 def _resampled(samples, smooth_s, n_s, n_t):

@@ -245,7 +245,7 @@ def read_sheet(data, name, decimal=""):
     _drop_empty_columns(sheet, width)
     are_grouped = sheet.comma == "decimal" and any(GROUPED_BY_POINTS.fullmatch(cell) for cells in sheet.rows for cell in cells)
     decimals = {"decimal": f", with decimal commas{'; points group thousands (1.000 is a thousand)' if are_grouped else ''}",
-                "thousands": "; commas group thousands (1,000 is a thousand)"}
+                "thousands": "; commas group thousands (1,000 is a thousand)" if any("," in cell for cells in sheet.rows for cell in cells) else ""}
     sheet.words.insert(0, f"{len(sheet.rows)} rows of {len(sheet.rows[0])} columns between {SEPARATORS.get(separator, repr(separator))}"
                           f"{decimals.get(sheet.comma, '')}")
     return sheet

@@ -235,7 +235,7 @@ class KymographPicture {
 /** Body and kymograph of a run, with what steers them: {right: where more may stand, use(run, fields): shows another run}. */
 function showBody(parent, run, clock, fields) {
   const names = Object.keys(FIELDS).filter(name => fields.fields[name]);
-  const top = figure('The body on its ground.', 'It is as thick as its volume asks for (1/stretch). Arrows: friction of the ground on the body. ▲ centre of mass.');
+  const top = figure('The body on its ground.', 'Its thickness is 1/stretch (constant volume). Arrows: friction of the ground on the body. ▲ centre of mass.');
   const two = el('div', {class: 'two'}), left = figure('Kymograph.', 'Click to go to a time.'), right = el('div');
   parent.append(top, two);
   two.append(left, right);

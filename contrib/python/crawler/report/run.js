@@ -27,7 +27,7 @@ function gaitInWords(summary) {
   const gait = summary.gait, words = [];
   if (!gait || !known(gait.period)) return words;
   const d = gait.displacement, to = d === 0 ? 'does not move on' : `moves ${show(Math.abs(gait.body_lengths), 4)} body lengths towards its ${d > 0 ? 'head (larger s)' : 'tail (smaller s)'}`;
-  words.push(`In a stride of ${show(gait.period, 5)}${unitBehind('time')}${gait.period_from === 'stretch' ? ' (a period found in its motion)' : ''} the body ${to}; ` +
+  words.push(`In each stride (period ${show(gait.period, 5)}${unitBehind('time')})${gait.period_from === 'stretch' ? ' (a period found in its motion)' : ''} the body ${to}; ` +
     `${show(gait.strides, 4)} stride${gait.strides === 1 ? ' fits' : 's fit'} into the run.`);
   const wave = gait.wave ?? {};
   const direction = {retrograde: 'The wave of stretch is retrograde: it travels against the motion, as in an earthworm.',
