@@ -73,8 +73,6 @@ namespace crawler
     stretch_weights   = inner.weights;
     values            = interpolation_matrix(nodes, points);
     derivatives       = interpolation_matrix(nodes, points, 1);
-    left_derivatives  = interpolation_matrix(nodes, {0.}, 1);
-    right_derivatives = interpolation_matrix(nodes, {1.}, 1);
     stiffness.assign(n * n, 0.);
     for (unsigned int p = 0; p < n; ++p)
       for (unsigned int i = 0; i < n; ++i)

@@ -24,8 +24,6 @@ namespace crawler
     std::vector<double> weights;           ///< [n] quadrature weights, their sum is 1
     std::vector<double> values;            ///< [n points][n nodes] shape functions
     std::vector<double> derivatives;       ///< [n points][n nodes] their derivatives
-    std::vector<double> left_derivatives;  ///< [n nodes] derivatives at 0
-    std::vector<double> right_derivatives; ///< [n nodes] derivatives at 1
     std::vector<double> stiffness;         ///< [n nodes][n nodes] sum of weight derivative derivative
 
     // Gauss points that determine the stretch, a polynomial of degree q - 1.

@@ -138,7 +138,7 @@ namespace crawler
     std::optional<SuddenChanges> sudden_changes_;
     ExtremeHistory smallest_{ExtremeHistory::smallest}, largest_{ExtremeHistory::largest};
     bool started_            = false;
-    bool were_known_         = false;                          ///< sudden_changes_ knew the extremes seen last
+    bool were_known_         = false;                 ///< sudden_changes_ knew the extremes seen last
     double friction_impulse_ = 0., net_impulse_ = 0.; ///< int dt of both
   };
 } // namespace crawler
