@@ -65,14 +65,14 @@ namespace crawler
     , n(degree + 1)
   {
     const QuadratureRule lobatto = gauss_lobatto_rule(n), gauss = gauss_rule(n), inner = gauss_rule(degree);
-    nodes             = lobatto.points;
-    node_weights      = lobatto.weights;
-    points            = gauss.points;
-    weights           = gauss.weights;
-    stretch_points    = inner.points;
-    stretch_weights   = inner.weights;
-    values            = interpolation_matrix(nodes, points);
-    derivatives       = interpolation_matrix(nodes, points, 1);
+    nodes           = lobatto.points;
+    node_weights    = lobatto.weights;
+    points          = gauss.points;
+    weights         = gauss.weights;
+    stretch_points  = inner.points;
+    stretch_weights = inner.weights;
+    values          = interpolation_matrix(nodes, points);
+    derivatives     = interpolation_matrix(nodes, points, 1);
     stiffness.assign(n * n, 0.);
     for (unsigned int p = 0; p < n; ++p)
       for (unsigned int i = 0; i < n; ++i)

@@ -18,13 +18,13 @@ namespace crawler
     explicit ReferenceElement(unsigned int degree);
 
     unsigned int degree;
-    unsigned int n;                        ///< degree + 1: number of nodes, and of quadrature points
-    std::vector<double> nodes;             ///< [n]
-    std::vector<double> points;            ///< [n] quadrature points
-    std::vector<double> weights;           ///< [n] quadrature weights, their sum is 1
-    std::vector<double> values;            ///< [n points][n nodes] shape functions
-    std::vector<double> derivatives;       ///< [n points][n nodes] their derivatives
-    std::vector<double> stiffness;         ///< [n nodes][n nodes] sum of weight derivative derivative
+    unsigned int n;                  ///< degree + 1: number of nodes, and of quadrature points
+    std::vector<double> nodes;       ///< [n]
+    std::vector<double> points;      ///< [n] quadrature points
+    std::vector<double> weights;     ///< [n] quadrature weights, their sum is 1
+    std::vector<double> values;      ///< [n points][n nodes] shape functions
+    std::vector<double> derivatives; ///< [n points][n nodes] their derivatives
+    std::vector<double> stiffness;   ///< [n nodes][n nodes] sum of weight derivative derivative
 
     // Gauss points that determine the stretch, a polynomial of degree q - 1.
     std::vector<double> node_weights;        ///< [n] Gauss-Lobatto weights of the nodes
