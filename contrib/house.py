@@ -36,8 +36,9 @@ def files_of(commit):
 
 
 def blocks(text):
-    """Name, kind and number of lines of each function and class; the braces stand on lines of their own."""
-    lines, opened = text.split("\n"), []
+    """Name, kind and lines of each function and class; the braces stand on lines of their own. Texts of programs in other
+    languages (raw strings) do not count."""
+    lines, opened = re.sub(r'R"([^\s(]*)\(.*?\)\1"', '""', text, flags=re.DOTALL).split("\n"), []
     for number, line in enumerate(lines):
         indent = len(line) - len(line.lstrip())
         if line.strip() == "{":

@@ -238,11 +238,8 @@ namespace crawler
         total = *space + factor * std::abs(finer->displacement - finer_mesh->displacement);
       }
       else
-      {
-        total = factor * std::abs(finer->displacement - result.displacement);
-        if (predicted)
-          total += part * choice.wanted_error;
-      }
+        total =
+          factor * std::abs(finer->displacement - result.displacement) + (predicted ? part * choice.wanted_error : 0.);
       total = std::max(total, choice.min_error);
       // Works of extrapolated cycles have the same relative error as the displacement.
       const double size   = std::max(std::abs(result.displacement),

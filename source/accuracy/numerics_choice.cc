@@ -626,6 +626,19 @@ namespace crawler
         return name == "radau 9" ? radau_9_superconvergence : name == "radau 5" ? radau_5_superconvergence : 1.;
       }
 
+      /// Time tolerance for the wanted error: the number of steps grows as tolerance^(-1/(order+1)), and error =
+      /// time_factor * steps * tolerance = accuracy * size.
+      double
+      tolerance_by_rule() const
+      {
+        const double r      = 1. / (1. + estimated_order());
+        const double wanted = accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
+        return std::max(superconvergence() * std::min(std::pow(wanted, 1. / (1. - r)), tolerance_),
+                        std::max({(kinks_move() ? min_tolerance_if_kinks : min_tolerance) * scale_,
+                                  smallest(),
+                                  inverts_at_end_ ? 0.1 * accuracy_ * tolerance_ : 0.})); // the size is not known then
+      }
+
       /// Sets the time tolerance, and the explanation.
       void
       finish(const bool fixed)
@@ -640,15 +653,9 @@ namespace crawler
           n.integrator = "radau 9";
         if (!parameters_.time.initial_step && !is_graded)
           n.initial_step = first_step();
-        // Number of steps grows as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy * size.
-        const double r      = 1. / (1. + estimated_order());
-        const double wanted = accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
-        const double by_rule =
-          std::max(superconvergence() * std::min(std::pow(wanted, 1. / (1. - r)), tolerance_),
-                   std::max({(kinks_move() ? min_tolerance_if_kinks : min_tolerance) * scale_,
-                             smallest(),
-                             inverts_at_end_ ? 0.1 * accuracy_ * tolerance_ : 0.})); // the size is not known then
-        n.tolerance = user_tolerance_.value_or(jumps_move_ ? tolerance_ : is_graded ? n.tolerance : by_rule);
+        n.tolerance = user_tolerance_.value_or(jumps_move_ ? tolerance_
+                                               : is_graded ? n.tolerance
+                                                           : tolerance_by_rule());
         if (predicts && !jumps_move_ && !user_cells_ && !user_tolerance_ && !fixed &&
             !parameters_.discretization.mesh_tolerance)
         {

@@ -46,6 +46,38 @@ namespace crawler
       return static_cast<std::size_t>(above - values.begin()) - 1;
     }
 
+    /// Refuses a grid some of whose points have no row: @p seen has the number of the row of each point, or 0.
+    void
+    refuse_gaps(const GridTable &grid,
+                const std::vector<std::size_t> &seen,
+                const std::size_t n_rows,
+                const Source &source)
+    {
+      const auto n_gaps = std::count(seen.begin(), seen.end(), 0u);
+      if (n_gaps == 0)
+        return;
+      const std::size_t n_s = grid.s.size(), n_t = grid.t.size();
+      std::string first;
+      auto gap = seen.begin();
+      for (unsigned int named = 0; named < 3 && gap != seen.end(); ++named, ++gap)
+        if (gap = std::find(gap, seen.end(), 0u); gap != seen.end())
+        {
+          const auto missing = static_cast<std::size_t>(gap - seen.begin());
+          first += fmt::format(
+            "{}s = {:g}, t = {:g}", first.empty() ? "" : "; ", grid.s[missing % n_s], grid.t[missing / n_s]);
+        }
+      source.refuse("\"{}\" has {} rows after the header, but {} are expected, one for each pair of {} values of s "
+                    "and {} values of t; the first that {} missing {} {} (\"crawler table IN OUT\" fills gaps)",
+                    source.file,
+                    n_rows,
+                    n_s * n_t,
+                    n_s,
+                    n_t,
+                    n_gaps == 1 ? "is" : "are",
+                    n_gaps == 1 ? "is" : "are",
+                    first);
+    }
+
     GridTable
     read_csv(const std::string &text, const Source &source)
     {
@@ -86,29 +118,7 @@ namespace crawler
                                       seen[point]));
       }
       repetitions.refuse(source.entry);
-      const auto n_gaps = std::count(seen.begin(), seen.end(), 0u);
-      if (n_gaps > 0)
-      {
-        std::string first;
-        auto gap = seen.begin();
-        for (unsigned int named = 0; named < 3 && gap != seen.end(); ++named, ++gap)
-          if (gap = std::find(gap, seen.end(), 0u); gap != seen.end())
-          {
-            const auto missing = static_cast<std::size_t>(gap - seen.begin());
-            first += fmt::format(
-              "{}s = {:g}, t = {:g}", first.empty() ? "" : "; ", grid.s[missing % n_s], grid.t[missing / n_s]);
-          }
-        source.refuse("\"{}\" has {} rows after the header, but {} are expected, one for each pair of {} values of s "
-                      "and {} values of t; the first that {} missing {} {} (\"crawler table IN OUT\" fills gaps)",
-                      source.file,
-                      n,
-                      n_s * n_t,
-                      n_s,
-                      n_t,
-                      n_gaps == 1 ? "is" : "are",
-                      n_gaps == 1 ? "is" : "are",
-                      first);
-      }
+      refuse_gaps(grid, seen, n, source);
       return grid;
     }
   } // namespace

@@ -168,6 +168,70 @@ namespace crawler
     private:
       boost::crc_32_type crc_;
     };
+
+    /// Size of a file of rows, without its compression.
+    double
+    bytes_of(const std::vector<RowFile::Column> &columns,
+             const unsigned long n_rows,
+             const std::map<std::string, std::string> &attributes)
+    {
+      double bytes = 4e3 * static_cast<double>(columns.size());
+      for (const RowFile::Column &column : columns)
+        bytes += static_cast<double>(n_rows) * (column.width == 0 ? sizeof(double) : column.width);
+      for (const auto &[name, text] : attributes)
+        bytes += static_cast<double>(text.size());
+      return bytes;
+    }
+
+    /// Creates the dataset of a column, with its values if they are known.
+    void
+    create_column(const std::filesystem::path &path,
+                  const hid_t group,
+                  const hid_t space,
+                  const RowFile::Column &column,
+                  const std::size_t number,
+                  const unsigned long n_rows,
+                  const RowFile::Known &known)
+    {
+      const bool is_known = number < known.n_columns;
+      const Hdf5Handle type(type_of(column), H5Tclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+      H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
+      H5Pset_fill_time(creation, is_known ? H5D_FILL_TIME_NEVER : H5D_FILL_TIME_ALLOC);
+      const double nan = std::numeric_limits<double>::quiet_NaN();
+      if (column.width == 0)
+        H5Pset_fill_value(creation, H5T_NATIVE_DOUBLE, &nan);
+      const Hdf5Handle dataset(
+        hdf5::checked(
+          H5Dcreate(group, dataset_name(column.name).c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
+          path,
+          "write"),
+        H5Dclose);
+      hdf5::write_attribute(dataset, "name", column.name, path);
+      hdf5::write_attribute(dataset, "unit", column.unit, path);
+      hdf5::write_attribute(dataset, "description", column.description, path);
+      constexpr unsigned long together = 1 << 16;
+      for (unsigned long first = 0; is_known && first < n_rows; first += together)
+        write_values(
+          dataset,
+          column.width,
+          first,
+          std::min(together, n_rows - first),
+          [&](const unsigned long i) { return known.value(number, first + i); },
+          H5P_DEFAULT,
+          path);
+    }
+
+    void
+    create_checksums(const std::filesystem::path &path, const hid_t file, const hid_t space)
+    {
+      const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+      H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
+      const Hdf5Handle dataset(
+        hdf5::checked(
+          H5Dcreate(file, checksums, H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT), path, "write"),
+        H5Dclose);
+      hdf5::write_attribute(dataset, "description", "CRC-32 of what was written into each row, to detect damage", path);
+    }
   } // namespace
 
   void
@@ -179,12 +243,7 @@ namespace crawler
                   const Known &known)
   {
     H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own message instead of HDF5's stack
-    double bytes = 4e3 * static_cast<double>(columns.size());
-    for (const Column &column : columns)
-      bytes += static_cast<double>(n_rows) * (column.width == 0 ? sizeof(double) : column.width);
-    for (const auto &[name, text] : attributes)
-      bytes += static_cast<double>(text.size());
-    hdf5::require_space(path, bytes);
+    hdf5::require_space(path, bytes_of(columns, n_rows, attributes));
     const std::filesystem::path temporary = temporary_file(path);
     try
     {
@@ -201,46 +260,9 @@ namespace crawler
       const hsize_t size = n_rows;
       const Hdf5Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
       for (std::size_t number = 0; number < columns.size(); ++number)
-      {
-        const Column &column = columns[number];
-        const bool is_known  = number < known.n_columns;
-        const Hdf5Handle type(type_of(column), H5Tclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-        H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
-        H5Pset_fill_time(creation, is_known ? H5D_FILL_TIME_NEVER : H5D_FILL_TIME_ALLOC);
-        const double nan = std::numeric_limits<double>::quiet_NaN();
-        if (column.width == 0)
-          H5Pset_fill_value(creation, H5T_NATIVE_DOUBLE, &nan);
-        const Hdf5Handle dataset(
-          hdf5::checked(
-            H5Dcreate(group, dataset_name(column.name).c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
-            path,
-            "write"),
-          H5Dclose);
-        hdf5::write_attribute(dataset, "name", column.name, path);
-        hdf5::write_attribute(dataset, "unit", column.unit, path);
-        hdf5::write_attribute(dataset, "description", column.description, path);
-        constexpr unsigned long together = 1 << 16;
-        for (unsigned long first = 0; is_known && first < n_rows; first += together)
-          write_values(
-            dataset,
-            column.width,
-            first,
-            std::min(together, n_rows - first),
-            [&](const unsigned long i) { return known.value(number, first + i); },
-            H5P_DEFAULT,
-            path);
-      }
+        create_column(path, group, space, columns[number], number, n_rows, known);
       if (known.n_columns < columns.size())
-      {
-        const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-        H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
-        const Hdf5Handle dataset(
-          hdf5::checked(
-            H5Dcreate(file, checksums, H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT), path, "write"),
-          H5Dclose);
-        hdf5::write_attribute(
-          dataset, "description", "CRC-32 of what was written into each row, to detect damage", path);
-      }
+        create_checksums(path, file, space);
       hdf5::checked(H5Fflush(file, H5F_SCOPE_GLOBAL), path, "write");
     }
     catch (...)

@@ -131,6 +131,32 @@ namespace crawler
     return file;
   }
 
+  namespace
+  {
+    /// Throws InputError for a statement that is not of the parameter files.
+    [[noreturn]] void
+    refuse(const std::string &statement, const std::string &place)
+    {
+      const std::string sign = foreign_sign(statement);
+      throw InputError(!sign.empty() ? fmt::format("{}: {}", place, sign)
+                                     : fmt::format("{}: found \"{}\", but \"set\", \"subsection\", \"end\", "
+                                                   "\"include\" or \"#\" is expected at the beginning of a line",
+                                                   place,
+                                                   statement.substr(0, 60)));
+    }
+
+    /// Throws InputError for files that are no text.
+    void
+    require_text(const std::string &text, const std::string &name)
+    {
+      if (const std::string found = foreign_format(text); !found.empty())
+        throw InputError(
+          fmt::format("{}: this is {}, but a text file of parameters in UTF-8 is expected", name, found));
+      if (std::any_of(text.begin(), text.end(), [](const char c) { return static_cast<unsigned char>(c) < 9; }))
+        throw InputError(fmt::format("{}: this is a binary file; a text file of parameters is expected", name));
+    }
+  } // namespace
+
   void
   ParameterFile::parse(const std::string &text, const std::string &name, const unsigned int depth)
   {
@@ -138,11 +164,7 @@ namespace crawler
     if (n_bytes_ > max_bytes)
       throw InputError(fmt::format(
         "{}: at most {} MB of parameters, including all included files, are expected", name, max_bytes >> 20));
-    if (const std::string found = foreign_format(text); !found.empty())
-      throw InputError(fmt::format("{}: this is {}, but a text file of parameters in UTF-8 is expected", name, found));
-    if (std::any_of(text.begin(), text.end(), [](const char c) { return static_cast<unsigned char>(c) < 9; }))
-      throw InputError(fmt::format("{}: this is a binary file; a text file of parameters is expected", name));
-
+    require_text(text, name);
     const auto folder = std::filesystem::path(name).parent_path();
     std::vector<std::pair<std::string, unsigned int>> open; // open sections, and the lines that opened them
     const auto path = [&open](const std::string &last) {
@@ -192,14 +214,7 @@ namespace crawler
         include(rest, folder, place, depth);
       }
       else
-      {
-        const std::string sign = foreign_sign(statement);
-        throw InputError(!sign.empty() ? fmt::format("{}: {}", place, sign)
-                                       : fmt::format("{}: found \"{}\", but \"set\", \"subsection\", \"end\", "
-                                                     "\"include\" or \"#\" is expected at the beginning of a line",
-                                                     place,
-                                                     statement.substr(0, 60)));
-      }
+        refuse(statement, place);
     }
     if (!open.empty())
       throw InputError(

@@ -271,6 +271,32 @@ namespace crawler
     return displacement;
   }
 
+  namespace
+  {
+    /// Sets the numbers of the finest quadrature @p sums, or the place where the stretch is lost: @p lost, or where the
+    /// extremes are.
+    void
+    set_result(KinematicResult &result, const Sums &sums, const std::optional<StrainExtreme> &lost)
+    {
+      const bool is_lost_between = !(1. + result.extremes.smallest.strain > 0.);
+      if (lost || is_lost_between || !(1. + sums.smallest.strain > 0.))
+      {
+        result.inversion = lost ? *lost : is_lost_between ? result.extremes.smallest : sums.smallest;
+        return;
+      }
+      result.stopped = sums.stopped;
+      if (sums.stopped)
+        return;
+      if (sums.smallest.strain < result.extremes.smallest.strain)
+        result.extremes.smallest = sums.smallest;
+      if (sums.largest.strain > result.extremes.largest.strain)
+        result.extremes.largest = sums.largest;
+      result.displacement = sums.displacement;
+      result.energies     = sums.energies;
+      result.net_friction = sums.friction_impulse > 0. ? sums.net_impulse / sums.friction_impulse : 0.;
+    }
+  } // namespace
+
   KinematicResult
   kinematic(const Scene &scene,
             const StrainHistory &strain,
@@ -332,25 +358,7 @@ namespace crawler
       const unsigned int n_s = std::clamp(8 * n_space, 33u, 257u),
                          n_t = static_cast<unsigned int>(std::clamp<std::size_t>(8 * n_time, 33, 2049));
       result.extremes        = find_extremes(strain, 1., 1., n_s, n_t);
-      if (inverts || !(1. + result.extremes.smallest.strain > 0.) || !(1. + both.smallest.strain > 0.))
-      {
-        result.inversion = inverts ? coarse.smallest : result.extremes.smallest;
-        if (!inverts && 1. + result.extremes.smallest.strain > 0.)
-          result.inversion = both.smallest;
-        return result;
-      }
-      if (both.stopped)
-      {
-        result.stopped = true;
-        return result;
-      }
-      if (both.smallest.strain < result.extremes.smallest.strain)
-        result.extremes.smallest = both.smallest;
-      if (both.largest.strain > result.extremes.largest.strain)
-        result.extremes.largest = both.largest;
-      result.displacement = both.displacement;
-      result.energies     = both.energies;
-      result.net_friction = both.friction_impulse > 0. ? both.net_impulse / both.friction_impulse : 0.;
+      set_result(result, both, inverts ? std::optional(coarse.smallest) : std::nullopt);
       return result;
     }
   }

@@ -154,8 +154,7 @@ namespace crawler
         }
       }
       space_.running_integral_transposed(state.by_B, state.by_rate);
-      for (std::size_t i = 0; i < n_; ++i)
-        by_rate[i] = state.by_rate[i];
+      std::copy_n(state.by_rate.begin(), n_, by_rate);
       if (number == positive_work)
         for (std::size_t i = 0; i < n_; ++i)
           if (-state.m[i] * e_t[i] > 0.)

@@ -292,6 +292,48 @@ namespace crawler
       }
       return {nu, S};
     }
+
+    /// Best number of waves on the body, with its power S and that of the wave which runs the other way.
+    struct Largest
+    {
+      double nu, S, opposite;
+    };
+    Largest
+    largest_wave(Pieces E, const std::size_t n_s)
+    {
+      // Pairs of pieces take half the time. A wave with more than half of all e is the largest, since waves of other
+      // numbers are orthogonal: so the search is near the phase from piece to piece, else among all. If pairs of pieces
+      // find nearly all they see as much as the whole.
+      constexpr double half_of_all = 0.5, nearly_all = 0.9;
+      Pieces pairs(n_s / 2);
+      for (unsigned int n = 0; n < n_harmonics; ++n)
+        for (std::size_t i = 0; i < pairs.n; ++i)
+        {
+          pairs.re(n)[i] = E.re(n)[2 * i] + E.re(n)[2 * i + 1];
+          pairs.im(n)[i] = E.im(n)[2 * i] + E.im(n)[2 * i + 1];
+        }
+      const double of_pairs = static_cast<double>(pairs.n) * power(pairs) / (static_cast<double>(n_s) * power(E));
+      Beam beam(pairs);
+      Beam::Peak peak = beam.best(from_phases(pairs));
+      bool is_best    = true;
+      double found    = peak.S * of_pairs;
+      if (found < half_of_all)
+      {
+        peak.nu = search(pairs);
+        found   = beam.at(peak.nu).S * of_pairs;
+        is_best = false;
+        if (found < half_of_all)
+          peak.nu = search(E);
+      }
+      if (found < nearly_all)
+      {
+        beam    = Beam(std::move(E));
+        is_best = false;
+      }
+      if (!is_best)
+        peak = beam.best(peak.nu);
+      return {peak.nu, peak.S, beam.at(-peak.nu).S};
+    }
   } // namespace
 
   std::optional<StretchWave>
@@ -337,37 +379,7 @@ namespace crawler
     if (largest <= nothing || swing > max_swing * largest || squares - 2. * power(E) > max_unresolved * squares)
       return std::nullopt;
 
-    // Pairs of pieces take half the time. A wave with more than half of all e is the largest, since waves of other
-    // numbers are orthogonal: so the search is near the phase from piece to piece, else among all. If pairs of pieces
-    // find nearly all they see as much as the whole.
-    constexpr double half_of_all = 0.5, nearly_all = 0.9;
-    Pieces pairs(n_s / 2);
-    for (unsigned int n = 0; n < n_harmonics; ++n)
-      for (std::size_t i = 0; i < pairs.n; ++i)
-      {
-        pairs.re(n)[i] = E.re(n)[2 * i] + E.re(n)[2 * i + 1];
-        pairs.im(n)[i] = E.im(n)[2 * i] + E.im(n)[2 * i + 1];
-      }
-    const double of_pairs = static_cast<double>(pairs.n) * power(pairs) / (static_cast<double>(n_s) * power(E));
-    Beam beam(pairs);
-    Beam::Peak peak = beam.best(from_phases(pairs));
-    bool is_best    = true;
-    double found    = peak.S * of_pairs;
-    if (found < half_of_all)
-    {
-      peak.nu = search(pairs);
-      found   = beam.at(peak.nu).S * of_pairs;
-      is_best = false;
-      if (found < half_of_all)
-        peak.nu = search(E);
-    }
-    if (found < nearly_all)
-    {
-      beam    = Beam(std::move(E));
-      is_best = false;
-    }
-    if (!is_best)
-      peak = beam.best(peak.nu);
-    return StretchWave{length / (period * peak.nu), std::max(peak.S - beam.at(-peak.nu).S, 0.)};
+    const Largest wave = largest_wave(std::move(E), n_s);
+    return StretchWave{length / (period * wave.nu), std::max(wave.S - wave.opposite, 0.)};
   }
 } // namespace crawler

@@ -116,13 +116,40 @@ namespace crawler
     return json.dump(2, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace) + "\n";
   }
 
+  namespace
+  {
+    std::string
+    steps_in_words(const TimeOutcome &time)
+    {
+      return time.steps > 0 ? fmt::format(" after {} steps ({} rejected)", time.steps, time.rejected_steps) : "";
+    }
+
+    std::string
+    displacement_in_words(const SimulationResult &result, const UnitNames &units)
+    {
+      const std::string number =
+        std::isfinite(result.displacement) ? fmt::format("{:.10g}", result.displacement) : "unknown";
+      const std::string unit = units.behind("length");
+      if (!result.error || !std::isfinite(result.error->total))
+        return number + unit;
+      const DisplacementError &error = *result.error;
+      if (!std::isfinite(error.space))
+        return fmt::format("{} +- {:.2g}{} (space and time together)", number, error.total, unit);
+      return fmt::format("{} +- {:.2g}{} (space {:.2g}, time {:.2g}, model {:.2g})",
+                         number,
+                         error.total,
+                         unit,
+                         error.space,
+                         error.time,
+                         error.model);
+    }
+  } // namespace
+
   std::vector<std::string>
   summary_lines(const SimulationResult &result, const UnitNames &units)
   {
     std::vector<std::string> lines;
     const auto &time = result.time;
-    const std::string steps =
-      time.steps > 0 ? fmt::format(" after {} steps ({} rejected)", time.steps, time.rejected_steps) : "";
     lines.push_back(fmt::format("{} at t = {:g}{}{}, {:.3g} s",
                                 time.status == Status::finished   ? "Finished"
                                 : time.status == Status::inverted ? "Inverted"
@@ -130,23 +157,9 @@ namespace crawler
                                                                   : "FAILED (" + time.reason + ")",
                                 time.time,
                                 units.behind("time"),
-                                steps,
+                                steps_in_words(time),
                                 result.solve_seconds + result.output_seconds));
-    std::string displacement =
-      std::isfinite(result.displacement) ? fmt::format("{:.10g}", result.displacement) : "unknown";
-    if (!result.error || !std::isfinite(result.error->total))
-      displacement += units.behind("length");
-    else if (!std::isfinite(result.error->space))
-      displacement +=
-        fmt::format(" +- {:.2g}{} (space and time together)", result.error->total, units.behind("length"));
-    else
-      displacement += fmt::format(" +- {:.2g}{} (space {:.2g}, time {:.2g}, model {:.2g})",
-                                  result.error->total,
-                                  units.behind("length"),
-                                  result.error->space,
-                                  result.error->time,
-                                  result.error->model);
-    lines.push_back("  displacement      " + displacement);
+    lines.push_back("  displacement      " + displacement_in_words(result, units));
     if (result.corrected)
       lines.push_back(fmt::format("  corrected         {:.12g} +- {:.2g}{} (by the adjoint)",
                                   result.corrected->value,

@@ -267,6 +267,23 @@ TEST(HardAnswers, FrictionOfTwoDirectionsBalances)
                         "Amplitude = 0.02; Switching = smooth; Front width = 0.25"));
   EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
   EXPECT_LT(result.net_friction, 1e-6);
+  // In the tiny step after a switch the velocity has an error that moves nothing.
+  const SimulationResult robot =
+    answer_to(test::set("Ground/Backward ratio = 5; Ground/Switching velocity = 0.01; p = 1; k = 10; T = 1; "
+                        "Accuracy = 1e-4; segments; Number of segments = 2; Phase lag = 0.5; Amplitude = 0.1"));
+  EXPECT_EQ(robot.time.status, Status::finished) << robot.time.message;
+  EXPECT_LT(robot.net_friction, 1e-6);
+}
+
+/// Kinks of friction that move make the error fall slowly: while it falls, and is near, runs become finer.
+TEST(HardAnswers, TriesGoOnWhileTheErrorFalls)
+{
+  const test::Settings settings =
+    test::set("Ground/Backward ratio = 2; Ground/Switching velocity = 0.05; p = 0.5; T = 2; travelling wave; "
+              "Amplitude = 0.4; Wave number = 2; Frequency = 1");
+  const SimulationResult result = answer_to(test::with(settings, {{"Accuracy", "1e-6"}}));
+  ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
+  EXPECT_NEAR(result.displacement, 0.04890174478, result.error->total); // with Accuracy 1e-8
 }
 
 /// The active stress is smooth, but not analytic, where its window ends: works converge more slowly than the

@@ -129,6 +129,48 @@ namespace crawler
     return describe(body, shape, strain_of_speed_1(shape), chi, end_time, c);
   }
 
+  namespace
+  {
+    /// Adds the roots x of f(x) = h x^2 - S(x) from 0 to @p last in their order, without x = 0; false if @p is_enough
+    /// has ended that. At most one root lies between neighbouring critical points of f.
+    bool
+    add_roots(const WaveShape &shape, const double h, const double last, const auto &is_enough, const auto &add)
+    {
+      const auto f          = [&](const double x) { return h * x * x - sine_sum(shape, x); };
+      const auto derivative = [&](const double x) { return 2. * h * x - sine_sum_derivative(shape, x); };
+      const double total    = 4. * shape.delta_2();
+      const auto n          = static_cast<double>(shape.a.size());
+      const double step     = 1. / (32. * n);
+      double previous       = 1e-6 / n;
+      const auto look_until = [&](const double next) {
+        if (f(previous) == 0.)
+          add(previous);
+        else if (f(previous) * f(next) < 0.)
+          add(bracketed_root(f, previous, next));
+        previous = next;
+      };
+      for (double x = previous; x < last; x += step)
+      {
+        if (is_enough())
+          return false;
+        const double right = std::min(x + step, last);
+        if (derivative(x) * derivative(right) < 0.)
+        {
+          const double critical = bracketed_root(derivative, x, right);
+          if (std::abs(f(critical)) <= 1e-14 * total)
+          {
+            add(critical);
+            previous = critical + 1e-9 * step;
+          }
+          else
+            look_until(critical);
+        }
+      }
+      look_until(last);
+      return true;
+    }
+  } // namespace
+
   WaveRoots
   find_wave_roots(const Body &body,
                   const WaveShape &shape,
@@ -176,43 +218,10 @@ namespace crawler
       return result;
     }
 
-    // At most one root lies between neighbouring critical points of f(x) = h x^2 - S(x).
-    const auto f          = [&](const double x) { return h * x * x - sine_sum(shape, x); };
-    const auto derivative = [&](const double x) { return 2. * h * x - sine_sum_derivative(shape, x); };
-    const double total    = 4. * shape.delta_2();
-    const double last     = std::sqrt(total / h) * (1. + 1e-12); // S <= total
-    const double step     = 1. / (32. * n_harmonics);
-    const bool list_all   = 2. * n_harmonics * last <= few_roots;
-    double previous       = 1e-6 / n_harmonics; // leaves the trivial root x = 0 out
-    const auto look_until = [&](const double next) {
-      if (f(previous) == 0.)
-        add(previous);
-      else if (f(previous) * f(next) < 0.)
-        add(bracketed_root(f, previous, next));
-      previous = next;
-    };
-    for (double x = previous; x < last; x += step)
-    {
-      if (!list_all && enough())
-      {
-        result.complete = false;
-        break;
-      }
-      const double right = std::min(x + step, last);
-      if (derivative(x) * derivative(right) < 0.)
-      {
-        const double critical = bracketed_root(derivative, x, right);
-        if (std::abs(f(critical)) <= 1e-14 * total)
-        {
-          add(critical);
-          previous = critical + 1e-9 * step;
-        }
-        else
-          look_until(critical);
-      }
-    }
-    if (result.complete)
-      look_until(last);
+    const double last   = std::sqrt(4. * shape.delta_2() / h) * (1. + 1e-12); // S <= 4 delta_2
+    const bool list_all = 2. * n_harmonics * last <= few_roots;
+    result.complete     = add_roots(
+      shape, h, last, [&]() { return !list_all && enough(); }, add);
     return result;
   }
 } // namespace crawler

@@ -250,6 +250,38 @@ namespace crawler
           entry.others.push_back({differentiated_numbers[i].key, *values[i], error});
       }
     }
+
+    /// Sets the derivatives of a run and, for their errors, of a finer one.
+    LocalSensitivity
+    differentiate_by_adjoint(std::vector<Varied> &varied,
+                             const TimeParameters &time,
+                             const Scene &scene,
+                             const NumericsChoice &choice,
+                             const SimulationResult &result,
+                             const double accuracy,
+                             const std::function<bool()> &keep_going)
+    {
+      std::vector<Variation> variations;
+      std::vector<EntrySensitivity *> known;
+      for (Varied &one : varied)
+        if (!one.scenes.empty())
+        {
+          const auto &scenes = one.scenes;
+          variations.push_back({{{&scenes[0], &scenes[1], &scenes[2], &scenes[3]}}, one.step, one.is_one_sided});
+          known.push_back(&one.sensitivity);
+        }
+      const RecordedRun run(scene, time, choice.numerics, keep_going);
+      const std::vector<Quantity> quantities = quantities_of(result);
+      RunGradient gradient(run);
+      const auto values               = gradient.derivatives(variations, quantities);
+      const TimeParameters finer_time = time_of_finer_run(time);
+      const RecordedRun finer_run(
+        scene, finer_time, numerics_of_finer_run(choice, time, scene, /*cycles_repeat=*/false), keep_going);
+      const auto finer_values = RunGradient(finer_run).derivatives(variations, quantities);
+      for (std::size_t i = 0; i < known.size(); ++i)
+        set(*known[i], values[i], finer_values[i], result, accuracy);
+      return gradient.local();
+    }
   } // namespace
 
   LocalSensitivity
@@ -281,28 +313,7 @@ namespace crawler
       try
       {
         varied = varied_by(step, {{-2, -1, 1, 2}});
-        std::vector<Variation> variations;
-        std::vector<EntrySensitivity *> known;
-        for (Varied &one : varied)
-          if (!one.scenes.empty())
-          {
-            const auto &scenes = one.scenes;
-            variations.push_back({{{&scenes[0], &scenes[1], &scenes[2], &scenes[3]}}, one.step, one.is_one_sided});
-            known.push_back(&one.sensitivity);
-          }
-        const RecordedRun run(scene, parameters.time, choice.numerics, keep_going);
-        const std::vector<Quantity> quantities = quantities_of(result);
-        RunGradient gradient(run);
-        const auto values               = gradient.derivatives(variations, quantities);
-        local                           = gradient.local();
-        const TimeParameters finer_time = time_of_finer_run(parameters.time);
-        const RecordedRun finer_run(scene,
-                                    finer_time,
-                                    numerics_of_finer_run(choice, parameters.time, scene, /*cycles_repeat=*/false),
-                                    keep_going);
-        const auto finer_values = RunGradient(finer_run).derivatives(variations, quantities);
-        for (std::size_t i = 0; i < known.size(); ++i)
-          set(*known[i], values[i], finer_values[i], result, accuracy);
+        local  = differentiate_by_adjoint(varied, parameters.time, scene, choice, result, accuracy, keep_going);
       }
       catch (const std::exception &) // e.g. the engine gave up a step
       {

@@ -170,6 +170,40 @@ namespace crawler
     return places;
   }
 
+  GaitProblem::Violation
+  GaitProblem::set_constraints(const GaitValues &values, const bool with_gradients)
+  {
+    Violation worst;
+    const auto see = [&worst](const double excess, const std::string &name) {
+      if (excess > worst.size)
+        worst = {excess, name};
+    };
+    std::size_t next = 0;
+    for (const NumberLimit &limit : number_limits_)
+    {
+      latest_.constraints[next] = values.numbers[limit.number] / limit.value;
+      see(latest_.constraints[next] - 1., limit.name);
+      ++next;
+      if (!with_gradients)
+        continue;
+      latest_.rows.push_back(values.gradients[limit.number]);
+      for (std::size_t i = 0; i < latest_.rows.back().size(); ++i)
+        latest_.rows.back()[i] *= (variables_[i].to - variables_[i].from) / limit.value;
+    }
+    for (const BlockLimit &limit : block_limits_)
+    {
+      const LimitedValues &own = values.*limit.values;
+      for (const double value : own.values)
+      {
+        latest_.constraints[next++] = value / limit.scale;
+        see((value - limit.wanted_upper) / limit.scale, limit.upper_name);
+        see((limit.wanted_lower - value) / limit.scale, limit.lower_name);
+      }
+      latest_.blocks.push_back(own.jacobian);
+    }
+    return worst;
+  }
+
   const GaitProblem::Point &
   GaitProblem::at(const std::vector<double> &y, const bool with_gradients, const std::vector<double> &forces)
   {
@@ -190,53 +224,22 @@ namespace crawler
     std::vector<double> gradient;
     const bool is_possible = values.problem.empty();
     const double f         = is_possible ? objective(values, with_gradients ? &gradient : nullptr) : NAN;
-    double violation       = 0.;
-    std::string worst_limit;
-    const auto see = [&](const double excess, const std::string &name) {
-      if (excess > violation)
-      {
-        violation   = excess;
-        worst_limit = name;
-      }
-    };
+    Violation violation;
     latest_.problem = !is_possible ? values.problem : with_gradients ? values.problem_of_gradients : "";
     if (!std::isfinite(f))
       latest_.objective = refused;
     else
     {
       latest_.objective = -f / scale_;
-      const auto range  = [&](const std::size_t i) { return variables_[i].to - variables_[i].from; };
       if (with_gradients)
         for (std::size_t i = 0; i < y.size(); ++i)
-          latest_.gradient[i] = -gradient[i] * range(i) / scale_;
-      std::size_t next = 0;
-      for (const NumberLimit &limit : number_limits_)
-      {
-        latest_.constraints[next] = values.numbers[limit.number] / limit.value;
-        see(latest_.constraints[next] - 1., limit.name);
-        ++next;
-        if (!with_gradients)
-          continue;
-        latest_.rows.push_back(values.gradients[limit.number]);
-        for (std::size_t i = 0; i < y.size(); ++i)
-          latest_.rows.back()[i] *= range(i) / limit.value;
-      }
-      for (const BlockLimit &limit : block_limits_)
-      {
-        const LimitedValues &own = values.*limit.values;
-        for (const double value : own.values)
-        {
-          latest_.constraints[next++] = value / limit.scale;
-          see((value - limit.wanted_upper) / limit.scale, limit.upper_name);
-          see((limit.wanted_lower - value) / limit.scale, limit.lower_name);
-        }
-        latest_.blocks.push_back(own.jacobian);
-      }
+          latest_.gradient[i] = -gradient[i] * (variables_[i].to - variables_[i].from) / scale_;
+      violation = set_constraints(values, with_gradients);
     }
     if (is_new)
     {
       const double shown = parameters_.objective == "cost of transport" ? 1. / f : sign_of_direction(parameters_) * f;
-      records_.push_back({x, shown, values.numbers, violation, values.problem, worst_limit});
+      records_.push_back({x, shown, values.numbers, violation.size, values.problem, violation.of});
     }
     return latest_;
   }

@@ -191,6 +191,38 @@ namespace crawler
              : bytes < 1e9 ? fmt::format("{:.3g} MB", bytes / 1e6)
                            : fmt::format("{:.3g} GB", bytes / 1e9);
     }
+
+    /// Writes the files and the lines at the end of a sweep; returns its exit code.
+    ExitCode
+    end_sweep(MPI_Comm communicator,
+              SweepEnd end,
+              StudyFolder &folder,
+              const fs::path &path,
+              const bool is_strict,
+              const StudyClock &clock,
+              Log &log)
+    {
+      try
+      {
+        const SweepCounts counts = write_results_csv(communicator, path);
+        end.seconds              = clock.seconds();
+        return exit_code_of_first_rank(communicator, [&]() {
+          write_file(path / "summary.json", sweep_json(counts, end));
+          report(counts, end, path, clock, log);
+          folder.leave();
+          const auto finished     = counts.statuses.find("finished");
+          const auto not_finished = counts.n_points - (finished == counts.statuses.end() ? 0 : finished->second);
+          return end.status != "finished"        ? ExitCode::stopped
+                 : is_strict && not_finished > 0 ? ExitCode::rows_failed
+                                                 : ExitCode::finished;
+        });
+      }
+      catch (const FileError &error)
+      {
+        throw FileError(fmt::format("{}; results.h5 is intact, and --resume computes the rest", error.what()),
+                        /*on_all_ranks=*/true);
+      }
+    }
   } // namespace
 
   ExitCode
@@ -239,27 +271,13 @@ namespace crawler
       reason   = "signal";
     }
     on_first_rank(communicator, [&]() { folder.require_in_place(); });
-    SweepEnd end{is_whole ? "finished" : "stopped", reason, 0., n_ranks, n_done, options.command_line};
-    try
-    {
-      const SweepCounts counts = write_results_csv(communicator, path);
-      end.seconds              = clock.seconds();
-      return exit_code_of_first_rank(communicator, [&]() {
-        write_file(path / "summary.json", sweep_json(counts, end));
-        report(counts, end, path, clock, log);
-        folder.leave();
-        const auto finished     = counts.statuses.find("finished");
-        const auto not_finished = counts.n_points - (finished == counts.statuses.end() ? 0 : finished->second);
-        return !is_whole                            ? ExitCode::stopped
-               : options.strict && not_finished > 0 ? ExitCode::rows_failed
-                                                    : ExitCode::finished;
-      });
-    }
-    catch (const FileError &error)
-    {
-      throw FileError(fmt::format("{}; results.h5 is intact, and --resume computes the rest", error.what()),
-                      /*on_all_ranks=*/true);
-    }
+    return end_sweep(communicator,
+                     {is_whole ? "finished" : "stopped", reason, 0., n_ranks, n_done, options.command_line},
+                     folder,
+                     path,
+                     options.strict,
+                     clock,
+                     log);
   }
 
   bool

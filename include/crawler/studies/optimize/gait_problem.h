@@ -147,6 +147,16 @@ namespace crawler
     }
 
   private:
+    /// Largest violation of a limit, relative to it, and the name of that.
+    struct Violation
+    {
+      double size = 0.;
+      std::string of;
+    };
+    /// Sets the constraints of latest_, and with @p with_gradients their derivatives.
+    Violation
+    set_constraints(const GaitValues &values, bool with_gradients);
+
     struct NumberLimit
     {
       GaitNumber::Index number;
