@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/gauss_panels.h>
+#include <crawler/base/grid_samples.h>
 
 #include <boost/math/quadrature/gauss.hpp>
 
@@ -61,15 +62,18 @@ namespace crawler
   } // namespace
 
   GaussPanels::GaussPanels(const double left, const double right, const unsigned int n_panels)
-    : left_(left)
-    , size_((right - left) / n_panels)
-    , n_panels_(n_panels)
+    : GaussPanels(equal_parts(left, right, n_panels))
   {
-    for (unsigned int p = 0; p < n_panels; ++p)
+  }
+
+  GaussPanels::GaussPanels(const std::vector<double> &ends)
+    : ends_(ends)
+  {
+    for (std::size_t p = 0; p < n_panels(); ++p)
       for (unsigned int i = 0; i < n; ++i)
       {
-        points_.push_back(left + (p + reference().points[i]) * size_);
-        weights_.push_back(reference().weights[i] * size_);
+        points_.push_back(ends_[p] + reference().points[i] * size(p));
+        weights_.push_back(reference().weights[i] * size(p));
       }
   }
 
@@ -93,7 +97,7 @@ namespace crawler
         double sum = 0.;
         for (unsigned int j = 0; j < n; ++j)
           sum += reference().running[i][j] * f[first + j];
-        result[first + i] = before + size_ * sum;
+        result[first + i] = before + size(first / n) * sum;
       }
       for (unsigned int j = 0; j < n; ++j)
         before += weights_[first + j] * f[first + j];
@@ -113,7 +117,7 @@ namespace crawler
         double sum = 0.;
         for (unsigned int i = 0; i < n; ++i)
           sum += reference().running[i][j] * x[first + i];
-        result[first + j] = size_ * sum + weights_[first + j] * later;
+        result[first + j] = size(first / n) * sum + weights_[first + j] * later;
         own += x[first + j];
       }
       later += own;
@@ -132,19 +136,37 @@ namespace crawler
     return n;
   }
 
+  std::vector<double>
+  GaussPanels::ends_at(const std::vector<double> &breaks, const double length, const unsigned int n)
+  {
+    std::vector<double> ends = {0.};
+    const auto add_piece     = [&](const double end) {
+      const double begin = ends.back();
+      const double parts = std::ceil((end - begin) / length * n - 1e-6);
+      for (const double part : equal_parts(begin, end, std::max(1u, static_cast<unsigned int>(parts))))
+        if (part > ends.back())
+          ends.push_back(part);
+    };
+    for (const double x : breaks)
+      if (x > ends.back() && x < length)
+        add_piece(x);
+    add_piece(length);
+    return ends;
+  }
+
   GaussPanels::Places::Places(const GaussPanels &panels, const std::vector<double> &places)
     : panel_weights_(panels.weights_)
-    , before_(panels.n_panels_)
+    , before_(panels.n_panels())
   {
     for (const double x : places)
     {
-      const double in_panels = (x - panels.left_) / panels.size_;
-      const auto panel       = static_cast<std::size_t>(std::clamp(std::floor(in_panels), 0., panels.n_panels_ - 1.));
+      const auto after = std::ranges::upper_bound(panels.ends_.begin() + 1, panels.ends_.end() - 1, x);
+      const auto panel = static_cast<std::size_t>(after - panels.ends_.begin()) - 1;
       Place place{panel, {}};
       const auto weights =
-        integral_weights(reference().points, reference().weights, in_panels - static_cast<double>(panel));
+        integral_weights(reference().points, reference().weights, (x - panels.ends_[panel]) / panels.size(panel));
       for (unsigned int j = 0; j < n; ++j)
-        place.weights[j] = panels.size_ * weights[j];
+        place.weights[j] = panels.size(panel) * weights[j];
       places_.push_back(place);
     }
   }

@@ -150,15 +150,15 @@ namespace crawler
       return displacement;
     }
 
-    /// @p ends are those of the panels in time.
+    /// @p space_ends and @p ends are those of the panels in space and time.
     Sums
     integrate(const Scene &scene,
               const StrainHistory &strain,
-              const unsigned int n_space,
+              const std::vector<double> &space_ends,
               const std::vector<double> &ends,
               const std::function<bool()> &keep_going)
     {
-      KinematicBody body(scene, strain, n_space);
+      KinematicBody body(scene, strain, space_ends);
       Sums sums;
       add(sums, body.evaluate(0.), 0.);
       sums.energies.initial_energy = body.evaluate(0.).sums.elastic_energy;
@@ -183,9 +183,9 @@ namespace crawler
 
   KinematicBody::KinematicBody(const Scene &scene,
                                const StrainHistory &strain,
-                               const unsigned int n_panels,
+                               const std::vector<double> &panels,
                                const std::vector<double> &points)
-    : panels_(0., 1., n_panels)
+    : panels_(panels)
     , points_(points)
     , inside_(with_ends(panels_.points()))
     , strain_(strain.at(inside_))
@@ -306,23 +306,23 @@ namespace crawler
     constexpr double floor = 1e-12, share = 0.25, min_part = 0.1;
     constexpr unsigned int max_space = 1024, max_time = 1u << 17, max_in_all = 1u << 20;
     KinematicResult result;
-    constexpr unsigned int max_at_start = 128; // panels that end where the strain is not smooth
-    unsigned int n_space                = GaussPanels::number_ending_at(scene.breaks_in_space(), 2, max_at_start);
-    const auto panels                   = time_panels(strain, scene.active_stress->breaks_in_time(), max_time / 4);
-    const bool sees_all                 = panels.has_value();
-    const double part                   = sees_all && has_events(*panels) ? min_part : 0.;
-    std::vector<double> &ends           = result.time_panels;
-    ends                                = sees_all ? *panels : std::vector<double>{0., 0.25, 0.5, 0.75, 1.};
+    std::vector<double> &space_ends = result.space_panels;
+    space_ends                      = GaussPanels::ends_at(scene.breaks_in_space(), 1., 2);
+    const auto panels               = time_panels(strain, scene.active_stress->breaks_in_time(), max_time / 4);
+    const bool sees_all             = panels.has_value();
+    const double part               = sees_all && has_events(*panels) ? min_part : 0.;
+    std::vector<double> &ends       = result.time_panels;
+    ends                            = sees_all ? *panels : std::vector<double>{0., 0.25, 0.5, 0.75, 1.};
     for (;;)
     {
-      const std::size_t n_time = ends.size() - 1;
-      const Sums coarse        = integrate(scene, strain, n_space, ends, keep_going);
-      const bool inverts       = !(1. + coarse.smallest.strain > 0.);
+      const std::size_t n_space = space_ends.size() - 1, n_time = ends.size() - 1;
+      const Sums coarse  = integrate(scene, strain, space_ends, ends, keep_going);
+      const bool inverts = !(1. + coarse.smallest.strain > 0.);
       Sums in_space, in_time, both;
       if (!inverts && !coarse.stopped)
       {
-        in_space = integrate(scene, strain, 2 * n_space, ends, keep_going);
-        in_time  = integrate(scene, strain, n_space, halved(ends), keep_going);
+        in_space = integrate(scene, strain, halved(space_ends), ends, keep_going);
+        in_time  = integrate(scene, strain, space_ends, halved(ends), keep_going);
       }
       if (coarse.stopped || in_space.stopped || in_time.stopped)
       {
@@ -342,22 +342,23 @@ namespace crawler
       };
       const bool space_fits = settled(in_space), time_fits = settled(in_time);
       const bool at_limit = (!space_fits && 4 * n_space > max_space) || (!time_fits && 4 * n_time > max_time) ||
-                            std::size_t{16} * n_space * n_time > max_in_all;
+                            16 * n_space * n_time > max_in_all;
       if (!inverts && !(space_fits && time_fits) && !at_limit)
       {
-        n_space *= space_fits ? 1 : 2;
+        if (!space_fits)
+          space_ends = halved(space_ends);
         if (!time_fits)
           ends = halved(ends);
         continue;
       }
-      result.n_space_panels = 2 * n_space;
-      ends                  = halved(ends);
+      space_ends = halved(space_ends);
+      ends       = halved(ends);
       if (!inverts)
-        both = integrate(scene, strain, 2 * n_space, ends, keep_going);
+        both = integrate(scene, strain, space_ends, ends, keep_going);
       // Extremes are searched where the finest quadrature has seen them.
-      const unsigned int n_s = std::clamp(8 * n_space, 33u, 257u),
-                         n_t = static_cast<unsigned int>(std::clamp<std::size_t>(8 * n_time, 33, 2049));
-      result.extremes        = find_extremes(strain, 1., 1., n_s, n_t);
+      const auto n_s  = static_cast<unsigned int>(std::clamp<std::size_t>(8 * n_space, 33, 257)),
+                 n_t  = static_cast<unsigned int>(std::clamp<std::size_t>(8 * n_time, 33, 2049));
+      result.extremes = find_extremes(strain, 1., 1., n_s, n_t);
       set_result(result, both, inverts ? std::optional(coarse.smallest) : std::nullopt);
       return result;
     }

@@ -62,7 +62,7 @@ namespace crawler
   {
     const KinematicResult motion =
       kinematic(reduced_scene_.scene(), *reduced_scene_.strain(), 0.5 * accuracy, keep_going);
-    n_space_panels_ = motion.n_space_panels;
+    space_panels_ = motion.space_panels;
     time_panels_    = motion.time_panels;
     if (motion.stopped)
     {
@@ -155,7 +155,7 @@ namespace crawler
     if (model_ == Model::perturbation)
     {
       const Perturbation series(*reduced_scene_.wave());
-      KinematicBody body(reduced_scene_.scene(), *reduced_scene_.strain(), 2, points);
+      KinematicBody body(reduced_scene_.scene(), *reduced_scene_.strain(), {0., 0.5, 1.}, points);
       for (const double t : times)
       {
         const auto &now    = body.evaluate(t); // for its extremes
@@ -170,7 +170,7 @@ namespace crawler
       }
       return;
     }
-    KinematicBody body(reduced_scene_.scene(), *reduced_scene_.strain(), n_space_panels_, points);
+    KinematicBody body(reduced_scene_.scene(), *reduced_scene_.strain(), space_panels_, points);
     state.energies.initial_energy = body.evaluate(0.).sums.elastic_energy;
     for (std::size_t i = 0; i < times.size(); ++i)
     {
@@ -227,7 +227,7 @@ namespace crawler
     if (model_ == Model::perturbation)
       return "No mesh and no time steps: the series is a closed form.";
     return fmt::format("No mesh and no time steps: quadrature on {} panels in s and {} in t, of {} points each.",
-                       n_space_panels_,
+                       space_panels_.size() - 1,
                        time_panels_.size() - 1,
                        GaussPanels::n_points);
   }

@@ -244,7 +244,7 @@ namespace crawler
   std::vector<double>
   Scene::breaks_in_space() const
   {
-    std::vector<double> places = active_stress->breaks_in_space();
+    std::vector<double> places = active_stress ? active_stress->breaks_in_space() : std::vector<double>();
     for (const auto &profile : {profiles.elastic_modulus, profiles.friction, profiles.initial_stretch})
       if (profile)
       {

@@ -151,6 +151,8 @@ namespace crawler
       before = after;
       at->strain(to, after);
       std::optional<StrainJump> jump;
+      double envelope = 0.; // largest difference times number of panels
+      bool grows      = true;
       for (unsigned int n_panels = 1; n_panels == 1 || (jump && n_panels <= max_panels); n_panels *= 4)
       {
         const GaussPanels time(from, to, n_panels);
@@ -162,11 +164,17 @@ namespace crawler
             integral[i] += time.weights()[k] * rate[i];
         }
         jump.reset();
+        double largest = 0.;
         for (unsigned int i = 0; i < n_points; ++i)
-          if (!(std::abs(after[i] - before[i] - integral[i]) <= tolerance * size))
-            jump = {points[i], from, to, after[i] - before[i], integral[i]};
+          if (const double difference = std::abs(after[i] - before[i] - integral[i]); !(difference <= tolerance * size))
+          {
+            jump    = {points[i], from, to, after[i] - before[i], integral[i]};
+            largest = std::max(largest, std::isfinite(difference) ? difference : HUGE_VAL);
+          }
+        grows    = largest * n_panels > 2. * envelope;
+        envelope = std::max(envelope, largest * n_panels);
       }
-      if (jump)
+      if (jump && grows)
         return jump;
     }
     return std::nullopt;

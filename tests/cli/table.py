@@ -130,6 +130,9 @@ def tracks():
     check(new.returncode == 0 and "new.prm is a scene that reads the table" in new.stdout, f"the scene beside the table: {new.stderr}")
     of_noise = float(new.stdout.split("displacement ")[1].split(" ")[0])
     check(abs(displacement("new.prm", "new_run", "--set", "Body/Anchoring exponent=3") / of_noise - 1) < 1e-6, "it has the displacement of the report")
+    frames = crawler("table", "tracks_raw.csv", "new.csv", *TRACKS, "--unit-of-t", "0.5", "--overwrite", "--scene", "./new.prm", "--copies", "8")
+    check("new.prm has got the new Time/End time" in frames.stdout and crawler("run", "new.prm", "--output", "slow").returncode == 0,
+          f"a scene with the end of the table before gets the new one: {frames.stdout} {frames.stderr}")
     pathlib.Path("new.prm").write_text("# mine\n", encoding="utf-8")
     crawler("table", "tracks_raw.csv", "new.csv", *TRACKS, "--overwrite")
     check(pathlib.Path("new.prm").read_text(encoding="utf-8") == "# mine\n", "a scene that is there stays")

@@ -16,6 +16,7 @@ import warnings
 PROGRAM, PACKAGE = (str(pathlib.Path(path).resolve()) for path in sys.argv[1:3])
 sys.path[:0] = [PACKAGE, str(pathlib.Path(__file__).resolve().parents[1] / "support")]
 import crawler  # noqa: E402
+import numpy as np  # noqa: E402
 from program import Checks, call  # noqa: E402
 
 FILE = pathlib.Path(__file__).resolve().parents[2] / "prm/paper/fig_s1.prm"
@@ -65,6 +66,10 @@ def check_errors(folder):
                           (lambda: crawler.run(FILE, fields="yes"), "\"fields\" is 'yes', but True or False or a list"),
                           (lambda: crawler.run(FILE, check="x"), '"check" is'), (lambda: crawler.run(FILE, output=3), '"output" is 3'),
                           (lambda: crawler.batch(3), '"scenes" is 3'), (lambda: crawler.batch("x"), '"scenes" is'), (lambda: crawler.sweep(FILE, [K]), '"axes" is'),
+                          (lambda: crawler.run(FILE, fields=["a"]), "a list of numbers"), (lambda: crawler.run(FILE, fields=[0.5], places=[True]), "a list of numbers"),
+                          (lambda: crawler.run(FILE, fields=np.array(0.5)), '"fields" is array(0.5)'), (lambda: crawler.sweep(FILE, {3: [1]}), "the entry 3 is set"),
+                          (lambda: crawler.sweep(FILE, {K: {1: 2}}), "a number, a text"), (lambda: crawler.to_prm({"Body": 3, "Body/Length": 2}), "is no section"),
+                          (lambda: crawler.to_prm({"Body": {"Length": 1}, "Body/Length": 2}), "is set twice"), (lambda: crawler.run(FILE, output=""), '"output" is empty'),
                           (lambda: crawler.read(None), '"folder" is None'), (lambda: crawler.to_prm("a"), '"scene" is'),
                           (lambda: crawler.plot(folder / "no"), "is not a folder"), (lambda: crawler.plot(folder, kind="map"), '"--kind" is "map"'),
                           (lambda: crawler.report(folder / "no"), "does not exist"), (lambda: crawler.paper(folder / "no"), "no")):
@@ -86,6 +91,8 @@ def check_errors(folder):
     refused(lambda: crawler.check(FILE, set={"Model": "linear"}), crawler.InputError, "linear")
     refused(lambda: crawler.read(folder), crawler.FileError, "summary.json")
     refused(lambda: crawler.run(FILE, fields=False).gait.spede, AttributeError, "spede", "speed")
+    (folder / "summary.json").write_text('{"status": ')
+    refused(lambda: crawler.read(folder), crawler.FileError, "summary.json", "is damaged")
     (folder / "summary.json").write_text('{"status": "finished"}')
     (folder / "kymograph.vts").write_text("<no/>")
     refused(lambda: crawler.read(folder), crawler.FileError, "kymograph.vts", "not a kymograph")
@@ -97,6 +104,15 @@ def check_errors(folder):
            f"warnings {[str(one) for one in caught]}")
 
 
+def check_numbers():
+    """Numbers, lists and names of numpy are as good as those of Python, and nested entries as full names."""
+    same = crawler.run(FILE, set={"Body": {"Elastic modulus": np.array(2.0)}}, fields=np.bool_(False))
+    expect(same.displacement == crawler.run(FILE, elastic_modulus=np.float64(2), fields=False).displacement and "nested entries")
+    at = crawler.run(FILE, fields=np.array([0.5, 1]), places=np.linspace(0, 1, 3)).fields
+    expect(at.stretch.shape == (2, 3), f"fields at times of an array {at.stretch.shape}")
+    expect(len(crawler.gradient(FILE, np.array([K])).derivatives) == 1 and crawler.gradient(FILE, "elastic_modulus").value != 0, "names of an array, a keyword")
+
+
 def check_pictures(folder):
     """plot, report and paper return the paths of the files that their commands make."""
     run = folder / "drawn"
@@ -105,6 +121,10 @@ def check_pictures(folder):
     names = ["kymograph.png", "part.svg", "report.html", "figure.pdf", "numbers.csv", "numbers.tex"]
     expect([path.name for path in made] == names and all(path.stat().st_size > 100 for path in made), f"files {made}")
     refused(lambda: crawler.plot(run, output="no/where.png"), crawler.FileError, "no/where.png")
+    refused(lambda: crawler.plot(run, kind="tradeoff"), crawler.InputError, "tradeoff.csv")
+    os.environ["CRAWLER_PROGRAM"] = sys.executable  # as commands in this process leave it
+    expect(crawler.report(run).exists(), "a report after another command")
+    del os.environ["CRAWLER_PROGRAM"]
     expect(callable(crawler.report) and set(crawler.__all__) <= set(dir(crawler)) | {"measured"}, "names of the package")
 
 
@@ -259,6 +279,7 @@ def main():
         check_errors(pathlib.Path(name))
         check_pictures(pathlib.Path(name))
         check_axes()
+        check_numbers()
         check_ends()
         check_signals(pathlib.Path(name))
         check_threads()

@@ -238,6 +238,13 @@ class Files(unittest.TestCase):
         with self.assertRaisesRegex(InputError, '"none of it" under m2 y,'):
             read("\n".join(lines[:-1] + [lines[-1].replace(lines[-1].split(",")[6], "none of it")]))
 
+    def test_columns_beside_markers(self):
+        """What is not of a marker is left out, and that is said."""
+        words = []
+        samples = read("t,x1,x2,x3,x4,speed\n" + "".join(f"{j},1,2,3,4,{j}\n" for j in range(5)), words=words)
+        self.assertEqual((samples.quantity, samples.values.shape), ("x", (5, 4)))
+        self.assertIn("beside the columns of markers left out: speed", words)
+
     def test_arguments_are_of_their_kinds(self):
         """In one sentence, also of the classes."""
         good = samples_of(lambda s, t: s + t, 5, 9, 1)
@@ -288,7 +295,6 @@ class Files(unittest.TestCase):
                 (longer.replace("m;", "strain;", 1).replace("\n1;0;0", "\n-5;0;0"), "a strain above -1", {}),
                 (longer, 'has the column m, but "--quantity" is strain', {"quantity": "strain"}),
                 (WIDE + "4;1\n", "row 6 .* has 2 cells, but 5 are expected, as in most", {}),
-                ("t,x1,x2,x3,speed\n" + "".join(f"{j},1,2,3,4\n" for j in range(5)), "the column speed beside those of markers", {"quantity": "markers"}),
                 (longer.replace("\n1;0;0", "\n1_0;0;0"), '"1_0" under', {}), (WIDE, "NAME=COLUMN", {"columns": "q=t"}),
                 ("t,y1,y2,y3,y4\n" + "".join(f"{j},1,2,3,4\n" for j in range(5)), "but no x", {}), (WIDE, 'the column "q"', {"columns": "t=q"}),
                 ("t,x1,x2,x3,x4\n" + "".join(f"{j},1,2,3,4\n" for j in range(5)), '"--columns" has "x=x1", but', {"columns": "t=t, x=x1"})):

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 import numpy as np
 
-from .arguments import checked
+from .arguments import checked, numbers_in
 from .needs import FileError, InputError
 from .pictures import paper, plot, report
 from .results import Numbers, Result, Study, fields_of, parameters_of, read, table_of
@@ -102,14 +102,16 @@ def run(scene: Scene, *, set: Values | None = None, fields: bool | Sequence[floa
     """
     overrides = _overrides(set, keywords)
     times = None
+    if isinstance(fields, np.bool_):
+        fields = bool(fields)
     if fields is False:
         overrides = ["Output/Number of snapshots=0", "Output/Statistics=false", *overrides]
     elif fields is not True:
-        times = np.asarray(fields, dtype=float).ravel().tolist()
+        times = numbers_in(fields, "fields").tolist()
     if places is not None:
         if times is None:
             raise InputError('"places" is for "fields" with times, but those are missing')
-        places = np.asarray(places, dtype=float).ravel().tolist()
+        places = numbers_in(places, "places").tolist()
     source = _source(scene, overrides)
     if output is not None:
         if times is not None:
@@ -156,6 +158,7 @@ def sweep(scene: Scene, axes: Mapping[str, Any] | None = None, *, design: str | 
     """
     overrides = _overrides(set, keywords)
     if axes is not None:
+        _require_names(axes)
         overrides.append("Sweep/Axes=" + "; ".join(f"{_full_name(name)} : {_axis(values, name)}"
                                                    for name, values in axes.items()))
     if design is not None:
@@ -186,7 +189,7 @@ def gradient(scene: Scene, by: str | Sequence[str], *, of: str = "displacement",
     (doc/sensitivities.md): by the adjoint, whose cost hardly depends on the number of entries, or by differences of runs.
     Raises InputError as run() does, and where a derivative does not exist; RunFailed if the run does not finish.
     """
-    by = [by] if isinstance(by, str) else list(by) if isinstance(by, (list, tuple)) else []
+    by = [by] if isinstance(by, str) else list(by)
     if not by or not all(isinstance(entry, str) for entry in by):
         raise InputError("the entries are missing; a list of full names is expected, as [\"Body/Elastic modulus\"]")
     by, known = [_full_name(entry) for entry in by], _compiled().differentiated_numbers
@@ -259,7 +262,7 @@ def fit(scene: Scene, data: Union[str, os.PathLike, "Samples", Sequence, None] =
 
 def _ranges(variables):
     """Entries and their ranges in words."""
-    if not isinstance(variables, Mapping) or not all(isinstance(one, (list, tuple)) and len(one) == 2 for one in variables.values()):
+    if not isinstance(variables, Mapping) or not all(isinstance(one, (list, tuple, np.ndarray)) and len(one) == 2 for one in variables.values()):
         raise InputError(f"the variables are {variables!r}, but a dict of entries and their ranges (from, to) is expected")
     return "; ".join(f"{_full_name(name)} : {_text(low, name)} to {_text(high, name)}" for name, (low, high) in variables.items())
 
@@ -273,6 +276,10 @@ def to_prm(scene: Mapping[str, Any]) -> str:
         place = nested
         for section in sections:
             place = place.setdefault(section, {})
+            if not isinstance(place, dict):
+                raise InputError(f'"{name}" is set, but "{section}" has a value and is no section')
+        if entry in place:
+            raise InputError(f'"{name}" is set twice, but is expected only once')
         place[entry] = value
     return "\n".join(_lines(nested, "")) + "\n"
 
@@ -316,6 +323,8 @@ def _text(value, name):
         if "#" in text:
             raise InputError(f'"{name}" is "{text}", but "#" begins a comment in a parameter file')
         return text
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        return _text(value.item(), name)
     if isinstance(value, (list, tuple, range, np.ndarray)):
         return ", ".join(_text(one, name) for one in value)
     raise InputError(f'"{name}" is {value!r}, but a number, a text, True, False or a list is expected')
@@ -323,7 +332,7 @@ def _text(value, name):
 
 def _axis(values, name):
     """Values of an axis in words; those that contain a comma, a colon or a semicolon are quoted."""
-    if isinstance(values, (str, numbers.Number)) or not hasattr(values, "__iter__"):
+    if isinstance(values, (str, numbers.Number, Mapping)) or not hasattr(values, "__iter__"):
         return _text(values, name)
     texts = [_text(one, name) for one in values]
     for text in texts:
@@ -351,8 +360,7 @@ def _keyword(entry):
 
 
 def _overrides(settings, keywords):
-    _require_names(settings or {})
-    pairs = [*(settings or {}).items(), *((_full_name(name), value) for name, value in keywords.items())]
+    pairs = [*_flat(settings or {}), *((_full_name(name), value) for name, value in keywords.items())]
     return [f"{name}={_text(value, name)}" for name, value in pairs]
 
 
@@ -390,6 +398,8 @@ def _checked(result, check):
 
 
 def _command(name, source, output, overwrite, verbose):
+    if not os.fspath(output):
+        raise InputError('"output" is empty, but the name of a folder is expected')
     stopped = 5  # exit code
     code, notes = _compiled().command(name, source, os.fspath(output), overwrite, not verbose)
     _warn(notes)

@@ -16,7 +16,7 @@ from .needs import InputError
 KINDS = {bool: ((bool, np.bool_), "True or False"), int: ((numbers.Integral,), "a whole number"), float: ((numbers.Real,), "a number"),
          str: ((str,), "a text"), os.PathLike: ((os.PathLike,), "a path"), type(None): ((type(None),), "None"),
          collections.abc.Mapping: ((collections.abc.Mapping,), "a dict"), dict: ((dict,), "a dict"), list: ((list,), "a list"),
-         collections.abc.Sequence: ((list, tuple, range, np.ndarray), "a list"),
+         collections.abc.Sequence: ((list, tuple, range), "a list"),  # or an array
          collections.abc.Iterable: ((collections.abc.Iterable,), "a list")}
 
 
@@ -31,6 +31,17 @@ def _kinds_of(annotation):
     return [((annotation,), f"a {annotation.__name__}")] if isinstance(annotation, type) else None
 
 
+def numbers_in(values, name):
+    """Array of numbers of a list. Raises InputError if it has something else."""
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        array = np.array(None)
+    if array.ndim != 1 or (array.size and array.dtype.kind not in "iuf"):
+        raise InputError(f'"{name}" is {values!r}, but a list of numbers is expected')
+    return array.astype(float)
+
+
 def checked(function):
     """Decorates a function: it raises InputError for an argument that is not of the annotated kind."""
     signature = inspect.signature(function)
@@ -41,7 +52,8 @@ def checked(function):
         for name, value in signature.bind(*values, **named).arguments.items():
             admitted = kinds.get(name)
             is_text_for_list = isinstance(value, str) and admitted and not any(str in classes for classes, _ in admitted)
-            if admitted and (is_text_for_list or not any(isinstance(value, classes) for classes, _ in admitted)):
+            is_array = hasattr(value, "__array__") and np.ndim(value) > 0 and any(list in classes for classes, _ in admitted or ())
+            if admitted and (is_text_for_list or not (is_array or any(isinstance(value, classes) for classes, _ in admitted))):
                 words = list(dict.fromkeys(words for _, words in admitted))
                 raise InputError(f'"{name}" is {value!r}, but {" or ".join(filter(None, (", ".join(words[:-1]), words[-1])))} is expected')
         return function(*values, **named)

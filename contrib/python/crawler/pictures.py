@@ -7,6 +7,8 @@ import signal
 import subprocess
 import sys
 
+import numpy as np
+
 from .arguments import checked
 from .needs import Failed, FileError, InputError, Parser, Stopped
 
@@ -51,6 +53,9 @@ def main():
     parser.add_argument("folder", metavar="DIR", nargs="?")
     parser.add_argument("--kind", default="")
     options, others = parser.parse_known_args(sys.argv[2:])
+    if options.folder is None and {"-h", "--help"} & set(others):
+        print(f"usage: crawler plot DIR [--kind KIND] [options of its script]\n\nKIND: {', '.join(KINDS)} (default: whichever fits)")
+        return
     if options.folder is None:
         raise InputError('the folder is missing; "crawler plot DIR" is expected')
     if options.kind and options.kind not in KINDS:
@@ -66,10 +71,12 @@ def _called(command, path, options):
     """Output of a command in lines. options: True for a flag, False or None for nothing, a list for several values."""
     words = []
     for name, value in options.items():
-        for one in value if isinstance(value, (list, tuple)) else [value]:
-            if one not in (None, False):
-                words += [f"--{name.replace('_', '-')}", *([] if one is True else [os.fspath(one) if isinstance(one, os.PathLike) else str(one)])]
-    end = subprocess.run([sys.executable, HERE / "__main__.py", command, os.fspath(path), *words], capture_output=True, text=True, check=False)
+        for one in value if isinstance(value, (list, tuple, np.ndarray)) else [value]:
+            is_flag = isinstance(one, (bool, np.bool_))
+            if one is not None and not (is_flag and not one):
+                words += [f"--{name.replace('_', '-')}", *([] if is_flag else [os.fspath(one) if isinstance(one, os.PathLike) else str(one)])]
+    own = {name: value for name, value in os.environ.items() if name != "CRAWLER_PROGRAM"}  # this process is not the program
+    end = subprocess.run([sys.executable, HERE / "__main__.py", command, os.fspath(path), *words], capture_output=True, text=True, check=False, env=own)
     problem = end.stderr.strip() or f"crawler {command} was ended by a signal"
     if end.returncode == -signal.SIGINT:
         raise KeyboardInterrupt

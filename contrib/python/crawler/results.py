@@ -103,7 +103,10 @@ def read(folder: str | os.PathLike) -> "Result | Study":
     summary_file = folder / "summary.json"
     if not summary_file.is_file():
         raise FileError(f'"{summary_file}" does not exist; the folder of a run or a study that has ended is expected')
-    summary = json.loads(summary_file.read_text(encoding="utf-8"))
+    try:
+        summary = {**json.loads(summary_file.read_text(encoding="utf-8"))}
+    except (TypeError, ValueError):
+        raise FileError(f'"{summary_file}" is damaged: a JSON object is expected') from None
     prm = folder / "parameters.prm"
     effective = prm.read_text(encoding="utf-8") if prm.exists() else ""
     for kind, name in (("comparison", "comparison.csv"), ("tradeoff", "tradeoff.csv"), ("optimize", "starts.csv"),

@@ -7,14 +7,17 @@
 
 namespace crawler
 {
-  /// Gauss-Legendre quadrature with eight points on each of several equal panels, and running integrals of the
-  /// polynomials of degree 7 through a function's values at the points.
+  /// Gauss-Legendre quadrature with eight points on each of several panels, and running integrals of the polynomials of
+  /// degree 7 through a function's values at the points.
   class GaussPanels
   {
   public:
     static constexpr unsigned int n_points = 8; ///< of a panel
 
+    /// Equal panels.
     GaussPanels(double left, double right, unsigned int n_panels);
+    /// Panels with these ends, ascending.
+    explicit GaussPanels(const std::vector<double> &ends);
 
     /// All points, panel by panel.
     const std::vector<double> &
@@ -30,10 +33,10 @@ namespace crawler
       return weights_;
     }
 
-    unsigned int
+    std::size_t
     n_panels() const
     {
-      return n_panels_;
+      return ends_.size() - 1;
     }
 
     /// Integral over all panels of a function with the values @p f at the points.
@@ -52,6 +55,11 @@ namespace crawler
     /// panel; @p n if that would exceed @p most.
     static unsigned int
     number_ending_at(const std::vector<double> &places, unsigned int n, unsigned int most);
+
+    /// Ends of @p n panels of about equal size from 0 to @p length, or of some more, so that they end at all of the
+    /// @p breaks in between, ascending.
+    static std::vector<double>
+    ends_at(const std::vector<double> &breaks, double length, unsigned int n);
 
     /// Integrals from the left end to given places, prepared once: then a few products for each.
     class Places
@@ -75,8 +83,13 @@ namespace crawler
     };
 
   private:
-    const double left_, size_;
-    const unsigned int n_panels_;
+    double
+    size(const std::size_t panel) const
+    {
+      return ends_[panel + 1] - ends_[panel];
+    }
+
+    const std::vector<double> ends_;
     std::vector<double> points_, weights_;
   };
 } // namespace crawler

@@ -24,10 +24,11 @@ namespace crawler
   class KinematicBody
   {
   public:
-    /// @p points are those of fields(). Scene (in natural units) and strain must outlive it.
+    /// @p panels are the ends of the panels, @p points those of fields(). Scene (in natural units) and strain must
+    /// outlive it.
     KinematicBody(const Scene &scene,
                   const StrainHistory &strain,
-                  unsigned int n_panels,
+                  const std::vector<double> &panels,
                   const std::vector<double> &points = {});
 
     /// State at one time, integrated over the body.
@@ -74,8 +75,7 @@ namespace crawler
     double net_friction = 0.; ///< mean of |int g v ds| over that of int |g v| ds
     StrainExtremes extremes{};
     std::optional<StrainExtreme> inversion; ///< place without a positive stretch; then the rest is unknown
-    unsigned int n_space_panels = 0;
-    std::vector<double> time_panels; ///< ends of the panels in time
+    std::vector<double> space_panels, time_panels; ///< ends of the panels
   };
 
   /**

@@ -71,7 +71,7 @@ namespace crawler
     const Scene &scene_; ///< in the user's units
     const ReducedScene reduced_scene_;
     const Model model_;
-    unsigned int n_space_panels_ = 0; ///< number of panels of the kinematic level
+    std::vector<double> space_panels_; ///< ends of the panels of the kinematic level
     std::vector<double> time_panels_; ///< ends of the panels in time of the kinematic level
   };
 } // namespace crawler

@@ -3,10 +3,12 @@
 #include <crawler/base/grid_interpolation.h>
 #include <crawler/base/grid_samples.h>
 #include <crawler/formula/formula_bound.h>
+#include <crawler/formula/formula_breaks.h>
 #include <crawler/formula/formula_gradient.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/formula_input.h>
 #include <crawler/scene/active_stress/prescribed_strain.h>
+#include <crawler/scene/breaks.h>
 #include <crawler/scene/given_motion.h>
 
 #include <fmt/format.h>
@@ -68,10 +70,10 @@ namespace crawler
     std::unique_ptr<ActiveStressAtPoints>
     balancing_stress(const StrainHistory &history,
                      const std::shared_ptr<const Scene> &scene,
-                     const unsigned int n_panels,
+                     const std::vector<double> &panel_ends,
                      const std::vector<double> &points)
     {
-      const auto panels   = std::make_shared<const GaussPanels>(0., scene->body.length, n_panels);
+      const auto panels   = std::make_shared<const GaussPanels>(panel_ends);
       const std::size_t n = panels->points().size();
       const BodyAtPoints body(*scene, panels->points());
       const std::vector<double> k = BodyAtPoints(*scene, points).elastic_modulus;
@@ -96,6 +98,18 @@ namespace crawler
     {
       return std::make_shared<const Scene>(
         Scene{scene.body, scene.friction->scaled(1.), nullptr, scene.end_time, scene.profiles, scene.ground});
+    }
+
+    std::shared_ptr<const Formula>
+    strain_formula(const PrescribedStrainParameters &parameters, const double length, const double end_time)
+    {
+      return read_formula({"strain",
+                           parameters.strain,
+                           parameters.constants,
+                           prescribed_strain_section + "Strain",
+                           prescribed_strain_section + "Constants"},
+                          length,
+                          end_time);
     }
 
     std::unique_ptr<const StrainHistory>
@@ -129,13 +143,7 @@ namespace crawler
         return wave_strain(parameters, length);
       if (parameters.given_by == "table")
         return std::make_unique<StrainTable>(parameters.file, length, end_time, prescribed_strain_section + "File");
-      return formula_strain(read_formula({"strain",
-                                          parameters.strain,
-                                          parameters.constants,
-                                          prescribed_strain_section + "Strain",
-                                          prescribed_strain_section + "Constants"},
-                                         length,
-                                         end_time));
+      return formula_strain(strain_formula(parameters, length, end_time));
     }
   } // namespace
 
@@ -187,6 +195,13 @@ namespace crawler
       facts_.breaks_in_space = generator_->breaks_in_space();
       facts_.breaks_in_time  = generator_->breaks_in_time();
       require_usable_generator(scene.end_time);
+    }
+    else if (given_by_ == "expression")
+    {
+      const double L             = scene.body.length;
+      const FormulaBreaks breaks = formula_breaks(strain_formula(parameters, L, scene.end_time), L, scene.end_time);
+      facts_.breaks_in_space     = breaks.in_space.value_or(std::vector<double>());
+      facts_.breaks_in_time      = breaks.in_time.value_or(std::vector<double>());
     }
     require_admissible_strain(scene.end_time);
     choose_panels(scene.end_time);
@@ -285,18 +300,23 @@ namespace crawler
         entry);
   }
 
-  /// Doubles the panels until the stress changes by no more than round-off at some times.
+  /// Doubles the panels, which end at breaks of strain and profiles, until the stress changes by no more than round-off
+  /// at some times.
   void
   PrescribedStrain::choose_panels(const double end_time)
   {
     constexpr unsigned int most      = 512;
     constexpr double tolerance       = 1e-13;
     const std::vector<double> points = equal_parts(0., scene_->body.length, 16);
-    std::vector<double> coarse(points.size()), fine(points.size());
-    for (n_panels_ = 2; n_panels_ < most; n_panels_ *= 2)
+    std::vector<double> coarse(points.size()), fine(points.size()), breaks = scene_->breaks_in_space();
+    breaks.insert(breaks.end(), facts_.breaks_in_space.begin(), facts_.breaks_in_space.end());
+    breaks = distinct_breaks_in_space(std::move(breaks), scene_->body.length);
+    for (unsigned int n = 2; n < most; n *= 2)
     {
-      const auto now  = balancing_stress(*history_, scene_, n_panels_, points),
-                 next = balancing_stress(*history_, scene_, 2 * n_panels_, points);
+      panels_         = GaussPanels::ends_at(breaks, scene_->body.length, n);
+      const auto now  = balancing_stress(*history_, scene_, panels_, points),
+                 next = balancing_stress(
+                   *history_, scene_, GaussPanels::ends_at(breaks, scene_->body.length, 2 * n), points);
       double change = 0., largest = 0.;
       for (const double part : {0.03, 0.21, 0.47, 0.71, 0.95})
       {
@@ -316,7 +336,7 @@ namespace crawler
   std::unique_ptr<ActiveStressAtPoints>
   PrescribedStrain::evaluator(const std::vector<double> &points, bool) const
   {
-    return balancing_stress(*history_, scene_, n_panels_, points);
+    return balancing_stress(*history_, scene_, panels_, points);
   }
 
   void

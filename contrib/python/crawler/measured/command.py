@@ -13,6 +13,7 @@ import tempfile
 
 import numpy as np
 
+from .. import to_prm
 from ..needs import FileError, InputError, Parser, write_whole
 from ..results import parameters_of
 from .options import NUMBER, TEXT, WHOLE, add_options, add_reading_options, parts_of, reading_of
@@ -64,9 +65,15 @@ def require_files(options):
     for name in ("copies", "seed", "set"):
         if not hasattr(options, "scene") and getattr(options, name, None):
             raise InputError(f'"--{name}" is for "--scene", which is missing')
+    if getattr(options, "scene", None) == "":
+        raise InputError('"--scene" is empty, but the name of a parameter file is expected')
+    if not os.path.isdir(os.path.dirname(options.output) or "."):
+        raise FileError(f'cannot write "{options.output}": there is no such folder')
     for name in (options.input, getattr(options, "scene", "")):
-        if name and name != scene_of(options.output) and not os.path.exists(name):
+        if name and not is_own(name, options.output) and not os.path.exists(name):
             raise FileError(f'cannot read "{name}": No such file or directory')
+    if "#" in os.path.basename(options.output):
+        raise InputError(f'the table is to be "{options.output}", but a name without # is expected, which begins a comment in a parameter file')
     if not options.output.endswith(".csv"):
         raise InputError(f'the table is to be "{options.output}", but a name that ends in .csv is expected')
     if os.path.exists(options.output):
@@ -81,28 +88,40 @@ def scene_of(output):
     return f"{output.removesuffix('.csv')}.prm"
 
 
-def scene_text(table, output):
-    """Parameter file of a scene that reads a table."""
-    is_strain = table.quantity == "strain"
-    entries = ["set Given by = table"] if is_strain else ["set Outside = periodic"] if table.period else []
-    file = os.path.basename(output)
-    return "\n".join([
-        f"# A scene that reads {file}, to start from: friction and elasticity are those of the animal.", "",
-        *(["set Model = kinematic # nothing has to be solved, since the strain is known", ""] if is_strain else []),
-        "subsection Body",
-        f"  set Length               = {table.s[-1]:.12g}",
-        "  set Elastic modulus      = 1",
-        "  set Friction coefficient = 1",
-        "  set Anchoring exponent   = 2 # friction falls with the stretch as w^(1 - p)",
-        "end", "",
-        "subsection Active stress",
-        f"  set Generator = {'prescribed strain' if is_strain else 'table'}",
-        f"  subsection {'Prescribed strain' if is_strain else 'Table'}",
-        *(f"    {entry}" for entry in [*entries, f"set File = {file}"]),
-        "  end", "end", "",
-        "subsection Time",
-        f"  set End time = {table.t[-1]:.12g}",
-        "end", ""])
+def is_own(scene, output):
+    """True if a scene is that beside the table."""
+    return os.path.abspath(scene) == os.path.abspath(scene_of(output))
+
+
+def scene_text(table, output, overrides):
+    """Parameter file of a scene that reads a table, with the entries of --set."""
+    strain = {"Model": "kinematic", "Generator": "prescribed strain", "Prescribed strain/Given by": "table", "Prescribed strain/File": os.path.basename(output)}
+    stress = {"Generator": "table", "Table/File": os.path.basename(output), **({"Table/Outside": "periodic"} if table.period else {})}
+    entries = {"Body/Length": f"{table.s[-1]:.12g}", "Body/Elastic modulus": "1", "Body/Friction coefficient": "1", "Body/Anchoring exponent": "2",
+               **{name if name == "Model" else f"Active stress/{name}": value for name, value in (strain if table.quantity == "strain" else stress).items()},
+               "Time/End time": f"{table.t[-1]:.12g}", **dict(map(str.strip, one.split("=", 1)) for one in overrides if "=" in one)}
+    return "# Scene of crawler table, to start from: friction and elasticity are those of the animal.\n\n" + to_prm(entries)
+
+
+def changes_of_scene(scene, output, table):
+    """Entries of an existing scene that have the length and the end of the table before and are to have those of the new one."""
+    try:
+        old = pathlib.Path(output).read_text(encoding="utf-8").split()[-1].split(",")
+        text = pathlib.Path(scene).read_text(encoding="utf-8")
+        found = [(entry, re.search(rf"^\s*set\s+{entry.split('/')[1]}\s*=\s*(\S+)", text, re.MULTILINE), float(before), new) for entry, before, new in
+                 (("Body/Length", old[0], table.s[-1]), ("Time/End time", old[1], table.t[-1]))]
+        return {entry: f"{new:.12g}" for entry, match, before, new in found
+                if match and math.isclose(float(match[1]), before, rel_tol=1e-9) and not math.isclose(new, before, rel_tol=1e-9)}
+    except (OSError, ValueError, IndexError):
+        return {}  # no table before, or a scene of another form
+
+
+def change_scene(scene, changes):
+    """Sets entries of a scene that it has."""
+    text = pathlib.Path(scene).read_text(encoding="utf-8")
+    for entry, value in changes.items():
+        text = re.sub(rf"(?m)^(\s*set\s+{entry.split('/')[1]}\s*=\s*)\S+", rf"\g<1>{value}", text)
+    write_whole(pathlib.Path(scene), text.encode())
 
 
 def write_columns(path, names, columns, digits):
@@ -129,7 +148,7 @@ def displacements(scene, overrides, entry, tables):
             write_table(name, table.s, table.t, table.values, ("s", "t", table.quantity))
         if not os.path.exists(scene):  # the one that is to be written beside the table
             scene = os.path.join(folder, os.path.basename(scene))
-            pathlib.Path(scene).write_text(scene_text(tables[0], names[0]), encoding="utf-8")
+            pathlib.Path(scene).write_text(scene_text(tables[0], names[0], overrides), encoding="utf-8")
         settings = [*overrides, "Sweep/Design=grid", f"Sweep/Axes={entry} : {', '.join(names)}"]
         output = os.path.join(folder, "sweep")
         end = subprocess.run([os.environ["CRAWLER_PROGRAM"], "sweep", scene, "--output", output, "--quiet",
@@ -176,7 +195,7 @@ def others_of(row, rows):
         values = [float(one[key]) for one in rows if one[key]]
         if row[key] and len(values) > 1:
             words.append(f"{name} {float(row[key]):.4g} +- {np.std(values, ddof=1):.2g} (mean of copies {np.mean(values):.4g})")
-    return ", ".join(words)
+    return ", ".join(words) + ("; the means of the copies show what noise adds once more" if words else "")
 
 
 def uncertainty(options, samples, table, settings):
@@ -184,16 +203,18 @@ def uncertainty(options, samples, table, settings):
     noise of the same size, are prepared in the same way, and the scene is computed with each."""
     entry = "Active stress/" + ("Table/File" if table.quantity == "m" else "Prescribed strain/File")
     is_new = not os.path.exists(options.scene)
+    changes = changes_of_scene(options.scene, options.output, table) if is_own(options.scene, options.output) else {}
+    overrides = [*(f"{entry}={value}" for entry, value in changes.items()), *options.set]
     noisy = noisy_tables(samples, table.noise, options, settings, table.period)
     half = with_half_smoothing(samples, settings, table.period)
     lengths = [copy.s[-1] for copy in noisy]  # of markers; displacements are proportional to the length
     for copy in [*noisy, *half]:
         copy.s = table.s
-    (first,), parameters = displacements(options.scene, options.set, entry, [table])
+    (first,), parameters = displacements(options.scene, overrides, entry, [table])
     if first["status"] != "finished" or not first["displacement"]:
         raise InputError(f'"{options.scene}" with the new table: {first["message"] or first["status"]}')
     own, accuracy = parameters[entry], max(float(parameters["Accuracy"]), ACCURACY_OF_COPIES)
-    rows, _ = displacements(options.scene, [*options.set, f"Accuracy={accuracy}", "Error estimate=false"], entry, [*noisy, *half])
+    rows, _ = displacements(options.scene, [*overrides, f"Accuracy={accuracy}", "Error estimate=false"], entry, [*noisy, *half])
     rows, of_half = rows[:len(noisy)], rows[len(noisy):]
     copies = [float(row["displacement"]) * length / table.s[-1] for row, length in zip(rows, lengths)
               if row["status"] == "finished" and row["displacement"]]
@@ -201,17 +222,20 @@ def uncertainty(options, samples, table, settings):
         problem = next(row["message"] for row in rows if row["status"] != "finished")
         raise InputError(f"only {len(copies)} of {len(rows)} noisy copies could be run, so that the uncertainty is not known; one of the others: "
                          f"{problem}")
-    if max(copies) == min(copies) and table.noise > 0:
+    if len({row["displacement"] for row in rows}) == 1 and table.noise > 0:
         reader = '"table"' if table.quantity == "m" else '"prescribed strain" with Given by = table'
         raise InputError(f'"{options.scene}" does not read the table: "{entry}" does not change its displacement; the generator {reader} is '
                          "expected")
     bound, deviation = first["displacement_error.total"], np.std(copies, ddof=1)
     note = "" if is_new or os.path.realpath(own) == os.path.realpath(options.output) else f'; with the new table, while the scene names "{own}"'
+    if not math.isclose(float(parameters["Body/Length"]), table.s[-1], rel_tol=1e-6):
+        note += f"; the scene has a Body/Length of {parameters['Body/Length']}, so the rest of the table, up to {table.s[-1]:.10g}, is cut off"
     words = [f"displacement {float(first['displacement']):.8g} +- {f'{float(bound):.1e}' if bound else '?'} (numerical bound) +- "
              f"{deviation:.2g} (standard deviation by noise of {table.noise:.3g}, {len(copies)} copies, known to "
              f"{100 / math.sqrt(2 * (len(copies) - 1)):.0f} %; their mean is {np.mean(copies):.8g}){note}"]
-    if settings.cycles > 1:
-        words.append(f"that is {float(first['displacement']) / settings.cycles:.4g} +- {deviation / settings.cycles:.2g} a period")
+    n_periods = float(parameters["Time/End time"]) / table.period if table.period else 0
+    if n_periods > 1.5:
+        words.append(f"that is {float(first['displacement']) / n_periods:.4g} +- {deviation / n_periods:.2g} a period")
     if others := others_of(first, rows):
         words.append(others)
     for row in of_half:
@@ -233,19 +257,32 @@ def main():
     if settings.noise is None:
         words.append(f"noise of a sample, as estimated from its neighbours in time: {table.noise:.3g}")
     if hasattr(options, "scene"):
-        words += uncertainty(options, samples, table, settings)
+        try:
+            words += uncertainty(options, samples, table, settings)
+        except InputError as error:
+            if os.path.exists(options.scene):
+                raise
+            words.append(f"no displacement yet, as the scene has guesses: {error}")
     words.append(f"table of {table.quantity} at {len(table.s)} places, s = {table.s[0]:g} to {table.s[-1]:.10g}, and {len(table.t)} times, "
                  f"t = {table.t[0]:g} to {table.t[-1]:.10g}")
     stem, scene = options.output.removesuffix(".csv"), scene_of(options.output)
-    if is_new := not os.path.exists(scene):
+    changes = changes_of_scene(scene, options.output, table)
+    is_new = not os.path.exists(scene) and (table.t[0] == 0 or table.period)
+    if is_new:
         words.append(f"{scene} is a scene that reads the table: crawler run {shlex.quote(scene)}")
+    elif changes:
+        words.append(f"{scene} has got the new {' and '.join(f'{entry} = {value}' for entry, value in changes.items())}")
+    elif not os.path.exists(scene):
+        words.append(f"the table begins at t = {table.t[0]:g}, but a scene at 0: \"--shift-t first\"")
     report = f"{options.input} -> {options.output}\n" + "".join(f"  {sentence}\n" for sentence in words)
     write_table(f"{stem}_before.csv", samples.s, samples.t, samples.values, ("marker" if samples.quantity == "x" else "s", "t",
                                                                                samples.quantity))
     write_whole(pathlib.Path(f"{stem}_report.txt"), report.encode())
     write_table(options.output, table.s, table.t, table.values, ("s", "t", table.quantity))
     if is_new:
-        write_whole(pathlib.Path(scene), scene_text(table, options.output).encode())
+        write_whole(pathlib.Path(scene), scene_text(table, options.output, options.set).encode())
+    elif changes:
+        change_scene(scene, changes)
     if not options.quiet:
         how = ("prescribed strain, Given by = table" if table.quantity == "strain" else "table")
         print(f"{report}Picture: crawler plot {shlex.quote(options.output)}. In the parameter file: Generator = {how}, File = {options.output}"

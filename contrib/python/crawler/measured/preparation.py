@@ -76,8 +76,8 @@ def estimated_noise(samples: Samples) -> float:
 def prepare(samples: Samples, settings: Settings, period: float | None = None) -> Table:
     """Makes the Table of Samples. @p period: one that is known already. Raises InputError where a gap is too large,
     where there is no period, and where its ends differ by more than the noise."""
-    _require_grid(samples)
-    settings = settings.in_words(period)
+    samples = _on_a_grid(samples)
+    settings, is_known = settings.in_words(period), period is not None
     if samples.quantity not in ("m", "strain", "x", "centre", "speed"):
         raise InputError(f'the quantity of the samples is "{samples.quantity}", but "m", "strain", "x", "centre" or "speed" is expected')
     if samples.quantity in ("centre", "speed"):
@@ -106,7 +106,7 @@ def prepare(samples: Samples, settings: Settings, period: float | None = None) -
         period = _period_of(full, settings.period, words)
         if is_tracks:
             words.append(_motion(tracks, period))
-        table = _one_period(samples, settings, period, spread, words, filled)
+        table = _one_period(samples, settings, period, spread, words, filled, is_known)
     else:
         table = _without_gaps(samples, settings.smooth_t, settings.gap, filled)
     points_t = 0 if settings.period else settings.points_t
@@ -127,7 +127,7 @@ def prepare(samples: Samples, settings: Settings, period: float | None = None) -
         table.t = np.concatenate([table.t[:1], *(table.t[1:] + k * (table.t[-1] - table.t[0]) for k in range(settings.cycles))])
         table.values = np.concatenate([table.values[:1], *[table.values[1:]] * settings.cycles])
     _say_what_changed(settings, filled, spread, samples.s, words)
-    if table.quantity == "strain" and table.t[0] != 0 and is_tracks:
+    if table.quantity == "strain" and table.t[0] != 0:
         words.append(f"t shifted by {-table.t[0]:g}, since a prescribed strain begins at t = 0")
         table.t = table.t - table.t[0]
     return Table(table.quantity, table.s, table.t, table.values, period, noise, words)
@@ -139,15 +139,20 @@ def _motion(tracks, period):
     return f"the mean of the markers moves by {slope * period:.4g} a period (towards the head: positive)"
 
 
-def _require_grid(samples):
-    """Raises InputError for samples that are not on a grid: arrays s [place], t [time] and values [time, place]."""
-    shapes = [np.shape(one) for one in (samples.s, samples.t, samples.values)]
+def _on_a_grid(samples):
+    """Samples with arrays s [place], t [time] and values [time, place]. Raises InputError for others."""
+    try:
+        samples = dataclasses.replace(samples, **{name: np.asarray(getattr(samples, name), dtype=float) for name in ("s", "t", "values")})
+    except (TypeError, ValueError):
+        raise InputError("the samples have s, t or values that are no arrays of numbers, but those are expected") from None
+    shapes = [one.shape for one in (samples.s, samples.t, samples.values)]
     if shapes[2] != shapes[1] + shapes[0] or len(shapes[0]) != 1 or len(shapes[1]) != 1:
         raise InputError(f"the samples have s, t and values of the shapes {', '.join(map(str, shapes))}, but (place,), (time,) and (time, place) are expected")
     if not (np.all(np.isfinite(samples.s)) and np.all(np.isfinite(samples.t)) and not np.any(np.isinf(samples.values))):
         raise InputError("the samples have places, times or values that are not finite, but only gaps of values (NaN) may be there")
     if np.any(np.diff(samples.s) <= 0) or np.any(np.diff(samples.t) <= 0):
         raise InputError("the samples have places s or times t that do not increase, but increasing ones are expected")
+    return samples
 
 
 def strain_of_tracks(tracks: Samples, settings: Settings, words: list[str]) -> Samples:
@@ -184,7 +189,8 @@ def _material_coordinates(tracks, settings):
         s = tracks.values[:n].mean(axis=0)
         return s - s[0] + settings.first_marker
     numbers = [number_of(part) for part in settings.markers_at.split(",")]
-    if None in numbers:
+    if None in numbers or not np.all(np.isfinite([number for number in numbers if number is not None])):
+        numbers = [number if number is not None and math.isfinite(number) else None for number in numbers]
         wrong = settings.markers_at.split(",")[numbers.index(None)]
         raise InputError(f'"--markers-at" has "{wrong}", but "first", "mean" or a list of {len(tracks.s)} numbers is expected')
     if len(numbers) != len(tracks.s):
@@ -308,7 +314,7 @@ def _frames_without_ragged_ends(tracks, most, words):
 def find_period(samples: Samples) -> float | None:
     """Shortest time after which samples without gaps repeat, by the mean square difference of the samples and later
     ones; the duration must be at least 1.25 times as long. None if nothing repeats."""
-    _require_grid(samples)
+    samples = _on_a_grid(samples)
     if np.any(np.isnan(samples.values)):
         raise InputError("the samples have gaps, but a period is found in samples without them")
     begin, duration = samples.t[0], samples.t[-1] - samples.t[0]
@@ -337,8 +343,19 @@ def find_period(samples: Samples) -> float | None:
     for j in minima:
         best = minimize_scalar(difference, bounds=(lags[j - 1], lags[j + 1]), method="bounded", options={"xatol": 1e-9 * duration})
         if best.fun <= 1.5 * least + 1e-4:
-            return float(best.x)
+            return _refined_period(float(best.x), difference, float(best.fun), lags[-1], duration)
     return None
+
+
+def _refined_period(period, difference, least, longest, duration):
+    """Refines a period by differences over 2, 4, ... periods, whose error is divided by that number, while they are as small."""
+    n = 2
+    while (n + 0.25) * period <= longest:
+        best = minimize_scalar(difference, bounds=((n - 0.25) * period, (n + 0.25) * period), method="bounded", options={"xatol": 1e-9 * duration})
+        if not best.fun <= 1.5 * least + 1e-4:
+            break
+        period, n = float(best.x) / n, 2 * n
+    return period
 
 
 def _period_of(full, wanted, words):
@@ -361,8 +378,8 @@ def _period_of(full, wanted, words):
     return min(number, end - begin)
 
 
-def _one_period(samples, settings, period, noise, words, filled):
-    """Averages all cycles at equal phases to one period."""
+def _one_period(samples, settings, period, noise, words, filled, is_known):
+    """Averages all cycles at equal phases to one period. is_known: it need not show in these samples."""
     begin, end = samples.t[0], samples.t[-1]
     n = settings.points_t - 1 if settings.points_t else max(LEAST_PHASES, round(period / np.median(np.diff(samples.t))))
     phases = begin + period * np.arange(n) / n
@@ -373,7 +390,8 @@ def _one_period(samples, settings, period, noise, words, filled):
         cycles[:, :, i] = np.where(np.isnan(t), np.nan, _Series(samples.t, samples.values[:, i], 0, 0, _Filled())(np.nan_to_num(t)))
     counts = np.sum(~np.isnan(cycles), axis=0)
     means = np.where(counts > 0, np.nansum(cycles, axis=0) / np.maximum(counts, 1), np.nan)
-    _require_agreement(samples, cycles - means, counts, period, noise, words)
+    if not is_known:
+        _require_agreement(samples, cycles - means, counts, period, noise, words)
     values = np.full((n + 1, len(samples.s)), np.nan)
     table_t = np.append(phases, begin + period)
     for i in range(len(samples.s)):
@@ -421,8 +439,8 @@ def _require_agreement(samples, rest, counts, period, noise, words):
     if duration >= LEAST_CYCLES * period and scatter > 0.7 * spread:
         raise InputError(f"the cycles of the period {period:g} differ from each other by {scatter:.3g}, nearly as much as all samples "
                          f'({spread:.3g}), so that this is not a period; "--period find" looks for one')
-    words.append(f"period {period:.6g} closed: where cycles meet or repeat, {samples.quantity} differs by {scatter:.3g} (noise "
-                 f"{noise:.3g}), and the mean is taken")
+    words.append(f"period {period:.6g} closed: where cycles meet or repeat, {samples.quantity} differs by {scatter:.3g} (its noise "
+                 f"is {noise:.3g}), and the mean is taken")
     if n >= LEAST_REMAINDERS and scatter > MUCH_SCATTER * noise:
         words.append("cycles differ by more than this noise does: what differs is not independent from time to time, or the animal changes, "
                      'and an uncertainty from the noise is too small ("--noise" sets a larger one)')
@@ -454,5 +472,5 @@ def _say_what_changed(settings, filled, noise, places, words):
                      "long keep 94 %")
     change = math.sqrt(filled.square / filled.n_samples) if filled.n_samples else 0
     if change > 1e-12 * filled.largest:
-        words.append(f"samples and table differ in time by {change:.3g} (root mean square), noise {noise:.3g}"
+        words.append(f"samples and table differ in time by {change:.3g} (root mean square), its noise is {noise:.3g}"
                      f"{': more than noise was smoothed away' if change > 2 * noise else ''}")

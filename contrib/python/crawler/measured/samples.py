@@ -246,23 +246,26 @@ def _roles(sheet, renamed):
 def _wide(sheet, quantity, first):
     """Reads a column for each place or marker (first is "t"), or for each time (first is "s")."""
     names, units = sheet.names, sheet.units
+    columns = list(range(1, len(names)))
     is_tracked = quantity == "markers" or (not quantity and first == "t" and names[1].lower().startswith(("x", "marker")))
     along = sheet.times(0) if first == "t" else sheet.column(0)
     if np.any(np.isnan(along)):
         raise InputError(f'row {sheet.lines[int(np.argmax(np.isnan(along)))]} of "{sheet.name}" has no {names[0]}, but only what is '
                          "measured may have gaps")
     if is_tracked:
+        if names[1].lower().startswith(("x", "marker")):
+            columns = [i for i in columns if names[i].lower().startswith(("x", "marker")) or names[i].lower() in HEADS + TAILS]
+        if others := [name for i, name in enumerate(names) if i and i not in columns]:
+            sheet.words.append(f"beside the columns of markers left out: {', '.join(others)}")
+        names = [names[i] for i in (0, *columns)]
         across = np.arange(1.0, len(names))
-        other = next((name for name in names[1:] if not name.lower().startswith(("x", "marker"))), None)
-        if other and names[1].lower().startswith(("x", "marker")):
-            raise InputError(f'"{sheet.name}" has the column {other} beside those of markers ({names[1]}, ...), but only columns of markers are expected')
         if len(set(names[1:])) < len(names) - 1:
             twice = next(name for name in names if names.count(name) > 1)
             raise InputError(f'"{sheet.name}" has {names.count(twice)} columns "{twice}", but a column for each marker with a name '
                              "of its own is expected")
     else:
         across = np.array([_place(sheet, i, first) for i in range(1, len(names))])
-    values = np.array([sheet.column(i) for i in range(1, len(names))]).T
+    values = np.array([sheet.column(i) for i in columns]).T
     repeated = [np.repeat(along, len(across)), np.tile(across, len(along))]
     s, t = repeated if first == "s" else repeated[::-1]
     s, t, values = _on_grid(sheet, s, t, values.ravel(), np.repeat(sheet.lines, len(across)), "marker" if is_tracked else "s")

@@ -22,7 +22,7 @@ KINDS = (("tradeoff", "tradeoff.h5", "tradeoff.h5", "tradeoff"),
          ("optimisation", "starts.h5", "results.h5", "optimize"),
          ("optimisation", "starts.csv", "results.h5", "optimize"),
          ("sweep", "results.h5", "results.h5", "results"), ("run", "summary.json", None, None),
-         ("run", "statistics.csv", None, None), ("run", "kymograph.vts", None, None), ("run", "parameters.prm", None, None))
+         ("run", "statistics.csv", None, None), ("run", "kymograph.vts", None, None))
 
 
 def kind_of(folder):

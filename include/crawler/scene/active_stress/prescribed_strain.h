@@ -94,7 +94,7 @@ namespace crawler
     const std::unique_ptr<const ActiveStress> generator_; ///< of the strain, if it is generated
     std::unique_ptr<const StrainHistory> history_;
     StrainExtremes extremes_{};
-    unsigned int n_panels_ = 1;
+    std::vector<double> panels_; ///< ends of the panels of the quadrature over the body
   };
 
   /// A strain given on a grid over s and t, with cubic splines in both directions (tensor product).
