@@ -63,7 +63,7 @@ namespace crawler
     const KinematicResult motion =
       kinematic(reduced_scene_.scene(), *reduced_scene_.strain(), 0.5 * accuracy, keep_going);
     space_panels_ = motion.space_panels;
-    time_panels_    = motion.time_panels;
+    time_panels_  = motion.time_panels;
     if (motion.stopped)
     {
       result.time.status = Status::stopped;

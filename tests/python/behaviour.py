@@ -107,7 +107,7 @@ def check_errors(folder):
 def check_numbers():
     """Numbers, lists and names of numpy are as good as those of Python, and nested entries as full names."""
     same = crawler.run(FILE, set={"Body": {"Elastic modulus": np.array(2.0)}}, fields=np.bool_(False))
-    expect(same.displacement == crawler.run(FILE, elastic_modulus=np.float64(2), fields=False).displacement and "nested entries")
+    expect(same.displacement == crawler.run(FILE, elastic_modulus=np.float64(2), fields=False).displacement, "nested entries")
     at = crawler.run(FILE, fields=np.array([0.5, 1]), places=np.linspace(0, 1, 3)).fields
     expect(at.stretch.shape == (2, 3), f"fields at times of an array {at.stretch.shape}")
     expect(len(crawler.gradient(FILE, np.array([K])).derivatives) == 1 and crawler.gradient(FILE, "elastic_modulus").value != 0, "names of an array, a keyword")

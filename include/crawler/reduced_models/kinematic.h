@@ -74,7 +74,7 @@ namespace crawler
     EnergyBalance energies;
     double net_friction = 0.; ///< mean of |int g v ds| over that of int |g v| ds
     StrainExtremes extremes{};
-    std::optional<StrainExtreme> inversion; ///< place without a positive stretch; then the rest is unknown
+    std::optional<StrainExtreme> inversion;        ///< place without a positive stretch; then the rest is unknown
     std::vector<double> space_panels, time_panels; ///< ends of the panels
   };
 

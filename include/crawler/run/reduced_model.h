@@ -72,6 +72,6 @@ namespace crawler
     const ReducedScene reduced_scene_;
     const Model model_;
     std::vector<double> space_panels_; ///< ends of the panels of the kinematic level
-    std::vector<double> time_panels_; ///< ends of the panels in time of the kinematic level
+    std::vector<double> time_panels_;  ///< ends of the panels in time of the kinematic level
   };
 } // namespace crawler
