@@ -257,6 +257,8 @@ def main():
     if settings.noise is None:
         words.append(f"noise of a sample, as estimated from its neighbours in time: {table.noise:.3g}")
     if hasattr(options, "scene"):
+        if not options.quiet:
+            print(f"{options.scene} is computed with {getattr(options, 'copies', 64)} copies of the samples, to which noise is added ...", flush=True)
         try:
             words += uncertainty(options, samples, table, settings)
         except InputError as error:

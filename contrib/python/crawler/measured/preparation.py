@@ -173,7 +173,8 @@ def strain_of_tracks(tracks: Samples, settings: Settings, words: list[str]) -> S
     strain = curves(inside, 1).T
     if settings.ends == "linear":
         strain += (places - inside) * curves(np.where(places < inside, s[0], s[-1]), 2).T
-    how = {"first": "from the first frame, which is taken as a body without strain", "mean": "from the mean of frames"}.get(
+    deformed = "; in a film of cycles it may be deformed, see \"--markers-at mean\"" if settings.period else ""
+    how = {"first": f"from the first frame, which is taken as a body without strain{deformed}", "mean": "from the mean of frames"}.get(
         settings.markers_at, "as given")
     words.append(f"strain of {len(s)} markers at s = {s[0]:g} to {s[-1]:g} ({how}), at {len(places)} places of a body of length "
                  f"{length:.10g}")
