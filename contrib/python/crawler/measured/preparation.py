@@ -189,9 +189,8 @@ def _material_coordinates(tracks, settings):
         n = 1 if settings.markers_at == "first" else _whole_cycles(tracks, settings.period)
         s = tracks.values[:n].mean(axis=0)
         return s - s[0] + settings.first_marker
-    numbers = [number_of(part) for part in settings.markers_at.split(",")]
-    if None in numbers or not np.all(np.isfinite([number for number in numbers if number is not None])):
-        numbers = [number if number is not None and math.isfinite(number) else None for number in numbers]
+    numbers = [number if number is not None and math.isfinite(number) else None for number in map(number_of, settings.markers_at.split(","))]
+    if None in numbers:
         wrong = settings.markers_at.split(",")[numbers.index(None)]
         raise InputError(f'"--markers-at" has "{wrong}", but "first", "mean" or a list of {len(tracks.s)} numbers is expected')
     if len(numbers) != len(tracks.s):
