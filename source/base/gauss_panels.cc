@@ -160,7 +160,7 @@ namespace crawler
   {
     for (const double x : places)
     {
-      const auto after = std::ranges::upper_bound(panels.ends_.begin() + 1, panels.ends_.end() - 1, x);
+      const auto after = std::upper_bound(panels.ends_.begin() + 1, panels.ends_.end() - 1, x);
       const auto panel = static_cast<std::size_t>(after - panels.ends_.begin()) - 1;
       Place place{panel, {}};
       const auto weights =
