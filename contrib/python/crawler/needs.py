@@ -165,7 +165,7 @@ def run_script(main):
         sys.exit(Stopped.code)
     except Exception as error:
         # These classes exist twice in a script that also imports the package: needs.InputError and crawler.needs.InputError.
-        if type(error).__name__ in {kind.__name__ for kind in (InputError, FileError, Failed, Stopped)}:
+        if {kind.__name__ for kind in type(error).__mro__} & {kind.__name__ for kind in (InputError, FileError, Failed, Stopped)}:
             complain(error)
             sys.exit(error.code)
         if not isinstance(error, OSError):
