@@ -160,16 +160,13 @@ def run_script(main):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPPING)
         main()
         sys.stdout.flush()
+    except (InputError, FileError, Failed, Stopped) as error:
+        complain(error)
+        sys.exit(error.code)
     except KeyboardInterrupt:
         complain("stopped by a signal")
         sys.exit(Stopped.code)
-    except Exception as error:
-        # These classes exist twice in a script that also imports the package: needs.InputError and crawler.needs.InputError.
-        if {kind.__name__ for kind in type(error).__mro__} & {kind.__name__ for kind in (InputError, FileError, Failed, Stopped)}:
-            complain(error)
-            sys.exit(error.code)
-        if not isinstance(error, OSError):
-            raise
+    except OSError as error:
         if error.filename is None:  # standard output: unwritten text would be another error at the end
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if not isinstance(error, BrokenPipeError):  # the reader may leave

@@ -104,6 +104,7 @@ def results():
     folder = str(pathlib.Path(__file__).resolve().parents[2])
     if folder not in sys.path:
         sys.path.append(folder)
+    sys.modules.setdefault("crawler.needs", sys.modules["needs"])  # exceptions of the package are those of this script
     import crawler.results
     return crawler.results
 
