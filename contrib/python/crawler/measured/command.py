@@ -198,12 +198,11 @@ def others_of(row, rows):
     return ", ".join(words) + ("; the means of the copies show what noise adds once more" if words else "")
 
 
-def uncertainty(options, samples, table, settings):
+def uncertainty(options, samples, table, settings, changes):
     """Describes, in sentences, the uncertainty of the displacement of a scene by the noise: copies of the samples get
-    noise of the same size, are prepared in the same way, and the scene is computed with each."""
+    noise of the same size, are prepared in the same way, and the scene, with changes, is computed with each."""
     entry = "Active stress/" + ("Table/File" if table.quantity == "m" else "Prescribed strain/File")
     is_new = not os.path.exists(options.scene)
-    changes = changes_of_scene(options.scene, options.output, table) if is_own(options.scene, options.output) else {}
     overrides = [*(f"{entry}={value}" for entry, value in changes.items()), *options.set]
     noisy = noisy_tables(samples, table.noise, options, settings, table.period)
     half = with_half_smoothing(samples, settings, table.period)
@@ -256,19 +255,20 @@ def main():
     words += table.words
     if settings.noise is None:
         words.append(f"noise of a sample, as estimated from its neighbours in time: {table.noise:.3g}")
+    scene = scene_of(options.output)
+    changes = changes_of_scene(scene, options.output, table)
     if hasattr(options, "scene"):
         if not options.quiet:
             print(f"{options.scene} is computed with {getattr(options, 'copies', 64)} copies of the samples, to which noise is added ...", flush=True)
         try:
-            words += uncertainty(options, samples, table, settings)
+            words += uncertainty(options, samples, table, settings, changes if is_own(options.scene, options.output) else {})
         except InputError as error:
             if os.path.exists(options.scene):
                 raise
-            words.append(f"no displacement yet, as the scene has guesses: {error}")
+            words.append(f"no displacement yet: {error}")
     words.append(f"table of {table.quantity} at {len(table.s)} places, s = {table.s[0]:g} to {table.s[-1]:.10g}, and {len(table.t)} times, "
                  f"t = {table.t[0]:g} to {table.t[-1]:.10g}")
-    stem, scene = options.output.removesuffix(".csv"), scene_of(options.output)
-    changes = changes_of_scene(scene, options.output, table)
+    stem = options.output.removesuffix(".csv")
     is_new = not os.path.exists(scene) and (table.t[0] == 0 or table.period)
     if is_new:
         words.append(f"{scene} is a scene that reads the table: crawler run {shlex.quote(scene)}")
