@@ -74,7 +74,7 @@ WORDS = [
     ("scaling", ["--kind", "scaling"], ["mass $M$ [g]", r"stride frequency $\nu$ [1/s]", "speed $U L$ [mm/s]"]),
     ("calibration.csv", [], ["true error / displacement $D$ [1]", "reported error / true error [1]"])]
 # The script of a folder or file; with --kind it is that one.
-SCRIPTS = {"run": "kymograph", "named": "kymograph", "no_stride": "kymograph", "sweep": "sweep", "checked": "sweep", "tradeoff": "tradeoff",
+SCRIPTS = {"run": "kymograph", "named": "kymograph", "no_stride": "kymograph", "sweep": "sweep", "checked": "sweep", "tradeoff": "tradeoff", "unreadable": "tradeoff",
            "optimum": "optimize", "scaling": "sweep", "calibration.csv": "calibration"}
 # Arguments of crawler plot, exit code, what the one sentence has.
 REFUSED = [
@@ -90,6 +90,7 @@ REFUSED_BY_SCRIPTS = [
     (["run", "--to", "4"], 2, "from 0 to 4"), (["run", "--from", "1", "--to", "1.001"], 2, "has 1 times"),
     (["run", "--last-stride", "--to", "1"], 2, "only one of the two"), (["no_stride", "--last-stride"], 2, "has no stride"),
     (["run", "--output", "picture.doc"], 2, ".png, .svg or .pdf"),
+    (["sweep", "--kind", "tradeoff"], 2, "the output folder of crawler tradeoff is expected"), (["unreadable", "--kind", "tradeoff"], 6, "cannot read"),
     (["optimum", "--optimum", "2"], 2, "the number of a case is expected: 1"), (["calibration.csv", "--value", "x"], 2, "--value")]
 checks = Checks()
 check = checks.expect
@@ -140,6 +141,7 @@ def make_folders():
     pathlib.Path("many.csv").write_text("t,a,b,c\n0,1,2,3\n", encoding="utf-8")
     pathlib.Path("calibration.csv").write_text(CALIBRATION, encoding="utf-8")
     pathlib.Path("empty").mkdir()
+    pathlib.Path("unreadable/tradeoff.csv").mkdir(parents=True)
     for folder, (command, file, more, _) in STUDIES.items():
         path = ROOT / file if (ROOT / file).is_file() else file
         end = crawler(command, path, "--output", folder, "--quiet", *more, **NO_PICTURES)

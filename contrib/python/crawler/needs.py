@@ -2,10 +2,11 @@
 """Common parts of all commands and scripts in Python: required modules, command lines, and exit codes.
 
 A script that fails prints the reason in one sentence and ends with 2 (bad input), 3 (no result could be computed), 5
-(stopped), 6 (a file that cannot be written) or 69 (no Python has the modules that it needs).
+(stopped), 6 (a file that cannot be read or written) or 69 (no Python has the modules that it needs).
 """
 import argparse
 import contextlib
+import csv
 import ctypes
 import difflib
 import importlib
@@ -105,6 +106,23 @@ def write_whole(path, content):
         with contextlib.suppress(OSError):
             part.unlink(missing_ok=True)
         raise FileError(f'cannot write "{path}": {error.strerror or error}') from None
+
+
+def number(text):
+    """Converts the text of a cell to a number; NaN if it is unknown."""
+    return float(text) if text not in ("", None) else float("nan")
+
+
+def read_rows(path):
+    """Rows of a CSV file of the program, as dictionaries of texts. Raises FileError if it cannot be read, and InputError
+    if it is no such file."""
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+    except OSError as error:
+        raise FileError(f'cannot read "{path}": {error.strerror or error}') from None
+    except (ValueError, csv.Error) as error:
+        raise InputError(f'"{path}" is no table of crawler ({error})') from None
 
 
 # Mistakes on a command line, in the words of argparse and in those of the program.

@@ -7,22 +7,17 @@ adds it to the files of the folder. A row is a dict of the texts in tradeoff.csv
 from the loosest tolerance on.
 """
 import collections
-import csv
 import json
 import math
 import pathlib
 import sys
 
 from . import to_prm
-from .needs import InputError, Parser, write_whole
+from . import needs
+from .needs import InputError, Parser, number, write_whole
 
 EXPONENTS = range(2, 15)  # exponents of the errors 1e-2, 1e-3, ... with recommendations
 OF_A_SETTING = ("model", "formulation", "mesh", "engine", "integrator", "degree", "cells", "mesh tolerance")  # and the tolerance
-
-
-def number(text):
-    """Converts a text to a number; NaN if it is unknown."""
-    return float(text) if text not in ("", None) else math.nan
 
 
 def pareto_front(costs, errors):
@@ -137,14 +132,12 @@ def recommendations_prm(rows):
 
 
 def read_rows(folder):
-    """Rows of tradeoff.csv. Raises InputError if the file is missing or of another version."""
+    """Rows of tradeoff.csv. Raises FileError if it cannot be read, and InputError if it is missing or of
+    another version."""
     path = folder / "tradeoff.csv"
-    try:
-        with open(path, newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
-    except (OSError, ValueError, csv.Error) as error:
-        raise InputError(f'cannot read "{path}" ({getattr(error, "strerror", None) or error}); the output folder of crawler '
-                         "tradeoff is expected") from None
+    if not path.exists():
+        raise InputError(f'"{path}" does not exist; the output folder of crawler tradeoff is expected')
+    rows = needs.read_rows(path)
     if not rows or "entries" not in rows[0]:
         raise InputError(f'"{path}" has no column "entries": it is from another version of crawler, or incomplete; the output folder of '
                          "crawler tradeoff is expected")

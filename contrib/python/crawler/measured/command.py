@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """crawler table: turns a file of measured samples into a table for the generators "table" and "prescribed strain"."""
-import csv
 import dataclasses
 import math
 import os
@@ -14,7 +13,7 @@ import tempfile
 import numpy as np
 
 from .. import to_prm
-from ..needs import FileError, InputError, Parser, write_whole
+from ..needs import FileError, InputError, Parser, read_rows, write_whole
 from ..results import parameters_of
 from .options import NUMBER, TEXT, WHOLE, add_options, add_reading_options, parts_of, reading_of
 from .preparation import prepare
@@ -158,9 +157,7 @@ def displacements(scene, overrides, entry, tables):
             problem = re.sub(r'^--set "Sweep/Axes=.*?": ', "", problem).replace(folder + os.sep, "")
             problem += f" (the new table goes from s = {tables[0].s[0]:g} to {tables[0].s[-1]:.10g}, t = {tables[0].t[0]:g} to {tables[0].t[-1]:.10g})"
             raise FileError(problem) if end.returncode == FileError.code else InputError(problem)
-        with open(os.path.join(output, "results.csv"), newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
-        return rows, parameters_of(pathlib.Path(output, "parameters.prm").read_text(encoding="utf-8"))
+        return read_rows(os.path.join(output, "results.csv")), parameters_of(pathlib.Path(output, "parameters.prm").read_text(encoding="utf-8"))
 
 
 def noisy_tables(samples, noise, options, settings, period):

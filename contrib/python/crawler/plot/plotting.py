@@ -3,7 +3,6 @@
 written. This file is no script itself; needs.py describes how scripts end.
 """
 import argparse
-import csv
 import io
 import json
 import pathlib
@@ -11,7 +10,7 @@ import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from needs import FileError, InputError, Parser, need, run_script, script, write_whole  # noqa: E402, F401
+from needs import FileError, InputError, Parser, need, number, read_rows, run_script, script, write_whole  # noqa: E402, F401
 
 # Colours of Okabe and Ito, safe for colour-blind readers, with a line and a marker each for grey print.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
@@ -74,20 +73,6 @@ def existing(path, what):
     if not path.is_file():
         raise InputError(f"{path} does not exist; {what} is expected")
     return path
-
-
-def number(text):
-    """Converts a text to a number; NaN if it is unknown."""
-    return float(text) if text not in ("", None) else float("nan")
-
-
-def read_rows(path):
-    """Rows of a CSV file, as dictionaries."""
-    try:
-        with open(path, newline="", encoding="utf-8") as file:
-            return list(csv.DictReader(file))
-    except (OSError, ValueError, csv.Error) as error:
-        raise InputError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from None
 
 
 def read_summary(folder, what):
