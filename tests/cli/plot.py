@@ -74,8 +74,8 @@ WORDS = [
     ("scaling", ["--kind", "scaling"], ["mass $M$ [g]", r"stride frequency $\nu$ [1/s]", "speed $U L$ [mm/s]"]),
     ("calibration.csv", [], ["true error / displacement $D$ [1]", "reported error / true error [1]"])]
 # The script of a folder or file; with --kind it is that one.
-SCRIPTS = {"run": "kymograph", "named": "kymograph", "no_stride": "kymograph", "sweep": "sweep", "checked": "sweep", "tradeoff": "tradeoff", "unreadable": "tradeoff",
-           "optimum": "optimize", "scaling": "sweep", "calibration.csv": "calibration"}
+SCRIPTS = {"run": "kymograph", "named": "kymograph", "no_stride": "kymograph", "sweep": "sweep", "checked": "sweep", "tradeoff": "tradeoff",
+           "unreadable": "tradeoff", "optimum": "optimize", "scaling": "sweep", "calibration.csv": "calibration"}
 # Arguments of crawler plot, exit code, what the one sentence has.
 REFUSED = [
     ([], 2, "the folder is missing"), (["nowhere"], 2, '"nowhere" is not a folder'),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Common parts of all commands and scripts in Python: required modules, command lines, and exit codes.
+"""Common parts of all commands and scripts in Python: required modules, command lines, tables, and exit codes.
 
 A script that fails prints the reason in one sentence and ends with 2 (bad input), 3 (no result could be computed), 5
 (stopped), 6 (a file that cannot be read or written) or 69 (no Python has the modules that it needs).

@@ -12,8 +12,7 @@ import math
 import pathlib
 import sys
 
-from . import to_prm
-from . import needs
+from . import needs, to_prm
 from .needs import InputError, Parser, number, write_whole
 
 EXPONENTS = range(2, 15)  # exponents of the errors 1e-2, 1e-3, ... with recommendations
@@ -132,8 +131,8 @@ def recommendations_prm(rows):
 
 
 def read_rows(folder):
-    """Rows of tradeoff.csv. Raises FileError if it cannot be read, and InputError if it is missing or of
-    another version."""
+    """Rows of tradeoff.csv. Raises FileError if it cannot be read, and InputError if it is missing or of another
+    version."""
     path = folder / "tradeoff.csv"
     if not path.exists():
         raise InputError(f'"{path}" does not exist; the output folder of crawler tradeoff is expected')
