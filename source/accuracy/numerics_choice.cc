@@ -56,7 +56,7 @@ namespace crawler
         pilot_time_.step_control = StepControl::adaptive;
         pilot_time_.petsc_prefix = "pilot_"; // options after "--" are for the real run
         pilot_time_.max_steps    = std::min(pilot_time_.max_steps, max_pilot_steps);
-        tolerance_               = std::max(1e-3 * scale_, smallest());
+        tolerance_               = std::max(1e-3 * scale_, negligible_displacement());
         cycles_                  = cycle_wish(parameters, scene, /*has_pictures=*/false);
         if (cycles_)
           cycles_->accuracy = std::max(accuracy_, pilot_accuracy);
@@ -128,7 +128,7 @@ namespace crawler
     private:
       /// Displacements below this count as zero: their squares underflow.
       double
-      smallest() const
+      negligible_displacement() const
       {
         return 1e-25 * L_;
       }
@@ -142,9 +142,10 @@ namespace crawler
           simulation.run({}, {.energy_balance = false, .resolution = resolution, .cycles = cycles_}, {}, keep_going_);
         if (result.time.status == Status::stopped && result.time.reason.empty())
           throw Interrupted();
-        // Displacements that are 0 whatever the numerics are tell nothing about them; the deformation does.
+        // Displacements that are 0 whatever the numerics are tell nothing about them; the deformation at the end does,
+        // while the largest one depends on where steps end.
         if (scene_.keeps_its_centre())
-          result.displacement = result.largest_u;
+          result.displacement = result.last_u;
         return result;
       }
 
@@ -187,7 +188,8 @@ namespace crawler
       measure_size()
       {
         const bool finished = pilot_.time.status == Status::finished;
-        size_ = std::max(finished ? std::abs(pilot_.displacement) : 0., displacement_floor * pilot_.largest_u);
+        const double part   = scene_.keeps_its_centre() ? 1. : displacement_floor;
+        size_               = std::max(finished ? std::abs(pilot_.displacement) : 0., part * pilot_.largest_u);
         if (size_ > 0.)
           size_ = std::max(size_, min_size());
       }
@@ -635,7 +637,7 @@ namespace crawler
         const double wanted = accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
         return std::max(superconvergence() * std::min(std::pow(wanted, 1. / (1. - r)), tolerance_),
                         std::max({(kinks_move() ? min_tolerance_if_kinks : min_tolerance) * scale_,
-                                  smallest(),
+                                  negligible_displacement(),
                                   inverts_at_end_ ? 0.1 * accuracy_ * tolerance_ : 0.})); // the size is not known then
       }
 
@@ -683,7 +685,7 @@ namespace crawler
                                               counted(n_pilots_, "pilot run"),
                                               seconds,
                                               scene_.keeps_its_centre() ? "deformation" : "displacement",
-                                              pilot_.displacement)
+                                              scene_.keeps_its_centre() ? size_ : pilot_.displacement)
                                      : fmt::format("for Accuracy {:g}: {}the last of {}, with {} cells, ended early: {}",
                                               accuracy_,
                                               kind,

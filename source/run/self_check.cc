@@ -15,15 +15,31 @@ namespace crawler
 {
   using namespace accuracy_rule::identities;
 
+  namespace
+  {
+    /// True if the integration in time is the user's own, whose errors do not follow Accuracy.
+    bool
+    has_own_steps(const RunParameters &parameters)
+    {
+      return parameters.time.tolerance ||
+             (parameters.time.integrator != "automatic" && parameters.time.integrator != "bdf") ||
+             parameters.time.order < 4 || parameters.time.step_control == StepControl::fixed;
+    }
+
+    double
+    net_friction_tolerance(const RunParameters &parameters)
+    {
+      return has_own_steps(parameters) ? net_friction_of_users
+                                       : std::max(min_net_friction, net_friction_of_accuracy * parameters.accuracy);
+    }
+  } // namespace
+
   double
   energy_balance_tolerance(const SimulationResult &result, const RunParameters &parameters)
   {
-    const bool own_numerics = parameters.time.tolerance ||
-                              (parameters.time.integrator != "automatic" && parameters.time.integrator != "bdf") ||
-                              parameters.time.order < 4 || parameters.time.step_control == StepControl::fixed;
     return parameters.output.energy_balance_tolerance.value_or(
       result.jumps_move ? residual_of_moving_jumps
-      : own_numerics
+      : has_own_steps(parameters)
         ? residual_of_users
         : std::max(min_residual,
                    (result.formulation == Formulation::stretch ? of_accuracy_in_stretch_form : of_accuracy) *
@@ -133,13 +149,13 @@ namespace crawler
                     result.energy_balance->residual(),
                     tolerance);
     }
-    else if (result.net_friction > net_friction)
+    else if (const double most = net_friction_tolerance(parameters); result.net_friction > most)
     {
       result.time.reason = "net_friction";
       result.time.message =
         fmt::format("the friction forces do not balance: {:.3g} of their sum is left over, above {:.3g}",
                     result.net_friction,
-                    net_friction);
+                    most);
     }
     else
     {

@@ -106,7 +106,8 @@ namespace crawler
   Simulation::look_at_resolution(const Step &step, const std::span<const double> y)
   {
     SimulationResult &result = this->result();
-    result.largest_u         = std::max(result.largest_u, mesh_.assembler->root_mean_square(y));
+    result.last_u            = mesh_.assembler->root_mean_square(y);
+    result.largest_u         = std::max(result.largest_u, result.last_u);
     if (mesh_.stretch != nullptr || run_->options.resolution != ResolutionWish::all)
       return;
     if (!is_adaptive() && mesh_.velocity->compute(step.time, step.size, y, v_))

@@ -182,7 +182,7 @@ namespace crawler
       lines.push_back(
         fmt::format("  dissipation       {:.10g}{}", result.energy_balance->dissipation, units.behind("force length")));
       lines.push_back(fmt::format(
-        "  ledger residual   {:.2e} (relative), net friction {}",
+        "  energy residual   {:.2e} (relative), net friction {}",
         result.energy_balance->residual(),
         std::isfinite(result.net_friction) ? fmt::format("{:.2e} (relative)", result.net_friction) : "unknown"));
     }
@@ -199,13 +199,13 @@ namespace crawler
                   result.max_stretch.t));
     add_gait_lines(result, units, lines);
     if (result.gait_efficiency)
-      lines.push_back(fmt::format(
-        "  efficiency        reaches {:.3g} % of the most that any gait with this {} and these strains can{}",
-        100. * *result.gait_efficiency,
-        starts_from_rest(*result.energy_balance) ? "work" : "dissipation",
-        result.gait && result.gait->efficiency && result.gait->n_strides > 1.
-          ? fmt::format("; the last stride {:.3g} % with its dissipation", 100. * *result.gait->efficiency)
-          : ""));
+      lines.push_back(
+        fmt::format("  efficiency        {:.3g} % of the upper bound for this {} and these strains{}",
+                    100. * *result.gait_efficiency,
+                    starts_from_rest(*result.energy_balance) ? "work" : "dissipation",
+                    result.gait && result.gait->efficiency && result.gait->n_strides > 1.
+                      ? fmt::format("; the last stride {:.3g} % with its dissipation", 100. * *result.gait->efficiency)
+                      : ""));
     add_sensitivity_lines(result, lines);
     return lines;
   }

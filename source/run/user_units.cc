@@ -14,7 +14,8 @@ namespace crawler
     };
     result.time.time = result.time.status == Status::finished ? scene.end_time : result.time.time * units.time;
     result.time.step_size *= units.time;
-    for (double *length : {&result.displacement, &result.largest_u, &result.strain, &result.largest_indicator})
+    for (double *length :
+         {&result.displacement, &result.largest_u, &result.last_u, &result.strain, &result.largest_indicator})
       *length *= units.length;
     if (result.error)
       for (double *part : {&result.error->total, &result.error->space, &result.error->time, &result.error->model})

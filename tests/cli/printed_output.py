@@ -29,7 +29,7 @@ NUMBER = re.compile(r"(?<![\w.])[-+]?\d+\.?\d*(?:e[-+]?\d+)?(?![\w])")
 TIMES = re.compile(r"[\d.]+(?:e[-+]\d+)? (s|ms|points/s)(?![\w])")
 # How lines of output begin; all others of the guide are commands, files or code.
 BEGINNINGS = ("Body L", "Active stress:", "Optimal wave:", "Model ", "Mesh:", "(for Accuracy", "Output:", "Finished at",
-              "displacement  ", "corrected  ", "stress work  ", "dissipation  ", "ledger residual", "stretch  ", "stride  ", "wave  ",
+              "displacement  ", "corrected  ", "stress work  ", "dissipation  ", "energy residual", "stretch  ", "stride  ", "wave  ",
               "cost of transport", "efficiency  ", "Results are in", "Sweep:", "18 points", "crawler: ", "worm.prm is")
 PROGRESS = re.compile(r"\d+ %  t = ")
 

@@ -192,3 +192,28 @@ TEST(SuddenStretch, EnergiesOfTheLinearLevel)
     EXPECT_NEAR(energies.dissipation, work - elastic, tolerance) << accuracy;
   }
 }
+
+/// Pulses that begin within a body that does not move: its deformation chooses the numerics, with few steps also for a
+/// small Accuracy, whatever is left of it at the end. True works are those of the linear level at 1e-9.
+TEST(SuddenStretch, DeformationsOfABodyAtRestNeedFewSteps)
+{
+  for (const char *const stress : {"0.016*exp(-((s-0.58-1.7*t)/0.3)^2)", "0.03*exp(-20*t)", "0.06*sin(6*s+13*t*t)"})
+  {
+    const test::Settings settings =
+      test::with(test::set("p = 1; k = 0.08; T = 3; expression"), {{"Active stress/Expression/Active stress", stress}});
+    const SimulationResult exact = answer_to(test::with(settings, {{"Model", "linear"}, {"Accuracy", "1e-9"}}));
+    for (const char *const accuracy : {"1e-5", "1e-7"})
+    {
+      const SimulationResult result = answer_to(test::with(settings, {{"Accuracy", accuracy}}));
+      ASSERT_EQ(result.time.status, Status::finished) << stress << ": " << result.time.message;
+      EXPECT_LT(result.time.steps, 500u) << stress;
+      EXPECT_NEAR(result.energy_balance->stress_work,
+                  exact.energy_balance->stress_work,
+                  error_bound(result, "stress_power").value())
+        << stress;
+      EXPECT_LT(error_bound(result, "stress_power").value(),
+                100. * std::stod(accuracy) * exact.energy_balance->stress_work)
+        << stress;
+    }
+  }
+}

@@ -294,7 +294,7 @@ namespace crawler::accuracy_rule
     inline constexpr double of_accuracy = 10., of_accuracy_in_stretch_form = 300., min_residual = 1e-8;
     /// Energy residuals with the user's numerics; for moving jumps; above which stretch-form works are unknown.
     inline constexpr double residual_of_users = 0.1, residual_of_moving_jumps = 0.2, residual_of_known_works = 0.1;
-    /// Net friction, relative to the absolute one.
-    inline constexpr double net_friction = 1e-6;
+    /// Net friction, relative to the absolute one: at least; in units of Accuracy; with the user's own steps.
+    inline constexpr double min_net_friction = 1e-6, net_friction_of_accuracy = 0.1, net_friction_of_users = 1e-3;
   } // namespace identities
 } // namespace crawler::accuracy_rule

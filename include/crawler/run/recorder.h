@@ -31,7 +31,7 @@ namespace crawler
   enum class ResolutionWish
   {
     none,
-    size, ///< SimulationResult::largest_u
+    size, ///< SimulationResult::largest_u and last_u
     all   ///< and SimulationResult::unresolved, strain and largest_indicator, which cost as much as a short step
   };
 

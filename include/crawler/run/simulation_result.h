@@ -75,6 +75,7 @@ namespace crawler
     std::optional<double>
     standard_deviation(const std::string &key) const;
     double largest_u  = 0.; ///< root mean square of u over the body, largest over time [length]
+    double last_u     = 0.; ///< root mean square of u over the body, of the last state [length]
     double unresolved = 0.; ///< Resolution: largest highest_mode over largest strain, if computed
     double strain     = 0.; ///< largest int (w - 1)^2 ds over time, if the resolution is computed [length]
     std::optional<EnergyBalance> energy_balance;

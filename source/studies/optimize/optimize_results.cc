@@ -166,11 +166,10 @@ namespace crawler
         const double efficiency =
           number_at(Json::parse(summaries[i]), is_stride ? "/gait/stride_efficiency" : "/gait/efficiency");
         if (std::isfinite(efficiency))
-          lines.push_back(
-            fmt::format("  reaches {:.0f} % of the most that any gait with this {} and these strains can{}",
-                        100. * efficiency,
-                        is_stride ? "dissipation" : "work",
-                        is_stride ? ", in the last stride" : ""));
+          lines.push_back(fmt::format("  efficiency {:.0f} % of the upper bound for this {} and these strains{}",
+                                      100. * efficiency,
+                                      is_stride ? "dissipation" : "work",
+                                      is_stride ? ", in the last stride" : ""));
         const double stretch = number_at(Json::parse(summaries[i]), "/min_stretch/value");
         const bool has_own = std::ranges::find(start.limits, "Smallest strain", &GaitLimit::name) != start.limits.end();
         if (stretch < near_inversion && !has_own)

@@ -279,7 +279,7 @@ namespace crawler
       }
 
       bool
-      nothing_moves_the_body() const
+      is_unforced() const
       {
         const Scene scene = family_.parameters(result_.best.x).create_scene();
         return scene.is_plain() && scene.body.friction_exponent() == 0.;
@@ -294,7 +294,7 @@ namespace crawler
         {
           result_.has_converged = false;
           result_.message =
-            nothing_moves_the_body()
+            is_unforced()
               ? "friction does not depend on the stretch here (Anchoring exponent 1), so that no gait moves the body"
               : "the gait that was found does not move the body in the wanted direction; another start is needed";
         }
