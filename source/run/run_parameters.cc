@@ -177,6 +177,7 @@ namespace crawler
       scene.body.anchoring_exponent = 1. - scene.friction->exponent(1.);
     scene.active_stress = create_active_stress(active_stress, scene);
     require_computable_stress(scene);
+    require_well_posed_feedback(scene);
     require_table_fits(output.active_stress_table, *scene.active_stress);
     require_segment_table_fits(output.segment_table, *scene.active_stress);
     if (!scene.is_plain())

@@ -92,6 +92,11 @@ namespace crawler
   void
   require_computable_stress(const Scene &scene);
 
+  /// Throws InputError if at t = 0 a feedback makes the equation ill-posed: k + dm/dw or dm/dw_t is negative, so that
+  /// the finest scales grow without bound. Feedback that does so only later, or on one side of a kink, is not found.
+  void
+  require_well_posed_feedback(const Scene &scene);
+
   /// The problem in other units. It refers to @p scene, which must outlive it. If @p pieces are given, which must
   /// outlive it too, the active stress is that of the piece that is present at its evaluation.
   Scene

@@ -165,6 +165,19 @@ TEST(GeneralInput, IsCheckedInOneSentence)
   expect_message(feedback("w_delayed"), section + "Delay", "at least");
   expect_message(feedback("log(w-1)"), section + "Active stress", "finite number is expected");
   EXPECT_EQ(test::complaint(feedback("w_t*(w-1)")), "nothing");
+  // Ill-posed: k + dm/dw < 0 without a viscosity, or a negative viscosity, at the initial state.
+  const std::string generator = "Active stress/Generator";
+  expect_message(feedback("-1.01*(w-1)"), generator, "with respect to w is -1.01, but -k, -1, or more");
+  expect_message(feedback("-0.1*w_t"), generator, "with respect to w_t is -0.1, but 0 or a positive number");
+  for (const char *well_posed : {"-0.99*(w-1)", "-2*(w-1)+0.1*w_t", "-2*max(0,w-1)", "-2*(w-1)*t", "-0.1*w_t*abs(w_t)"})
+    EXPECT_EQ(test::complaint(feedback(well_posed)), "nothing") << well_posed;
+  auto uneven = feedback("-0.5*(w-1)");
+  uneven.push_back({"Body/Elastic modulus profile", "1-0.6*s"});
+  expect_message(uneven, generator, "with respect to w is -0.5, but -k, -0.4");
+  auto stretched = feedback("-0.6*(w-1)^2");
+  EXPECT_EQ(test::complaint(stretched), "nothing");
+  stretched.push_back({"Body/Initial stretch", "2"});
+  expect_message(stretched, generator, "with respect to w is -1.2, but -k, -1");
   const auto sensor = [&](const std::string &length) {
     auto settings = feedback("w_near");
     settings.push_back({section + "Sensor length", length});
