@@ -11,7 +11,7 @@ set(CRAWLER_READING "$<$<CONFIG:Release>:-Og;-fno-unroll-loops;-fno-unroll-all-l
 # Sources of one room are compiled some at a time, which takes half the time; those with options of their own stay alone,
 # and so do those whose names for inner things are those of their neighbours.
 function(crawler_compile_together)
-  set(alone accuracy/graded_choice accuracy/mesh_family accuracy/moving_fronts accuracy/numerics_choice
+  set(alone accuracy/choose_numerics accuracy/graded_choice accuracy/mesh_family accuracy/moving_fronts
     accuracy/shared_choice adjoint/run_gradient)
   set(together 8)
   foreach(source ${ARGN})

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/graded_choice.h>
+#include <crawler/accuracy/mesh_choices.h>
 #include <crawler/run/accuracy_rule.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@ namespace crawler
   namespace
   {
     using namespace accuracy_rule::graded;
+    namespace rule = accuracy_rule::choice;
 
     /// Size of the smallest cell, relative to the length.
     double
@@ -31,34 +33,49 @@ namespace crawler
       return {static_cast<unsigned int>(std::ceil(levels)), fine_ratio};
     }
 
+    /// Thickness, relative to the length, of the layer in which velocities after a sudden stress, which fall with time
+    /// to the power -1/2, are above the one at which friction switches its direction. No refinement shows this layer to
+    /// a mesh that is much coarser.
+    double
+    fast_layer(const Pilots &pilots)
+    {
+      const auto &direction = pilots.scene.ground.direction;
+      const Body &body      = pilots.scene.body;
+      return direction.is_uneven() ? pilots.scales.sudden * pilots.scales.stress /
+                                       (body.friction_coefficient * direction.switching_velocity * body.length)
+                                   : 0.;
+    }
+
     class Search
     {
     public:
-      explicit Search(const GradedTask &task)
-        : task_(task)
-        , now_(task.start)
-        , n_pieces_(static_cast<unsigned int>(task.scene.breaks_in_space().size()) + 1)
+      Search(Pilots &pilots, const Numerics &start)
+        : pilots_(pilots)
+        , now_(start)
+        , n_pieces_(static_cast<unsigned int>(pilots.scene.breaks_in_space().size()) + 1)
       {
       }
 
-      std::optional<GradedChoice>
-      find()
+      std::optional<double>
+      find(NumericsChoice &choice)
       {
-        now_.grading = {0, coarse_ratio};
+        const double layer           = fast_layer(pilots_);
+        const bool chooses_tolerance = !pilots_.parameters.time.tolerance;
+        now_.grading                 = {0, coarse_ratio};
         now_.n_cells = std::max(now_.n_cells, min_graded_cells(n_pieces_ - 1, now_.grading)); // fewer are the same mesh
-        while (smallest_size(task_.scene, now_) > std::max(task_.layer, smallest_layer) && task_.layer > 0.)
+        while (layer > 0. && smallest_size(pilots_.scene, now_) > std::max(layer, smallest_layer))
           ++now_.grading.levels;
-        if (task_.choose_tolerance)
-          now_.tolerance = 1e-3 * task_.scale;
+        if (chooses_tolerance)
+          now_.tolerance = 1e-3 * pilots_.scale;
         // Coarse meshes or steps can lose a stretch that is not lost.
-        double largest = 1e-2 * task_.scale; // tolerance
+        double largest = 1e-2 * pilots_.scale; // tolerance
         for (unsigned int beginnings = 1; !run(now_, result_); ++beginnings)
         {
           if (beginnings == max_beginnings)
             return std::nullopt;
           possible_ = true;
           now_.n_cells *= 2;
-          if (task_.choose_tolerance)
+          if (chooses_tolerance)
             largest = now_.tolerance *= finer_tolerance;
         }
         // Tolerance relative to a size that the runs tell.
@@ -69,12 +86,12 @@ namespace crawler
             return std::nullopt;
           if (std::abs(wanted_ - before) < same_size * wanted_)
             break;
-          if (task_.choose_tolerance)
-            now_.tolerance = std::min(largest, task_.tolerance_factor * wanted_);
+          if (chooses_tolerance)
+            now_.tolerance = std::min(largest, first_tolerance() * wanted_);
           if (!run(now_, result_))
             return std::nullopt;
         }
-        if (task_.choose_tolerance)
+        if (chooses_tolerance)
           refine(time_change_, [](Numerics &n) { n.tolerance *= finer_tolerance; });
         const auto one_more_level   = [](Numerics &n) { ++n.grading.levels; };
         const auto with_finer_ratio = [](Numerics &n) { n.grading = finer(n.grading); };
@@ -83,7 +100,7 @@ namespace crawler
         };
         bool again               = true;
         const auto is_ratio_fine = [this]() {
-          return task_.accuracy >= coarse_ratio_is_enough || now_.grading.ratio > fine_ratio * 0.99;
+          return pilots_.parameters.accuracy >= coarse_ratio_is_enough || now_.grading.ratio > fine_ratio * 0.99;
         };
         do
         {
@@ -102,18 +119,28 @@ namespace crawler
         } while (again && possible_);
         if (!possible_)
           return std::nullopt;
-        return GradedChoice{first_step(now_),
-                            result_,
-                            std::max(space_change_, 1e-3 * wanted_) / std::max(time_change_, 1e-3 * wanted_),
-                            rest_};
+        choice.numerics  = first_step(now_);
+        choice.min_error = rest_;
+        pilots_.count(result_);
+        return std::max(space_change_, 1e-3 * wanted_) / std::max(time_change_, 1e-3 * wanted_);
       }
 
     private:
+      /// First time tolerance, relative to the wanted error.
+      double
+      first_tolerance() const
+      {
+        const std::string &name = pilots_.integrator(now_);
+        return name == "radau 9"   ? rule::graded_radau_9
+               : name == "radau 5" ? rule::graded_radau_5
+                                   : rule::graded_others;
+      }
+
       Numerics
       first_step(Numerics numerics) const
       {
-        if (task_.choose_first_step)
-          numerics.initial_step = first_step_on_graded_mesh(task_.scene, numerics);
+        if (!pilots_.parameters.time.initial_step)
+          numerics.initial_step = first_step_on_graded_mesh(pilots_.scene, numerics);
         return numerics;
       }
 
@@ -122,11 +149,11 @@ namespace crawler
       {
         const unsigned int many = std::max(max_cells, max_cells_of_piece * n_pieces_);
         is_too_fine_ = numerics.n_cells > (result_.time.steps * many > max_work ? many : cheap_mesh_factor * many);
-        possible_ =
-          possible_ && ++n_runs_ <= max_runs && !is_too_fine_ && smallest_size(task_.scene, numerics) >= smallest_cell;
+        possible_    = possible_ && ++n_runs_ <= max_runs && !is_too_fine_ &&
+                    smallest_size(pilots_.scene, numerics) >= smallest_cell;
         if (!possible_)
           return false;
-        result    = task_.run(first_step(numerics));
+        result    = pilots_.run(first_step(numerics), ResolutionWish::size);
         possible_ = result.time.status == Status::finished && result.min_stretch.value > emptied;
         return possible_;
       }
@@ -171,7 +198,8 @@ namespace crawler
       bool
       measure()
       {
-        wanted_ = task_.accuracy * task_.size(result_);
+        pilots_.count(result_);
+        wanted_ = pilots_.parameters.accuracy * pilots_.size;
         return wanted_ > 0.;
       }
 
@@ -199,7 +227,7 @@ namespace crawler
         } while (measure() && change > gain_of_level() * part * wanted_);
       }
 
-      const GradedTask &task_;
+      Pilots &pilots_;
       Numerics now_;
       const unsigned int n_pieces_; ///< number of pieces of the body, between breaks
       SimulationResult result_;
@@ -231,9 +259,26 @@ namespace crawler
     return result;
   }
 
-  std::optional<GradedChoice>
-  find_graded_mesh(const GradedTask &task)
+  std::optional<double>
+  choose_graded_mesh(Pilots &pilots, NumericsChoice &choice)
   {
-    return Search(task).find();
+    const double accuracy = pilots.parameters.accuracy;
+    Numerics start        = choice.numerics;
+    start.degree          = pilots.parameters.discretization.degree.value_or(
+      accuracy < rule::accurate_graded ? rule::accurate_graded_degree : rule::graded_degree);
+    start.n_cells = static_cast<unsigned int>(std::clamp(
+      std::ceil(0.25 * pilots.scene.body.length / pilots.scales.length), 1. * rule::min_cells, 1. * rule::max_cells));
+    // Pieces between breaks have a cell at least.
+    start.n_cells     = std::max(start.n_cells, static_cast<unsigned int>(pilots.scales.in_space) + 1);
+    start.integrator  = accuracy < rule::radau_9_accuracy_if_graded ? "radau 9" : "radau 5";
+    start.tolerance   = pilots.parameters.time.tolerance.value_or(0.);
+    const auto cycles = pilots.cycles;
+    if (pilots.cycles)
+      pilots.cycles->accuracy = accuracy; // the displacements are compared here
+    const auto space_over_time = Search(pilots, start).find(choice);
+    pilots.cycles              = cycles;
+    if (!space_over_time)
+      pilots.size = 0.;
+    return space_over_time;
   }
 } // namespace crawler

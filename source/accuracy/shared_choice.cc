@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/choose_numerics.h>
 #include <crawler/accuracy/shared_choice.h>
 #include <crawler/accuracy/stress_scales.h>
 #include <crawler/run/accuracy_rule.h>

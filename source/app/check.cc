@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/accuracy/numerics_choice.h>
+#include <crawler/accuracy/choose_numerics.h>
 #include <crawler/app/check.h>
 #include <crawler/base/communication.h>
 #include <crawler/run/simulation.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/accuracy/numerics_choice.h>
+#include <crawler/accuracy/choose_numerics.h>
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/run/simulation.h>

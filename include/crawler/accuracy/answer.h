@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/accuracy/numerics_choice.h>
+#include <crawler/run/simulation_result.h>
 
 namespace crawler
 {

@@ -3,6 +3,8 @@
 
 #include <crawler/accuracy/numerics_choice.h>
 #include <crawler/run/displacement_error.h>
+#include <crawler/run/run_parameters.h>
+#include <crawler/run/simulation.h>
 
 #include <functional>
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/accuracy/answer.h>
+#include <crawler/run/run_parameters.h>
 
 #include <functional>
 

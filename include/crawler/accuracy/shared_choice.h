@@ -2,6 +2,8 @@
 #pragma once
 
 #include <crawler/accuracy/numerics_choice.h>
+#include <crawler/run/run_parameters.h>
+#include <crawler/run/simulation.h>
 
 #include <functional>
 #include <optional>

@@ -13,7 +13,7 @@ namespace crawler::accuracy_rule
   /// Floor of the displacement for relative errors, as a part of the body's largest deformation [1].
   inline constexpr double displacement_floor = 1e-4;
 
-  // Choice of degree, cells and tolerance (numerics_choice.cc; doc/numerics.md, sections on the choice). Measured by
+  // Choice of degree, cells and tolerance (mesh_choices.h; doc/numerics.md, sections on the choice). Measured by
   // tests/verification/calibration.cc and tests/benchmark/setting_search.cc.
   namespace choice
   {

@@ -12,7 +12,7 @@
 
 namespace crawler
 {
-  /// Numerical settings of one simulation; numerics_choice.h chooses those that the user leaves open.
+  /// Numerical settings of one simulation; choose_numerics() chooses those that the user leaves open.
   struct Numerics
   {
     unsigned int degree                = 0;

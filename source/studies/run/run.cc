@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/choose_numerics.h>
 #include <crawler/accuracy/model_choice.h>
-#include <crawler/accuracy/numerics_choice.h>
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/accuracy/swept_error.h>
 #include <crawler/base/clock.h>

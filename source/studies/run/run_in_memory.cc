@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/choose_numerics.h>
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/accuracy/swept_error.h>
 #include <crawler/base/clock.h>

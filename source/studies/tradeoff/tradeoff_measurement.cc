@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/accuracy/numerics_choice.h>
+#include <crawler/accuracy/choose_numerics.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/run/batch.h>

@@ -21,7 +21,7 @@ namespace crawler
   {
     using Texts = std::vector<std::string>;
 
-    /// First steps, relative to the duration, as in numerics_choice.cc.
+    /// First steps, relative to the duration, as in choose_numerics.cc.
     constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
 
     /// Largest Accuracy, and the largest number in the list Cells.

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/accuracy/stress_scales.h>
+#include <crawler/run/run_parameters.h>
+#include <crawler/run/simulation.h>
+
+#include <optional>
+#include <string>
+
+namespace crawler
+{
+  /// Exception for a stop that was requested during the pilots.
+  struct PilotsInterrupted
+  {
+  };
+
+  /// Pilot runs of a scene, coarse and with loose tolerances, and what the last one that counts has measured.
+  struct Pilots
+  {
+    Pilots(MPI_Comm communicator, const RunParameters &parameters, const Scene &scene, const KeepGoing &keep_going);
+
+    /// Runs the scene (collective). Throws PilotsInterrupted.
+    SimulationResult
+    run(const Numerics &numerics, ResolutionWish resolution);
+
+    /// Runs the scene with these cells, this part of the present tolerance and the automatic first step; other settings
+    /// are those of @p numerics.
+    SimulationResult
+    run(Numerics numerics, unsigned int degree, unsigned int n_cells, ResolutionWish resolution, double part = 1.);
+
+    /// Lets a run count: measures the size of the displacement, to which Accuracy is relative.
+    void
+    count(const SimulationResult &result);
+
+    bool
+    finished() const
+    {
+      return last.time.status == Status::finished;
+    }
+
+    /// Number of steps of the last pilot to the end, whether it went there or its cycles were extrapolated.
+    double
+    steps_to_the_end() const;
+
+    /// Stiffness k T/(gamma L^2).
+    double
+    stiffness() const;
+
+    /// Stiffness k T/(g L^2) for the largest friction g of the last pilot, which determines thin layers.
+    double
+    stiffness_over_friction() const;
+
+    /// True if the user's settings leave the form open and the last pilot came near an emptied state.
+    bool
+    is_for_stretch() const;
+
+    /// Smallest size of a displacement whose wanted error is round-off.
+    double
+    min_size() const;
+
+    /// Displacements below this count as zero: their squares underflow.
+    double
+    negligible_displacement() const
+    {
+      return 1e-25 * scene.body.length;
+    }
+
+    /// The user's integrator, or that of @p numerics; empty if that is not known yet.
+    const std::string &
+    integrator(const Numerics &numerics) const;
+
+    /// The automatic size of the first step.
+    double
+    first_step(const Numerics &numerics) const;
+
+    const MPI_Comm communicator;
+    const KeepGoing &keep_going;
+    const RunParameters &parameters;
+    const Scene &scene;
+    const StressScales scales;
+    const double scale; ///< expected size of the displacement [length]
+    TimeParameters time;
+    std::optional<CycleWish> cycles;
+    double tolerance;              ///< of the next pilot in time [length]
+    SimulationResult last = {};    ///< last run that counts
+    double size           = 0.;    ///< size of its displacement; 0 if that is not known [length]
+    unsigned int n        = 0;     ///< number of runs
+    bool inverts_at_end   = false; ///< an end inverts at the same time in the last two
+  };
+} // namespace crawler

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/choose_numerics.h>
+#include <crawler/accuracy/form_choice.h>
+#include <crawler/accuracy/mesh_choices.h>
+#include <crawler/base/clock.h>
+#include <crawler/base/plain_numbers.h>
+#include <crawler/run/accuracy_rule.h>
+#include <crawler/scene/moving_jumps.h>
+#include <crawler/time/integrators.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace crawler
+{
+  namespace
+  {
+    using namespace accuracy_rule::choice;
+    using accuracy_rule::displacement_floor;
+
+    /// Chooser of the numerics: of the kind of mesh (mesh_choices.h), then of the time steps.
+    class Chooser
+    {
+    public:
+      Chooser(MPI_Comm communicator, const RunParameters &parameters, const Scene &scene, const KeepGoing &keep_going)
+        : pilots_(communicator, parameters, scene, keep_going)
+        , own_(parameters.discretization)
+        , time_(parameters.time)
+        , accuracy_(parameters.accuracy)
+        , has_own_steps_(parameters.time.tolerance || parameters.time.step_control == StepControl::fixed)
+      {
+        Numerics &n      = choice_.numerics;
+        n.degree         = own_.degree.value_or(automatic_degree);
+        n.initial_step   = time_.initial_step.value_or(multistep_start * scene.end_time);
+        n.step_limits    = pilots_.scales.step_limits;
+        n.min_event      = pilots_.scales.jumps_move ? 0. : min_event * pilots_.scales.stress;
+        choice_.is_rough = !pilots_.scales.is_smooth;
+      }
+
+      NumericsChoice
+      choose()
+      {
+        const Scene &scene = pilots_.scene;
+        choice_.is_users   = own_.n_cells || has_own_steps_ || own_.mesh_tolerance;
+        if (own_.formulation != FormulationEntry::stretch && own_.n_cells && has_own_steps_ &&
+            own_.mesh != MeshKind::adaptive)
+        {
+          choice_.numerics.n_cells   = *own_.n_cells;
+          choice_.numerics.tolerance = time_.tolerance.value_or(1e-10 * scene.body.length); // of Newton's method only
+          choice_.explanation        = "cells and time steps as set by the user";
+          return choice_;
+        }
+        const bool may_be_fronts = own_.mesh == MeshKind::automatic && pilots_.scales.jumps_move &&
+                                   own_.formulation != FormulationEntry::stretch && !own_.n_cells && !has_own_steps_;
+        if (may_be_fronts && with_fronts(scene, 1.))
+          choose_fronts();
+        else if (may_be_fronts)
+        {
+          choose_mesh_for_moving_jumps(pilots_, choice_);
+          choose_steps();
+        }
+        else if (choose_mesh())
+          choose_steps();
+        else
+          choose_stretch_form(pilots_, choice_);
+        return choice_;
+      }
+
+    private:
+      /// Chooses a mesh of the position form; returns false if the stretch form is better.
+      bool
+      choose_mesh()
+      {
+        const Scene &scene      = pilots_.scene;
+        const bool is_automatic = own_.mesh == MeshKind::automatic;
+        if (own_.formulation == FormulationEntry::stretch)
+          return false;
+        if (is_automatic && starts_or_jumps())
+          if (const auto ratio = choose_graded_mesh(pilots_, choice_))
+          {
+            space_over_time_ = *ratio;
+            return true;
+          }
+        const bool may_be_stretch = may_be_stretch_form(pilots_.parameters, scene);
+        if (may_be_stretch && is_soft(pilots_.stiffness(), scene.friction_exponent(), accuracy_))
+          return false;
+        // Solutions unresolved by few cells are steep, not fine, if the active stress is smooth: fronts of friction.
+        const bool may_be_steep = may_be_stretch && scene.friction_exponent() < 0. &&
+                                  is_cheaper_than_many_cells(scene.body.length / pilots_.scales.length, accuracy_);
+        bool enough = false;
+        if (own_.mesh != MeshKind::adaptive)
+        {
+          const bool only_uniform = own_.mesh == MeshKind::uniform || own_.n_cells || scene.keeps_its_centre();
+          const auto ratio =
+            choose_uniform_mesh(pilots_, choice_, only_uniform ? max_cells : max_uniform_cells, may_be_steep);
+          enough           = ratio.has_value();
+          space_over_time_ = ratio.value_or(1.);
+        }
+        if (!enough && may_be_steep && pilots_.last.time.reason != "inverted_at_end")
+          return false;
+        if (own_.mesh == MeshKind::adaptive || (is_automatic && !enough && !pilots_.is_for_stretch() && !own_.n_cells))
+          choose_adaptive_mesh(pilots_, choice_);
+        return !pilots_.is_for_stretch();
+      }
+
+      /// True if the active stress makes layers suddenly, and a graded mesh may be chosen for that.
+      bool
+      starts_or_jumps() const
+      {
+        const StressScales &scales = pilots_.scales;
+        const double sudden        = sudden_part * std::sqrt(accuracy_);
+        return scales.sudden > sudden && scales.in_space <= max_graded_places &&
+               (scales.sudden_later > sudden || scales.in_time <= max_gentle_breaks) && !own_.n_cells &&
+               time_.step_control == StepControl::adaptive && !own_.mesh_tolerance;
+      }
+
+      /// Chooses fronts for moving jumps that are known to be waves, each with numerics of its own (moving_fronts.h).
+      /// The numerics set here are those of a first run.
+      void
+      choose_fronts()
+      {
+        Numerics &n         = choice_.numerics;
+        n.degree            = own_.degree.value_or(moving_degree);
+        n.n_cells           = first_moving_cells;
+        n.integrator        = "radau 5";
+        n.tolerance         = moving_tolerance * pilots_.scale / n.n_cells;
+        n.jumps_move        = true;
+        choice_.has_fronts  = true;
+        choice_.explanation = fmt::format("for Accuracy {:g}: jumps that move, by ever steeper fronts", accuracy_);
+      }
+
+      /// Order of the error estimate of the run, on which the growth of its number of steps depends.
+      unsigned int
+      estimated_order() const
+      {
+        const std::string &name  = pilots_.integrator(choice_.numerics);
+        const Integrator &method = integrator(name.empty() ? "automatic" : name);
+        return method.petsc_type == "radau" ? method.n_stages : time_.order;
+      }
+
+      /// True where the friction switches its direction, so that kinks pass through the steps.
+      bool
+      kinks_move() const
+      {
+        return pilots_.scene.ground.direction.is_uneven();
+      }
+
+      /// Factor by which the tolerance may exceed that of the rule.
+      double
+      superconvergence() const
+      {
+        const std::string &name = pilots_.integrator(choice_.numerics);
+        if (choice_.numerics.mesh.tolerance > 0. || pilots_.last.min_stretch.value < emptied || kinks_move())
+          return 1.;
+        return name == "radau 9" ? radau_9_superconvergence : name == "radau 5" ? radau_5_superconvergence : 1.;
+      }
+
+      /// Time tolerance for the wanted error: the number of steps grows as tolerance^(-1/(order+1)), and error =
+      /// time_factor * steps * tolerance = accuracy * size.
+      double
+      tolerance_by_rule() const
+      {
+        const double r = 1. / (1. + estimated_order()), tolerance = pilots_.tolerance;
+        const double wanted =
+          accuracy_ * pilots_.size / (time_factor * pilots_.steps_to_the_end() * std::pow(tolerance, r));
+        return std::max(superconvergence() * std::min(std::pow(wanted, 1. / (1. - r)), tolerance),
+                        std::max({(kinks_move() ? min_tolerance_if_kinks : min_tolerance) * pilots_.scale,
+                                  pilots_.negligible_displacement(),
+                                  pilots_.inverts_at_end ? 0.1 * accuracy_ * tolerance : 0.})); // the size is unknown
+      }
+
+      /// Chooses the steps on the mesh, unless they came with it.
+      void
+      choose_steps()
+      {
+        Numerics &n         = choice_.numerics;
+        const bool predicts = pilots_.finished();
+        if (pilots_.size == 0.)
+          pilots_.size = pilots_.scale;
+        if (!n.jumps_move && n.grading.levels == 0)
+        {
+          if (n.integrator == "radau 5" && n.mesh.tolerance == 0. && accuracy_ < radau_9_accuracy)
+            n.integrator = "radau 9";
+          n.tolerance = time_.tolerance.value_or(tolerance_by_rule());
+        }
+        if (!time_.initial_step && n.grading.levels == 0)
+          n.initial_step = pilots_.first_step(n);
+        if (predicts && !n.jumps_move && !own_.n_cells && !has_own_steps_ && !own_.mesh_tolerance)
+        {
+          choice_.space_share  = space_over_time_ / (1. + space_over_time_);
+          choice_.wanted_error = accuracy_ * pilots_.size;
+          if (n.mesh.tolerance > 0. && pilots_.stiffness() < very_soft)
+            choice_.min_error = soft_error * pilots_.size;
+        }
+        if (n.jumps_move && predicts)
+          choice_.wanted_error = accuracy_ * pilots_.size;
+        if (std::isfinite(choice_.wanted_error))
+          choice_.min_size = std::max(displacement_floor * pilots_.last.largest_u, pilots_.min_size());
+        explain();
+      }
+
+      void
+      explain()
+      {
+        const Numerics &n     = choice_.numerics;
+        const bool is_at_rest = pilots_.scene.keeps_its_centre();
+        const std::string kind =
+          n.jumps_move            ? "jumps of the active stress that move, "
+          : n.grading.levels > 0  ? fmt::format("sudden stress, {} of cells smaller by {:g} each, ",
+                                               counted(n.grading.levels, "level"),
+                                               n.grading.ratio)
+          : n.mesh.tolerance > 0. ? fmt::format("adaptive mesh, tolerance {:.2g}, ", n.mesh.tolerance)
+                                  : "";
+        choice_.explanation      = pilots_.finished()
+                                     ? fmt::format("for Accuracy {:g}: {}from {} in {:.2g} s: {} about {:.3g}",
+                                              accuracy_,
+                                              kind,
+                                              counted(pilots_.n, "pilot run"),
+                                              watch_.seconds(),
+                                              is_at_rest ? "deformation" : "displacement",
+                                              is_at_rest ? pilots_.size : pilots_.last.displacement)
+                                     : fmt::format("for Accuracy {:g}: {}the last of {}, with {} cells, ended early: {}",
+                                              accuracy_,
+                                              kind,
+                                              counted(pilots_.n, "pilot run"),
+                                              n.n_cells,
+                                              pilots_.last.time.message);
+        const double least_error = choice_.measured_error.value_or(choice_.min_error);
+        if (least_error > 1.5 * choice_.wanted_error)
+          choice_.explanation += fmt::format("; Accuracy cannot be met, the error is about {:.2g} of the displacement",
+                                             least_error / pilots_.size);
+        if (!pilots_.scales.sees_all)
+          choice_.explanation +=
+            "; an event of the active stress that is shorter than a step of its sampling may be missed";
+        if (n.jumps_move && !choice_.advice.empty())
+          choice_.explanation += "; " + choice_.advice;
+      }
+
+      const Stopwatch watch_;
+      Pilots pilots_;
+      const DiscretizationParameters &own_;
+      const TimeParameters &time_;
+      const double accuracy_;
+      const bool has_own_steps_;
+      NumericsChoice choice_;
+      double space_over_time_ = 1.; ///< ratio of the errors predicted by the rule
+    };
+
+    /// Beginning of a scene, with the same active stress.
+    class Beginning
+    {
+    public:
+      Beginning(const Scene &whole, const double duration)
+        : scene_{whole.body,
+                 whole.friction->scaled(1.),
+                 std::unique_ptr<const ActiveStress>(whole.active_stress.get()), // lent, see below
+                 duration,
+                 whole.profiles,
+                 whole.ground}
+      {
+      }
+      ~Beginning()
+      {
+        static_cast<void>(scene_.active_stress.release());
+      }
+      Beginning(const Beginning &) = delete;
+
+      const Scene &
+      scene() const
+      {
+        return scene_;
+      }
+
+    private:
+      Scene scene_;
+    };
+
+    /// End of the first strides of a run, if it has many more and they are all computed: numerics good for these are
+    /// good for all.
+    std::optional<double>
+    end_of_first_strides(const RunParameters &parameters, const Scene &scene)
+    {
+      const auto gait = scene.active_stress->repetition();
+      if (!gait || parameters.time.step_control != StepControl::adaptive || parameters.discretization.n_cells ||
+          parameters.time.tolerance)
+        return std::nullopt;
+      const double softness = scene.body.elastic_modulus / natural_units(scene).force * gait->period / scene.end_time;
+      const bool settles = cycle_wish(parameters, scene, /*has_pictures=*/false) && softness > min_settling_stiffness;
+      const double end   = gait->from + first_strides * gait->period;
+      return !settles && scene.end_time > long_run * end ? std::optional(end) : std::nullopt;
+    }
+  } // namespace
+
+  std::optional<NumericsChoice>
+  choose_numerics(MPI_Comm communicator,
+                  const RunParameters &parameters,
+                  const Scene &scene,
+                  const KeepGoing &keep_going)
+  {
+    try
+    {
+      if (const auto end = end_of_first_strides(parameters, scene))
+      {
+        const Beginning beginning(scene, *end);
+        NumericsChoice choice = Chooser(communicator, parameters, beginning.scene(), keep_going).choose();
+        if (std::isfinite(choice.wanted_error) || choice.is_of_several_runs())
+        {
+          choice.numerics.step_limits = stress_scales(scene).step_limits;
+          choice.min_error *= scene.end_time / *end;
+          choice.explanation += fmt::format("; the first {:g} of {:.4g} strides chose",
+                                            first_strides,
+                                            scene.end_time / scene.active_stress->repetition()->period);
+          return choice;
+        }
+      }
+      return Chooser(communicator, parameters, scene, keep_going).choose();
+    }
+    catch (const PilotsInterrupted &)
+    {
+      return std::nullopt;
+    }
+  }
+
+  void
+  prepare_for_pictures(NumericsChoice &choice, const RunParameters &parameters)
+  {
+    const double largest = accuracy_rule::choice::tolerance_of_pictures * choice.wanted_error;
+    if (parameters.time.tolerance || choice.is_of_several_runs() || !choice.numerics.integrator.starts_with("radau") ||
+        !(largest < choice.numerics.tolerance))
+      return;
+    choice.numerics.tolerance =
+      std::max(largest, accuracy_rule::choice::min_tolerance_of_pictures * parameters.body.length);
+    choice.explanation += fmt::format("; tolerance {:.2g} for pictures", choice.numerics.tolerance);
+  }
+} // namespace crawler

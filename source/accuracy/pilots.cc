@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/form_choice.h>
+#include <crawler/accuracy/pilots.h>
+#include <crawler/run/accuracy_rule.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  namespace rule = accuracy_rule::choice;
+
+  Pilots::Pilots(const MPI_Comm own_communicator,
+                 const RunParameters &own_parameters,
+                 const Scene &own_scene,
+                 const KeepGoing &own_keep_going)
+    : communicator(own_communicator)
+    , keep_going(own_keep_going)
+    , parameters(own_parameters)
+    , scene(own_scene)
+    , scales(stress_scales(scene))
+    , scale(scales.displacement > 0. ? std::max(scales.displacement, min_size()) : scene.body.length)
+    , time(parameters.time)
+    , cycles(cycle_wish(parameters, scene, /*has_pictures=*/false))
+    , tolerance(std::max(1e-3 * scale, negligible_displacement()))
+  {
+    time.step_control = StepControl::adaptive;
+    time.petsc_prefix = "pilot_"; // options after "--" are for the real run
+    time.max_steps    = std::min(time.max_steps, rule::max_pilot_steps);
+    if (cycles)
+      cycles->accuracy = std::max(parameters.accuracy, rule::pilot_accuracy);
+  }
+
+  SimulationResult
+  Pilots::run(const Numerics &numerics, const ResolutionWish resolution)
+  {
+    Simulation simulation(communicator, scene, time, numerics);
+    ++n;
+    SimulationResult result =
+      simulation.run({}, {.energy_balance = false, .resolution = resolution, .cycles = cycles}, {}, keep_going);
+    if (result.time.status == Status::stopped && result.time.reason.empty())
+      throw PilotsInterrupted();
+    // Displacements that are 0 whatever the numerics are tell nothing about them; the deformation at the end does,
+    // while the largest one depends on where steps end.
+    if (scene.keeps_its_centre())
+      result.displacement = result.last_u;
+    return result;
+  }
+
+  SimulationResult
+  Pilots::run(Numerics numerics,
+              const unsigned int degree,
+              const unsigned int n_cells,
+              const ResolutionWish resolution,
+              const double part)
+  {
+    numerics.degree       = degree;
+    numerics.n_cells      = n_cells;
+    numerics.tolerance    = part * tolerance;
+    numerics.initial_step = first_step(numerics);
+    return run(numerics, resolution);
+  }
+
+  void
+  Pilots::count(const SimulationResult &result)
+  {
+    last              = result;
+    const double part = scene.keeps_its_centre() ? 1. : accuracy_rule::displacement_floor;
+    size              = std::max(finished() ? std::abs(last.displacement) : 0., part * last.largest_u);
+    if (size > 0.)
+      size = std::max(size, min_size());
+  }
+
+  double
+  Pilots::steps_to_the_end() const
+  {
+    const double steps = std::max(last.time.steps, 1u);
+    return last.cycles ? steps * (1. + 1. * last.cycles->extrapolated / last.cycles->computed) : steps;
+  }
+
+  double
+  Pilots::stiffness() const
+  {
+    return scene.body.elastic_modulus / natural_units(scene).force;
+  }
+
+  double
+  Pilots::stiffness_over_friction() const
+  {
+    const double a = scene.friction_exponent();
+    return stiffness() / std::max(std::pow(last.min_stretch.value, a), std::pow(last.max_stretch.value, a));
+  }
+
+  bool
+  Pilots::is_for_stretch() const
+  {
+    // Stretch form has few digits; so for a smaller Accuracy only where the position form cannot go on.
+    return may_be_stretch_form(parameters, scene) && last.time.reason != "inverted_at_end" &&
+           (parameters.accuracy >= 1e-7 || !finished()) &&
+           empties(last.min_stretch.value, scene.friction_exponent(), parameters.accuracy);
+  }
+
+  double
+  Pilots::min_size() const
+  {
+    return rule::min_error * scene.body.length / parameters.accuracy;
+  }
+
+  const std::string &
+  Pilots::integrator(const Numerics &numerics) const
+  {
+    const std::string &own = parameters.time.integrator;
+    return own == "automatic" ? numerics.integrator : own;
+  }
+
+  double
+  Pilots::first_step(const Numerics &numerics) const
+  {
+    return (integrator(numerics).starts_with("radau") ? rule::one_step_start : rule::multistep_start) * scene.end_time;
+  }
+} // namespace crawler
