@@ -223,6 +223,8 @@ namespace crawler
           if (result_.time.status == Status::inverted && result_.time.reason == "inverted_inside" && first_.is_users)
             confirm_inversion(communicator_, parameters_, scene_, first_, result_, keep_going_);
         } while (tries_again());
+        result_.refinements      = refinements_;
+        result_.estimate_seconds = estimate_seconds_;
         return std::move(answer_);
       }
 
@@ -241,7 +243,7 @@ namespace crawler
           return false;
         const Stopwatch watch;
         estimate_errors(communicator_, parameters_, scene_, answer_.choice, result_, keep_going_);
-        answer_.estimate_seconds += watch.seconds();
+        estimate_seconds_ += watch.seconds();
         if (is_good() && (closes() || std::isnan(wanted())))
           return false;
         std::string problem;
@@ -250,7 +252,7 @@ namespace crawler
           {
             // Smooth solutions need few more cells; where these do not help errors fall by a power of the cell size.
             const double total = error_before_ = result_.error->total;
-            make_finer(answer_.refinements == 0 || !(total > wanted())
+            make_finer(refinements_ == 0 || !(total > wanted())
                          ? refined_cells
                          : std::clamp(std::cbrt(total / wanted()), refined_cells, max_refined_cells));
             return true;
@@ -274,7 +276,7 @@ namespace crawler
           return false;
         const double total = result_.error ? result_.error->total : std::numeric_limits<double>::quiet_NaN();
         const bool is_near = total <= near_factor * wanted() && total < error_before_;
-        return answer_.refinements < (is_near ? max_refinements_if_near : max_refinements);
+        return refinements_ < (is_near ? max_refinements_if_near : max_refinements);
       }
 
       void
@@ -283,7 +285,7 @@ namespace crawler
         const NumericsChoice next = refined(answer_.choice, scene_, cells);
         result_                   = simulate_(next);
         answer_.choice            = next;
-        ++answer_.refinements;
+        ++refinements_;
       }
 
       double
@@ -325,6 +327,8 @@ namespace crawler
       const KeepGoing &keep_going_;
       Answer answer_;
       SimulationResult &result_ = answer_.result;
+      unsigned int refinements_ = 0;
+      double estimate_seconds_  = 0.;
       double error_before_      = std::numeric_limits<double>::infinity(); ///< of the try before
     };
 

@@ -241,9 +241,9 @@ namespace
                       scene.body.length,
                       result.most_cells,
                       result.time.steps,
-                      answer.refinements,
+                      result.refinements,
                       result.solve_seconds,
-                      answer.estimate_seconds});
+                      result.estimate_seconds});
     }
     return rows;
   }

@@ -11,8 +11,6 @@ namespace crawler
   {
     SimulationResult result; ///< result with its error, if that was requested and is known
     NumericsChoice choice;   ///< numerics of the final run
-    unsigned int refinements = 0;
-    double estimate_seconds  = 0.; ///< time spent on the errors
   };
 
   /// Moves the time of an inversion on which several runs agree to the last state that is shown, before which it has

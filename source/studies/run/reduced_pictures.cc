@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/equation/crawler_equation.h>
 #include <crawler/output/kymograph_writer.h>
+#include <crawler/output/snapshot_writer.h>
 #include <crawler/output/statistics_writer.h>
 #include <crawler/run/reduced_model.h>
 #include <crawler/studies/run/reduced_pictures.h>
@@ -93,5 +94,37 @@ namespace crawler
       return !stopped && t <= 1.;
     });
     return !stopped;
+  }
+
+  bool
+  write_pictures(const ReducedModel &level,
+                 const Input &input,
+                 const std::filesystem::path &folder,
+                 const std::function<bool()> &keep_going)
+  {
+    const OutputParameters &output = input.parameters.output;
+    const double length            = input.scene.body.length;
+    const PictureTimes times       = times_without_mesh(input);
+    std::optional<SnapshotWriter> snapshots;
+    if (output.has_snapshots())
+      snapshots.emplace(output.snapshot_format, folder, length, times.n_snapshots() + 1);
+    KymographWriter kymograph(length, input.scene.end_time, input.scene.ground.profile, folder);
+    std::optional<StatisticsWriter> statistics;
+    if (output.statistics)
+      statistics.emplace(length, true, folder, output.energy_balance, input.parameters.units);
+    const bool whole = show_pictures(
+      level,
+      times,
+      {snapshots ? [&](const Frame &frame) { snapshots->write(frame); } : std::function<void(const Frame &)>(),
+       output.has_snapshots() ? &kymograph : nullptr,
+       statistics ? &*statistics : nullptr},
+      keep_going);
+    if (statistics)
+      statistics->end();
+    if (snapshots)
+      snapshots->end();
+    if (output.has_snapshots() && output.kymograph)
+      kymograph.end();
+    return whole;
   }
 } // namespace crawler

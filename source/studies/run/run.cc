@@ -7,7 +7,6 @@
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
 #include <crawler/base/stop_place.h>
-#include <crawler/base/stop_signal.h>
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/snapshot_writer.h>
 #include <crawler/output/statistics_writer.h>
@@ -18,14 +17,14 @@
 #include <crawler/scene/moving_jumps.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/log.h>
-#include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/progress.h>
 #include <crawler/studies/core/sensitivities.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/run/reduced_pictures.h>
 #include <crawler/studies/run/run.h>
-#include <crawler/studies/run/run_checkpoint.h>
 #include <crawler/studies/run/run_files.h>
+#include <crawler/studies/run/run_memory.h>
+#include <crawler/studies/run/run_progress.h>
 #include <crawler/studies/run/run_stops.h>
 #include <crawler/time/failure.h>
 
@@ -57,110 +56,6 @@ namespace crawler
       outcome.message         = text.substr(split + 1);
     }
 
-    void
-    report_resumption(Log &log, const Resumption &resumption, const std::filesystem::path &folder)
-    {
-      for (const std::string &note : resumption.notes)
-        log.warn("warning: " + note);
-      switch (resumption.kind)
-      {
-        case Resumption::begins:
-          log.line(
-            fmt::format("There is no state in \"{}\" from which the run can resume: it starts from the beginning.",
-                        folder.string()));
-          break;
-        case Resumption::goes_on:
-          log.line("The run resumes from the state in restart.dat.");
-          break;
-        case Resumption::is_whole:
-          log.line(fmt::format("The run in \"{}\" is complete; nothing was computed.", folder.string()));
-          break;
-      }
-    }
-
-    /// Writes the output times of a level without a mesh as a run with one does. Returns false if @p keep_going
-    /// returned false.
-    bool
-    write_pictures(const ReducedModel &level,
-                   const Input &input,
-                   const std::filesystem::path &folder,
-                   const std::function<bool()> &keep_going)
-    {
-      const OutputParameters &output = input.parameters.output;
-      const double length            = input.scene.body.length;
-      const PictureTimes times       = times_without_mesh(input);
-      std::optional<SnapshotWriter> snapshots;
-      if (output.has_snapshots())
-        snapshots.emplace(output.snapshot_format, folder, length, times.n_snapshots() + 1);
-      KymographWriter kymograph(length, input.scene.end_time, input.scene.ground.profile, folder);
-      std::optional<StatisticsWriter> statistics;
-      if (output.statistics)
-        statistics.emplace(length, true, folder, output.energy_balance, input.parameters.units);
-      const bool whole = show_pictures(
-        level,
-        times,
-        {snapshots ? [&](const Frame &frame) { snapshots->write(frame); } : std::function<void(const Frame &)>(),
-         output.has_snapshots() ? &kymograph : nullptr,
-         statistics ? &*statistics : nullptr},
-        keep_going);
-      if (statistics)
-        statistics->end();
-      if (snapshots)
-        snapshots->end();
-      if (output.has_snapshots() && output.kymograph)
-        kymograph.end();
-      return whole;
-    }
-
-    /// Progress of a run: a bar, or a line at every tenth of the duration.
-    class RunProgress : public Observer
-    {
-    public:
-      RunProgress(Log &log, const Scene &scene)
-        : log_(log)
-        , end_time_(scene.end_time)
-        , length_(scene.body.length)
-        , bar_(log)
-      {
-      }
-
-      void
-      observe(const Snapshot &snapshot) override
-      {
-        if (!snapshot.is_step_end || snapshot.step.number == 0)
-          return;
-        const Step &step          = snapshot.step;
-        const StretchRange &range = snapshot.stretch;
-        const double done = step.time / end_time_, displacement = snapshot.integrals.displacement / length_;
-        if (bar_.is_due())
-          bar_.show(std::min(done, 1.),
-                    fmt::format("t = {:.4g}  displacement {:.6g}  stretch {:.3g} to {:.3g}",
-                                step.time,
-                                displacement,
-                                range.min.value,
-                                range.max.value));
-        if (10. * done < next_tenth_)
-          return;
-        while (next_tenth_ <= 10. * done)
-          ++next_tenth_;
-        log_.progress(fmt::format(
-          "  {:3.0f} %  t = {:<10.4g} step {:<6} size {:<9.3g} displacement {:<14.8g} stretch {:.3g} to {:.3g}",
-          100. * done,
-          step.time,
-          step.number,
-          step.size,
-          displacement,
-          range.min.value,
-          range.max.value));
-      }
-
-    private:
-      Log &log_;
-      const double end_time_, length_;
-      ProgressBar bar_;
-      unsigned int next_tenth_ = 1;
-    };
-
     /// `crawler run`, from the parameter file to the files and the exit code (all functions are collective). An
     /// exception in a part of the computation becomes the end of the run, with all files of an end.
     class RunStudy
@@ -173,10 +68,8 @@ namespace crawler
         , is_first_(rank_of(communicator) == 0)
         , log_(is_first_, options)
         , input_(read_input(std::move(file)))
-        , folder_(output_folder(options.output, options.file))
-        , journal_(input_.parameters.time.checkpoint_interval,
-                   is_first_ ? [this](const std::string &all) { return keep_states(all); } : RunJournal::Write())
-        , stops_(stop_signal_, input_.parameters.time.wall_time_limit, begin_, folder_ / stop_file_name)
+        , memory_(communicator, input_, options)
+        , stops_(stop_signal_, input_.parameters.time.wall_time_limit, begin_, memory_.folder() / stop_file_name)
         , pictures_(picture_times(input_.parameters.output, input_.scene))
       {
       }
@@ -184,7 +77,7 @@ namespace crawler
       ExitCode
       run()
       {
-        if (!begin())
+        if (!memory_.begin(log_))
           return ExitCode::finished;
         choose_level();
         const bool has_mesh = !model_ || model_->needs_mesh();
@@ -225,33 +118,6 @@ namespace crawler
       };
 
       // Steps before the files exist.
-      /// Checks and, to resume, locks the folder, and reads its content. Returns false if nothing is left to do.
-      bool
-      begin()
-      {
-        if (options_.resume && options_.overwrite)
-          throw InputError("--resume and --overwrite contradict each other; one of them is expected");
-        Resumption resumption;
-        on_first_rank(communicator_, [&]() {
-          require_usable(folder_, options_.overwrite || options_.resume);
-          checkpoint_ = checkpoint_of(input_, options_);
-          if (options_.resume)
-          {
-            lock_.emplace(folder_, /*overwrite=*/true);
-            resumption = resumption_of(folder_, checkpoint_);
-          }
-        });
-        if (!options_.resume)
-          return true;
-        Archive known(broadcast(archived(resumption), communicator_));
-        known(resumption);
-        report_resumption(log_, resumption, folder_);
-        goes_on_ = resumption.kind == Resumption::goes_on;
-        if (goes_on_)
-          journal_.load(resumption.journal);
-        return resumption.kind != Resumption::is_whole;
-      }
-
       void
       choose_level()
       {
@@ -272,7 +138,8 @@ namespace crawler
             reach(StopPlace::pilot);
             return !is_stopped();
           };
-          choice_ = choose_numerics(MPI_COMM_SELF, input_.parameters, input_.scene, KeepGoing(goes_on, &journal_));
+          choice_ =
+            choose_numerics(MPI_COMM_SELF, input_.parameters, input_.scene, KeepGoing(goes_on, &memory_.journal()));
           if (choice_ && input_.parameters.output.has_snapshots())
             prepare_for_pictures(*choice_, input_.parameters);
         });
@@ -294,12 +161,7 @@ namespace crawler
       void
       begin_output()
       {
-        on_first_rank(communicator_, [&]() {
-          if (!lock_)
-            lock_.emplace(folder_, options_.overwrite);
-          begin_files(log_, input_, folder_, goes_on_);
-          has_files_ = true;
-        });
+        on_first_rank(communicator_, [&]() { memory_.begin_files(log_); });
         if (model_)
           report_plan(log_, input_, *model_, choice_ ? &*choice_ : nullptr);
         announce_petsc_options(options_, log_);
@@ -321,7 +183,7 @@ namespace crawler
           log_.line(level.description());
           const Stopwatch watch;
           if (result_.error && (output.has_snapshots() || output.statistics) &&
-              !write_pictures(level, input_, folder_, keep_going))
+              !write_pictures(level, input_, memory_.folder(), keep_going))
             result_.time.status = Status::stopped;
           result_.output_seconds = watch.seconds();
         });
@@ -340,7 +202,7 @@ namespace crawler
                 other_runs_->step();
               return !stops_.arrived_anywhere(sharing_.ranks);
             },
-            &journal_);
+            &memory_.journal());
           const Simulation::Options options = {.energy_balance = output.energy_balance,
                                                .cycles = cycle_wish(parameters, input_.scene, output.has_snapshots()),
                                                .gait   = Simulation::GaitWish::any};
@@ -363,15 +225,11 @@ namespace crawler
           result_ = std::move(answer.result);
           if (answer.choice.is_of_several_runs())
             log_.line("  (" + answer.choice.explanation + ")");
-          choice_                  = answer.choice;
-          result_.setup_seconds    = setup;
-          result_.estimate_seconds = answer.estimate_seconds;
-          result_.refinements      = answer.refinements;
+          choice_               = answer.choice;
+          result_.setup_seconds = setup;
         });
       }
 
-      SimulationResult
-      simulate(const NumericsChoice &choice);
       /// Announces the runs of an answer one after the other: the first one has been built and announced.
       void
       announce_next_try(const NumericsChoice &choice)
@@ -385,14 +243,7 @@ namespace crawler
                                                      : "The error is larger than Accuracy asks for") +
                     ": running again, " + (choice.is_family ? "in the stretch form." : "finer."));
           if (sharing_.has_output)
-            on_first_rank(sharing_.ranks, [&]() {
-              if (journal_.was_written()) // older states need the files that are about to be removed
-              {
-                remove_checkpoints(folder_);
-                journal_.write();
-              }
-              remove_fields(folder_);
-            });
+            on_first_rank(sharing_.ranks, [&]() { memory_.forget_fields(); });
         }
         if (is_again || choice.is_of_several_runs() || is_of_other_form)
           build(choice);
@@ -412,14 +263,14 @@ namespace crawler
         if (!sharing_.has_output)
           return observers;
         if (output.has_snapshots())
-          observers.push_back(
-            std::make_unique<SnapshotWriter>(output.snapshot_format, folder_, length, pictures_.n_snapshots() + 1));
+          observers.push_back(std::make_unique<SnapshotWriter>(
+            output.snapshot_format, memory_.folder(), length, pictures_.n_snapshots() + 1));
         if (output.has_snapshots() && output.kymograph)
-          observers.push_back(
-            std::make_unique<KymographWriter>(length, input_.scene.end_time, input_.scene.ground.profile, folder_));
+          observers.push_back(std::make_unique<KymographWriter>(
+            length, input_.scene.end_time, input_.scene.ground.profile, memory_.folder()));
         if (output.statistics)
           observers.push_back(std::make_unique<StatisticsWriter>(
-            length, is_first_, folder_, output.energy_balance, input_.parameters.units));
+            length, is_first_, memory_.folder(), output.energy_balance, input_.parameters.units));
         if (!options_.quiet)
           observers.push_back(std::make_unique<RunProgress>(log_, input_.scene));
         return observers;
@@ -441,7 +292,7 @@ namespace crawler
           return report_end(log_,
                             result_,
                             input_.parameters.units,
-                            folder_,
+                            memory_.folder(),
                             has_pictures ? animation_file(output.snapshot_format) : "");
         });
       }
@@ -473,7 +324,7 @@ namespace crawler
             return !is_stopped();
           };
           write_sensitivities(add_sensitivities(input_, choice_.value_or(NumericsChoice()), result_, goes_on),
-                              folder_,
+                              memory_.folder(),
                               input_.parameters.units);
           if (is_stopped() &&
               !std::ranges::all_of(result_.sensitivities, [](const auto &one) { return one.value.has_value(); }))
@@ -488,21 +339,19 @@ namespace crawler
       write_summary()
       {
         result_.model = input_.parameters.model;
-        write_file(folder_ / "summary.json", summary_json(result_, size_of(communicator_), options_.command_line));
+        write_file(memory_.folder() / "summary.json",
+                   summary_json(result_, size_of(communicator_), options_.command_line));
       }
 
       void
       leave_folder()
       {
-        lock_->require_in_place();
-        const bool is_for_later = choice_ && result_.time.status == Status::stopped && is_stopped();
-        if (is_for_later)
-          journal_.write();
+        memory_.require_in_place();
+        const bool is_complete = !(choice_ && result_.time.status == Status::stopped && is_stopped());
+        if (!is_complete)
+          memory_.journal().write();
         write_summary();
-        if (!is_for_later) // a kill before this loses nothing
-          remove_checkpoints(folder_);
-        else if (journal_.was_written())
-          log_.line("The state of the run is in restart.dat: the same command with --resume continues it.");
+        memory_.leave(log_, is_complete); // a kill before this loses nothing
       }
 
       /// Decides on this rank alone. Levels without a mesh cannot be resumed, so only a signal stops them.
@@ -536,23 +385,10 @@ namespace crawler
           result_.time = failure_of(std::current_exception());
           if (!sharing_.is_shared)
             return;
-          std::filesystem::create_directories(folder_);
+          std::filesystem::create_directories(memory_.folder());
           write_summary(); // by the rank that failed, since the others may be waiting
           throw;
         }
-      }
-
-      /// Writes the states of the journal.
-      bool
-      keep_states(const std::string &all)
-      {
-        if (!has_files_)
-          return false;
-        lock_->require_in_place();
-        checkpoint_.journal = all;
-        write_checkpoint(folder_, checkpoint_);
-        reach(StopPlace::state);
-        return true;
       }
 
       const StopSignal stop_signal_; ///< ends the run in an orderly way when a signal arrives
@@ -562,11 +398,7 @@ namespace crawler
       const bool is_first_;
       Log log_;
       Input input_;
-      const std::filesystem::path folder_;
-      std::optional<FolderLock> lock_;
-      RunCheckpoint checkpoint_;
-      bool goes_on_ = false, has_files_ = false;
-      RunJournal journal_;
+      RunMemory memory_;
       RunStops stops_;
 
       std::optional<ModelChoice> model_;

@@ -100,9 +100,7 @@ namespace crawler
       };
       Answer answer = run_to_accuracy(
         MPI_COMM_SELF, parameters, input.scene, *chosen, simulate, options, /*writes=*/true, keep_going);
-      run.result                  = std::move(answer.result);
-      run.result.estimate_seconds = answer.estimate_seconds;
-      run.result.refinements      = answer.refinements;
+      run.result = std::move(answer.result);
       check_identities(run.result, parameters);
       sweep_error(parameters, input.scene, answer.choice, run.result, keep_going);
       if (afterwards && run.result.time.status == Status::finished)

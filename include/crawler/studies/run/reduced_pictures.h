@@ -5,6 +5,7 @@
 #include <crawler/output/snapshot_files.h>
 #include <crawler/studies/core/input.h>
 
+#include <filesystem>
 #include <functional>
 
 namespace crawler
@@ -33,4 +34,12 @@ namespace crawler
                 const PictureTimes &times,
                 const PictureViewers &viewers,
                 const std::function<bool()> &keep_going);
+
+  /// Writes these states in the files of a run on a mesh. Call after compute(). Returns false if @p keep_going returned
+  /// false.
+  bool
+  write_pictures(const ReducedModel &level,
+                 const Input &input,
+                 const std::filesystem::path &folder,
+                 const std::function<bool()> &keep_going);
 } // namespace crawler

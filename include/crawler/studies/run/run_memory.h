@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/run/run_journal.h>
+#include <crawler/studies/core/input.h>
+#include <crawler/studies/core/log.h>
+#include <crawler/studies/core/output_folder.h>
+#include <crawler/studies/run/run_checkpoint.h>
+
+#include <filesystem>
+#include <optional>
+
+namespace crawler
+{
+  /// Folder of a run, which only the first rank has, with the states from which the run can resume.
+  class RunMemory
+  {
+  public:
+    RunMemory(MPI_Comm communicator, const Input &input, const CommandOptions &options);
+
+    /// Checks the folder and, to resume, locks it and takes up its states (collective). Returns false if the run there
+    /// is complete. Throws InputError, FileError.
+    bool
+    begin(Log &log);
+
+    // Functions of the first rank.
+    /// Makes the files with which a run begins. Throws FileError.
+    void
+    begin_files(Log &log);
+
+    /// Forgets the fields of a try that is not the answer, and states that would need them.
+    void
+    forget_fields();
+
+    /// Throws FileError if the folder is not that of this run any more.
+    void
+    require_in_place() const
+    {
+      lock_->require_in_place();
+    }
+
+    /// Leaves the folder with the present state, or with none if the run @p is_complete.
+    void
+    leave(Log &log, bool is_complete);
+
+    const std::filesystem::path &
+    folder() const
+    {
+      return folder_;
+    }
+
+    /// Journal of this rank.
+    RunJournal &
+    journal()
+    {
+      return journal_;
+    }
+
+  private:
+    bool
+    keep(const std::string &states);
+
+    const MPI_Comm communicator_;
+    const Input &input_;
+    const CommandOptions &options_;
+    const std::filesystem::path folder_;
+    RunJournal journal_;
+    std::optional<FolderLock> lock_;
+    RunCheckpoint checkpoint_;
+    bool goes_on_ = false, has_files_ = false;
+  };
+} // namespace crawler

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/communication.h>
+#include <crawler/base/stop_place.h>
+#include <crawler/studies/core/study.h>
+#include <crawler/studies/run/run_files.h>
+#include <crawler/studies/run/run_memory.h>
+
+#include <fmt/format.h>
+
+namespace crawler
+{
+  namespace
+  {
+    void
+    report(Log &log, const Resumption &resumption, const std::filesystem::path &folder)
+    {
+      for (const std::string &note : resumption.notes)
+        log.warn("warning: " + note);
+      switch (resumption.kind)
+      {
+        case Resumption::begins:
+          log.line(
+            fmt::format("There is no state in \"{}\" from which the run can resume: it starts from the beginning.",
+                        folder.string()));
+          break;
+        case Resumption::goes_on:
+          log.line("The run resumes from the state in restart.dat.");
+          break;
+        case Resumption::is_whole:
+          log.line(fmt::format("The run in \"{}\" is complete; nothing was computed.", folder.string()));
+          break;
+      }
+    }
+  } // namespace
+
+  RunMemory::RunMemory(MPI_Comm communicator, const Input &input, const CommandOptions &options)
+    : communicator_(communicator)
+    , input_(input)
+    , options_(options)
+    , folder_(output_folder(options.output, options.file))
+    , journal_(input.parameters.time.checkpoint_interval,
+               rank_of(communicator) == 0 ? [this](const std::string &states) { return keep(states); }
+                                          : RunJournal::Write())
+  {
+  }
+
+  bool
+  RunMemory::begin(Log &log)
+  {
+    if (options_.resume && options_.overwrite)
+      throw InputError("--resume and --overwrite contradict each other; one of them is expected");
+    Resumption resumption;
+    on_first_rank(communicator_, [&]() {
+      require_usable(folder_, options_.overwrite || options_.resume);
+      checkpoint_ = checkpoint_of(input_, options_);
+      if (options_.resume)
+      {
+        lock_.emplace(folder_, /*overwrite=*/true);
+        resumption = resumption_of(folder_, checkpoint_);
+      }
+    });
+    if (!options_.resume)
+      return true;
+    Archive known(broadcast(archived(resumption), communicator_));
+    known(resumption);
+    report(log, resumption, folder_);
+    goes_on_ = resumption.kind == Resumption::goes_on;
+    if (goes_on_)
+      journal_.load(resumption.journal);
+    return resumption.kind != Resumption::is_whole;
+  }
+
+  void
+  RunMemory::begin_files(Log &log)
+  {
+    if (!lock_)
+      lock_.emplace(folder_, options_.overwrite);
+    crawler::begin_files(log, input_, folder_, goes_on_);
+    has_files_ = true;
+  }
+
+  void
+  RunMemory::forget_fields()
+  {
+    if (journal_.was_written()) // older states need the files that are about to be removed
+    {
+      remove_checkpoints(folder_);
+      journal_.write();
+    }
+    remove_fields(folder_);
+  }
+
+  void
+  RunMemory::leave(Log &log, const bool is_complete)
+  {
+    if (is_complete)
+      remove_checkpoints(folder_);
+    else if (journal_.was_written())
+      log.line("The state of the run is in restart.dat: the same command with --resume continues it.");
+  }
+
+  bool
+  RunMemory::keep(const std::string &states)
+  {
+    if (!has_files_)
+      return false;
+    lock_->require_in_place();
+    checkpoint_.journal = states;
+    write_checkpoint(folder_, checkpoint_);
+    reach(StopPlace::state);
+    return true;
+  }
+} // namespace crawler
