@@ -29,7 +29,6 @@ namespace crawler
         , scene_(scene)
         , options_(options)
         , keep_going_(keep_going)
-        , accuracy_(parameters.accuracy)
       {
         answer_.choice          = choice;
         options_.resolution     = ResolutionWish::size; // the size of the deformation
@@ -80,7 +79,7 @@ namespace crawler
       is_worth_it() const
       {
         const double work = 1. * latest_.mesh->n_cells * latest_.time.steps;
-        return more_work * work <= (accuracy_ < accurate ? max_work_if_accurate : max_work);
+        return more_work * work <= (parameters_.accuracy < accurate ? max_work_if_accurate : max_work);
       }
 
       unsigned int
@@ -88,7 +87,7 @@ namespace crawler
       {
         if (latest_.inversion && space_error_ <= believed * latest_.inversion->t)
           return max_cells_if_inverted;
-        return accuracy_ < accurate ? max_cells_if_accurate : max_cells; // the position form may need fewer
+        return parameters_.accuracy < accurate ? max_cells_if_accurate : max_cells; // the position form may need fewer
       }
 
       Numerics &
@@ -149,7 +148,7 @@ namespace crawler
       double
       wanted() const
       {
-        return std::max(accuracy_ * size_, round_off * scene_.body.length);
+        return std::max(parameters_.accuracy * size_, round_off * scene_.body.length);
       }
 
       /// Smaller time tolerance that shows the error of this one. Cells that become empty refill according to the
@@ -396,7 +395,7 @@ namespace crawler
         std::vector<const SimulationResult *> meshes;
         for (const Level &level : levels_)
           meshes.push_back(&level.result);
-        NumberErrors errors = errors_of_extrapolation(extrapolated_, meshes, min_part * accuracy_);
+        NumberErrors errors = errors_of_extrapolation(extrapolated_, meshes, min_part * parameters_.accuracy);
         for (std::size_t i = 0; i < NumberErrors::n; ++i)
           errors.values[i] += time_errors_.values[i];
         return errors;
@@ -464,7 +463,6 @@ namespace crawler
       const Scene &scene_;
       Simulation::Options options_;
       const KeepGoing &keep_going_;
-      const double accuracy_;
       Answer answer_;
       SimulationResult latest_, extrapolated_;
       std::vector<Level> levels_; ///< levels that agree

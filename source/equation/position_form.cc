@@ -54,7 +54,6 @@ namespace crawler
     , kernels_(cell_kernels(discretization.element().degree))
     , jacobian_(discretization)
     , stress_(scene.active_stress->at(discretization.points(discretization.element().points)))
-    , n_stress_points_(static_cast<std::size_t>(discretization.n_local_cells()) * discretization.element().n)
     , stresses_(1)
     , sampler_(stretch_sampler(discretization.element()))
   {
@@ -84,7 +83,7 @@ namespace crawler
     {
       found          = stresses_.begin() + oldest_stress_;
       oldest_stress_ = (oldest_stress_ + 1) % stresses_.size();
-      found->m.resize(n_stress_points_);
+      found->m.resize(static_cast<std::size_t>(discretization_.n_local_cells()) * discretization_.element().n);
       stress_->values(t, found->m);
       found->time = t;
     }

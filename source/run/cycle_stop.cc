@@ -111,18 +111,18 @@ namespace crawler
   void
   CycleStop::compare(const std::span<const double> stretch)
   {
-    double strain = 0., change = 0., largest = 0.;
+    Change change;
     const bool known = stretches_.size() == n_phases;
     for (unsigned int i = 0; i < n_pieces; ++i)
     {
-      strain += (stretch[i] - 1.) * (stretch[i] - 1.) / n_pieces;
+      change.strain += (stretch[i] - 1.) * (stretch[i] - 1.) / n_pieces;
       const double difference = known ? stretch[i] - stretches_.front()[i] : 0.;
-      change += difference * difference / n_pieces;
-      largest = std::max(largest, std::abs(difference));
+      change.since += difference * difference / n_pieces;
+      change.largest = std::max(change.largest, std::abs(difference));
     }
-    strains_.push_back(std::sqrt(strain));
-    changes_.push_back(std::sqrt(change));
-    largest_changes_.push_back(largest);
+    change.strain = std::sqrt(change.strain);
+    change.since  = std::sqrt(change.since);
+    changes_.push_back(change);
     if (known)
       stretches_.pop_front();
     stretches_.emplace_back(stretch.begin(), stretch.end());
@@ -138,8 +138,8 @@ namespace crawler
     const std::size_t last = changes_.size() - 1;
     for (std::size_t i = std::max<std::size_t>(last - n_phases + 1, 2 * n_phases); i <= last; ++i)
     {
-      const double ratio = changes_[i] / std::max(changes_[i - n_phases], 1e-300);
-      largest            = std::max(largest, changes_[i] <= noise * tolerance_ ? std::min(ratio, 0.5) : ratio);
+      const double since = changes_[i].since, ratio = since / std::max(changes_[i - n_phases].since, 1e-300);
+      largest = std::max(largest, since <= noise * tolerance_ ? std::min(ratio, 0.5) : ratio);
     }
     return largest;
   }
@@ -151,8 +151,8 @@ namespace crawler
     double change = 0., strain = 0.;
     for (std::size_t i = changes_.size() - n_phases; i < changes_.size(); ++i)
     {
-      change += changes_[i] * changes_[i];
-      strain += strains_[i] * strains_[i];
+      change += changes_[i].since * changes_[i].since;
+      strain += changes_[i].strain * changes_[i].strain;
     }
     return change > 0. ? std::sqrt(change / strain) : 0.;
   }
@@ -166,8 +166,8 @@ namespace crawler
     const double increment     = ends_[n].displacement - ends_[n - 1].displacement;
     const double before        = ends_[n - 1].displacement - ends_[n - 2].displacement;
     const double difference    = std::abs(increment - before);
-    const double change        = changes_.back();
-    const double change_before = changes_[changes_.size() - 1 - n_phases];
+    const double change        = changes_.back().since;
+    const double change_before = changes_[changes_.size() - 1 - n_phases].since;
     if (change_before > 0.)
       sensitivity_ = std::max(sensitivity_, difference / change_before);
     constexpr double pi = std::numbers::pi;
@@ -182,7 +182,7 @@ namespace crawler
     bound_                 = left * (next / (1. - rho) + round_off);
 
     const double size  = std::max(std::abs(ends_[n].displacement + left * increment), displacement_floor * largest_u_);
-    const double drift = largest_changes_.back() * rho / (1. - rho);
+    const double drift = changes_.back().largest * rho / (1. - rho);
     const EnergyBalance &now = ends_[n].energy_balance, &then = ends_[n - 1].energy_balance;
     const double stored = left * std::abs(now.elastic_energy - then.elastic_energy);
     const double work   = now.exchanged_work + left * (now.exchanged_work - then.exchanged_work);
@@ -211,7 +211,6 @@ namespace crawler
   void
   CycleStop::exchange(Archive &archive)
   {
-    archive(
-      repeats_, bound_, stretches_, strains_, changes_, largest_changes_, ends_, largest_u_, least_, sensitivity_);
+    archive(repeats_, bound_, stretches_, changes_, ends_, largest_u_, least_, sensitivity_);
   }
 } // namespace crawler

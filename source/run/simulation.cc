@@ -331,16 +331,10 @@ namespace crawler
   Simulation::Ending
   Simulation::ending_after(const Step &step, const std::span<const double> y)
   {
-    y_inside_.resize(y_.size());
     std::vector<double> u;
     const auto sample = [&](const double t) -> Recorder::BodySample {
-      std::span<const double> state = y;
-      if (t < step.time && step.size > 0.)
-      {
-        integrators_.present->interpolate(t, y_inside_);
-        state = y_inside_;
-      }
-      u = mesh_.assembler->displacement_at(Recorder::n_pieces, state);
+      const auto state = t < step.time && step.size > 0. ? state_within(t) : y;
+      u                = mesh_.assembler->displacement_at(Recorder::n_pieces, state);
       return {u, mesh_.assembler->integrals(step.time, state, v_).displacement};
     };
     if (run_->recorder.see_step(

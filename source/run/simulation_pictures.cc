@@ -51,16 +51,14 @@ namespace crawler
     for (; run_->output_times.next() < until - min_time_between_breaks; run_->output_times.pass())
     {
       const double t = run_->output_times.next();
-      y_inside_.resize(y_.size());
-      v_inside_.resize(v_.size());
-      integrators_.present->interpolate(t, y_inside_);
-      if (!mesh_.velocity->compute_within(t, step.time, step.size, y_inside_, v_inside_))
+      const auto y   = state_within(t);
+      if (!mesh_.velocity->compute_within(t, step.time, step.size, y, inside_.v))
       {
         explain_no_velocity(t);
         return false;
       }
-      const CellIntegrals integrals = mesh_.assembler->integrals(t, y_inside_, v_inside_);
-      const StretchRange stretch    = mesh_.assembler->stretch_range(y_inside_);
+      const CellIntegrals integrals = mesh_.assembler->integrals(t, inside_.y, inside_.v);
+      const StretchRange stretch    = mesh_.assembler->stretch_range(inside_.y);
       EnergyBalance energies;
       if (run_->options.energy_balance)
       {
@@ -71,8 +69,8 @@ namespace crawler
       Step inside = step;
       inside.time = t;
       show({inside,
-            y_inside_,
-            v_inside_,
+            inside_.y,
+            inside_.v,
             integrals,
             stretch,
             energies,
@@ -94,16 +92,13 @@ namespace crawler
     {
       run_->balance_before = *result().energy_balance;
       run_->quadrature.begin_step(step.size);
-      y_inside_.resize(y_.size());
-      v_inside_.resize(v_.size());
       for (const double place : {0.1, 0.5, 0.9})
       {
         const double t = start + place * (end - start);
-        integrators_.present->interpolate(t, y_inside_);
-        if (!mesh_.velocity->compute_within(t, step.time, step.size, y_inside_, v_inside_))
+        const auto y   = state_within(t);
+        if (!mesh_.velocity->compute_within(t, step.time, step.size, y, inside_.v))
           return;
-        run_->quadrature.add_stage(t,
-                                   rates(t, mesh_.assembler->integrals(t, y_inside_, v_inside_), y_inside_, v_inside_));
+        run_->quadrature.add_stage(t, rates_within(t));
       }
     }
     show_pictures_within(step, end);
@@ -135,7 +130,7 @@ namespace crawler
   }
 
   void
-  Simulation::show(const Shown &shown)
+  Simulation::show(const simulation_parts::Shown &shown)
   {
     if (run_->observers.empty())
       return;

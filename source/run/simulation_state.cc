@@ -162,6 +162,23 @@ namespace crawler
       {sums.stress_power, sums.dissipation, sums.positive_power, sums.absolute_power, (*mesh_.end_power)(t, y, v)}};
   }
 
+  /// State within the step that has just been made, from the integrator's dense output; kept in inside_.
+  std::span<const double>
+  Simulation::state_within(const double t)
+  {
+    inside_.y.resize(y_.size());
+    inside_.v.resize(v_.size());
+    integrators_.present->interpolate(t, inside_.y);
+    return inside_.y;
+  }
+
+  /// Rates of the state inside_ at the time t.
+  Rates
+  Simulation::rates_within(const double t)
+  {
+    return rates(t, mesh_.assembler->integrals(t, inside_.y, inside_.v), inside_.y, inside_.v);
+  }
+
   /// Integrates the rates of a step at the stages of the integrator, which uses the same quadrature. The states within
   /// the step are sampled for extremes of the stretch, too. Returns false if one of them has no velocity.
   bool
@@ -178,19 +195,16 @@ namespace crawler
       run_->quadrature.add_stage(1., at_end);
       return true;
     }
-    y_inside_.resize(y_.size());
-    v_inside_.resize(v_.size());
     for (const double place : integrators_.present->stage_places())
     {
       const double t = step.time - (1. - place) * step.size;
       Rates inside   = at_end;
       if (place < 1.)
       {
-        integrators_.present->interpolate(t, y_inside_);
-        if (!finds_velocity(t, step.size, y_inside_, v_inside_))
+        if (!finds_velocity(t, step.size, state_within(t), inside_.v))
           return false;
-        inside = rates(t, mesh_.assembler->integrals(t, y_inside_, v_inside_), y_inside_, v_inside_);
-        look_at_extremes(t, mesh_.assembler->stretch_range(y_inside_));
+        inside = rates_within(t);
+        look_at_extremes(t, mesh_.assembler->stretch_range(inside_.y));
       }
       run_->quadrature.add_stage(place, inside);
     }
@@ -205,16 +219,12 @@ namespace crawler
       return;
     // Start of the step from the last accepted state: the integrator may know it less well than the states inside.
     StretchHistory::Step record{run_->accepted.time, step.time, past_.cells, &mesh_.discretization->element(), {}};
-    std::vector<double> inside(y.size());
     for (std::size_t i = 0; i < record.coefficients.size(); ++i)
     {
-      const double place            = StretchHistory::places()[i];
-      std::span<const double> state = place == 0. ? std::span<const double>(run_->accepted.y) : y;
-      if (place > 0. && place < 1.)
-      {
-        integrators_.present->interpolate(record.from + place * (record.to - record.from), inside);
-        state = inside;
-      }
+      const double place     = StretchHistory::places()[i];
+      const auto state       = place == 0.  ? std::span<const double>(run_->accepted.y)
+                               : place < 1. ? state_within(record.from + place * (record.to - record.from))
+                                            : y;
       record.coefficients[i] = mesh_.discretization->gather(mesh_.assembler->stretch_coefficients(state));
     }
     past_.history.add(std::move(record), step.time - 2. * past_.delay);

@@ -121,7 +121,6 @@ namespace crawler
       double time = std::numeric_limits<double>::quiet_NaN();
       std::vector<double> m;
     };
-    const std::size_t n_stress_points_;
     std::vector<StressAtTime> stresses_; ///< latest stresses
     std::size_t oldest_stress_ = 0;
     std::vector<double> u_local_, v_local_, F_local_;

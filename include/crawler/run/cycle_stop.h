@@ -104,6 +104,13 @@ namespace crawler
       EnergyBalance energy_balance = {};
     };
 
+    /// Root mean squares over the body of a state's strain and of its change since a cycle before, and the largest such
+    /// change. Those of the first cycle are not known: 0.
+    struct Change
+    {
+      double strain = 0., since = 0., largest = 0.;
+    };
+
     void
     compare(std::span<const double> stretch);
     void
@@ -123,12 +130,10 @@ namespace crawler
     double bound_ = 0.;
 
     std::deque<std::vector<double>> stretches_; ///< stretches of the pieces, over the last cycle
-    /// Root mean squares over the body of the strain and of its change since a cycle before, and the largest such
-    /// change, of each state. The changes of the first cycle are not known.
-    std::vector<double> strains_, changes_, largest_changes_;
-    std::vector<End> ends_;   ///< the start of the first cycle, and the ends of all
-    double largest_u_   = 0.; ///< root mean square over the body, largest over time
-    double least_       = 1.; ///< smallest mean stretch of a piece, over time
+    std::vector<Change> changes_;               ///< changes of all states
+    std::vector<End> ends_;                     ///< the start of the first cycle, and the ends of all
+    double largest_u_   = 0.;                   ///< root mean square over the body, largest over time
+    double least_       = 1.;                   ///< smallest mean stretch of a piece, over time
     double sensitivity_ = 0.; ///< largest change of the displacement in a cycle over change of the strain at its start
   };
 } // namespace crawler

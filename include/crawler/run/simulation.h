@@ -1,24 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/equation/assembler.h>
-#include <crawler/equation/end_power.h>
-#include <crawler/equation/position_form.h>
-#include <crawler/equation/stretch_form.h>
-#include <crawler/lanes/lane_stepper.h>
-#include <crawler/mesh/mesh_marking.h>
-#include <crawler/output/observer.h>
 #include <crawler/run/numerics.h>
-#include <crawler/run/output_times.h>
-#include <crawler/run/recorder.h>
-#include <crawler/run/run_journal.h>
-#include <crawler/run/state_velocity.h>
-#include <crawler/run/step_limiter.h>
-#include <crawler/time/petsc_stepper.h>
+#include <crawler/run/simulation_parts.h>
 
-#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -61,97 +49,9 @@ namespace crawler
     }
 
   private:
-    /// Reason why a part of a run ends.
-    enum class Ending
-    {
-      none,    ///< no end yet
-      stepper, ///< no other step: end time reached, or the integration failed
-      lost,    ///< the state must not be used, and the diagnosis says why
-      cycles,  ///< cycles repeat
-      stopped, ///< on request
-      mesh,    ///< the mesh has to be changed
-      retry,   ///< the active stress had an event within the step
-      jump     ///< the active stress jumps
-    };
-
-    /// Equation on the present mesh.
-    struct OnMesh
-    {
-      std::unique_ptr<Discretization> discretization;
-      std::unique_ptr<Assembler> assembler;
-      PositionForm *position = nullptr; ///< the assembler, if it has this form
-      StretchForm *stretch   = nullptr;
-      std::unique_ptr<StateVelocity> velocity;
-      std::unique_ptr<EndPower> end_power; ///< created once it is needed
-      bool is_first = false;               ///< the mesh is that of the start
-    };
-
-    /// Time integrators; built when they are needed.
-    struct Integrators
-    {
-      std::unique_ptr<PetscStepper> petsc;
-      std::unique_ptr<LaneStepper> lanes;
-      Stepper *present = nullptr; ///< one of them
-    };
-
-    /// Past of the body, for a feedback with delay.
-    struct Past
-    {
-      double delay = 0.; ///< 0: the feedback does not see it
-      StretchHistory history;
-      std::shared_ptr<const std::vector<Cell>> cells; ///< cells of the present mesh
-    };
-
-    /// Last accepted state, to which a change of mesh may go back.
-    struct Accepted
-    {
-      std::vector<double> y;
-      double time = 0., next_step = 0.;
-      bool is_there = false;
-
-      void
-      exchange(Archive &archive)
-      {
-        archive(y, time, next_step, is_there);
-      }
-    };
-
-    /// Diagnosis that replaces the time stepper's account of the end.
-    struct Diagnosis
-    {
-      Status status;
-      std::string reason, message;
-    };
-
-    /// State of one run().
-    struct Run
-    {
-      Options options;
-      const Observers &observers;
-      const KeepGoing &keep_going;
-      RunJournal *journal; ///< null if there is none
-      Recorder recorder;
-      OutputTimes output_times;
-      StepLimiter limiter;
-      Accepted accepted = {};
-      StretchRange stretch{};     ///< range of the state under examination
-      std::vector<double> breaks; ///< breaks in space
-      CellIntegrals integrals{};
-      bool lane_samples            = false; ///< the extremes and rates that they see in the stages of steps are used
-      bool lanes_gave_up           = false;
-      RateQuadrature quadrature    = {}; ///< quadrature of works
-      EnergyBalance balance_before = {}; ///< energy balance at the start of the latest step
-      Resolution largest{};              ///< largest over time, if computed
-      TimeOutcome before{};              ///< counts of the parts of the run before the last change of mesh
-      Step latest{};                     ///< last step that was tried, with the counts of the whole run
-      std::optional<Diagnosis> diagnosis = {};
-      unsigned int tiny_steps            = 0;
-      std::vector<CellChange> changes    = {};
-      std::vector<double> indicators     = {};    ///< indicators of all cells of an adaptive mesh, at present
-      unsigned long n_failures           = 0;     ///< failures of the active stress before this run
-      double part_start                  = 0.;    ///< time at which the present integrator has started
-      bool goes_on                       = false; ///< continues within a part that was left
-    };
+    using Ending    = simulation_parts::Ending;
+    using Run       = simulation_parts::Run;
+    using Diagnosis = simulation_parts::Diagnosis;
 
     void
     build_first();
@@ -198,6 +98,10 @@ namespace crawler
     compute_integrals(const Step &step, std::span<const double> y);
     Rates
     rates(double t, const CellIntegrals &sums, std::span<const double> y, std::span<const double> v);
+    std::span<const double>
+    state_within(double t);
+    Rates
+    rates_within(double t);
     bool
     integrate_step(const Step &step, const Rates &at_end);
     bool
@@ -264,17 +168,6 @@ namespace crawler
     keep_state(bool stops, const Step &step);
     SimulationResult
     finish();
-    /// State that observers see.
-    struct Shown
-    {
-      const Step &step; ///< with the time of the state
-      std::span<const double> y, v;
-      const CellIntegrals &integrals;
-      const StretchRange &stretch;
-      const EnergyBalance &energy_balance;
-      bool is_step_end;
-      const PictureTimes::Time *picture; ///< null if the state is none
-    };
     void
     show_step(const Step &step, std::span<const double> y);
     bool
@@ -284,7 +177,7 @@ namespace crawler
     void
     show_row_after_jump();
     void
-    show(const Shown &shown);
+    show(const simulation_parts::Shown &shown);
     SimulationResult &
     result()
     {
@@ -299,12 +192,12 @@ namespace crawler
     TimeParameters time_;     ///< in natural units
     const MPI_Comm communicator_;
 
-    OnMesh mesh_;
+    simulation_parts::OnMesh mesh_;
     unsigned int mesh_number_ = 0;
-    Integrators integrators_;
-    Past past_;
+    simulation_parts::Integrators integrators_;
+    simulation_parts::Past past_;
     std::optional<Run> run_;
-    std::vector<double> y_, v_;               ///< the present state and its velocity
-    std::vector<double> y_inside_, v_inside_; ///< state within a step
+    std::vector<double> y_, v_;      ///< the present state and its velocity
+    simulation_parts::State inside_; ///< state within a step
   };
 } // namespace crawler
