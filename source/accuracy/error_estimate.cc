@@ -240,19 +240,18 @@ namespace crawler
       else
         total =
           factor * std::abs(finer->displacement - result.displacement) + (predicted ? part * choice.wanted_error : 0.);
-      total = std::max(total, choice.min_error);
-      // Works of extrapolated cycles have the same relative error as the displacement.
-      const double size   = std::max(std::abs(result.displacement),
-                                   std::isfinite(choice.wanted_error) ? choice.wanted_error / parameters.accuracy : 0.);
-      const double cycles = result.cycles && size > 0. ? result.cycles->bound / size : 0.;
-      result.errors =
-        number_errors(result, finer_mesh ? *finer_mesh : *finer, factor, part * parameters.accuracy + cycles);
+      total         = std::max(total, choice.min_error);
+      result.errors = number_errors(result, finer_mesh ? *finer_mesh : *finer, factor, part * parameters.accuracy);
       if (finer_mesh != nullptr)
       {
-        const NumberErrors in_time = number_errors(*finer_mesh, *finer, factor, 0.);
-        for (std::size_t i = 0; i < NumberErrors::n; ++i)
-          result.errors->values[i] += in_time.values[i];
+        const auto in_time = number_errors(*finer_mesh, *finer, factor, 0.);
+        for (std::size_t i = 0; i < in_time.size(); ++i)
+          result.errors[i] += in_time[i];
       }
+      add_errors_of_cycles(
+        result,
+        std::max(std::abs(result.displacement),
+                 std::isfinite(choice.wanted_error) ? choice.wanted_error / parameters.accuracy : 0.));
       if (scene.keeps_its_centre()) // few steps suffice except for the kinks of positive power
         set_error_bound(result, "positive_power", std::numeric_limits<double>::quiet_NaN());
       set_errors_of_efficiencies(scene, result);

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 #include <utility>
 
 namespace crawler
@@ -22,44 +24,70 @@ namespace crawler
     }
   } // namespace
 
-  NumberErrors
+  std::vector<double>
   number_errors(const SimulationResult &result, const SimulationResult &finer, const double factor, const double part)
   {
-    NumberErrors errors;
     const double n_points = result.mesh ? result.mesh->n_cells * (result.mesh->degree + 1.) : 1.;
     const auto &entries   = entries_with_errors();
-    for (std::size_t i = 0; i < NumberErrors::n; ++i)
+    std::vector<double> errors(entries.size());
+    for (std::size_t i = 0; i < errors.size(); ++i)
     {
-      const ResultEntry &entry = *entries.at(i);
+      const ResultEntry &entry = *entries[i];
       const double x = std::abs(number(entry, result) - number(entry, finer)), S = entry.scale_in(result);
-      errors.values[i] = entry.is_sampled
-                           ? more_if_sampled * factor * x + (part + sampling_error / (n_points * n_points)) * S
-                           : factor * x + part * S;
+      errors[i] = entry.is_sampled ? more_if_sampled * factor * x + (part + sampling_error / (n_points * n_points)) * S
+                                   : factor * x + part * S;
       // Two meshes may have the same error at the ends of their cells.
       for (const auto &[key, extreme] :
            {std::pair("min_stretch.value", &result.min_stretch), {"max_stretch.value", &result.max_stretch}})
         if (entry.key == key)
-          errors.values[i] = std::max(errors.values[i], extreme->jump);
+          errors[i] = std::max(errors[i], extreme->jump);
     }
     return errors;
   }
 
-  NumberErrors
+  std::vector<double>
   errors_of_extrapolation(const SimulationResult &extrapolated,
                           const std::span<const SimulationResult *const> meshes,
                           const double part)
   {
     const SimulationResult &finest = *meshes.back();
-    NumberErrors errors            = number_errors(extrapolated, finest, 1., part);
+    std::vector<double> errors     = number_errors(extrapolated, finest, 1., part);
     const auto &entries            = entries_with_errors();
     for (std::size_t before = 1; before <= 2 && before < meshes.size(); ++before)
     {
-      const double factor        = if_not_extrapolated / static_cast<double>(before);
-      const NumberErrors changes = number_errors(finest, *meshes[meshes.size() - 1 - before], factor, part);
-      for (std::size_t i = 0; i < NumberErrors::n; ++i)
-        if (number(*entries.at(i), extrapolated) == number(*entries.at(i), finest))
-          errors.values[i] = std::max(errors.values[i], changes.values[i]);
+      const double factor = if_not_extrapolated / static_cast<double>(before);
+      const auto changes  = number_errors(finest, *meshes[meshes.size() - 1 - before], factor, part);
+      for (std::size_t i = 0; i < errors.size(); ++i)
+        if (number(*entries[i], extrapolated) == number(*entries[i], finest))
+          errors[i] = std::max(errors[i], changes[i]);
     }
     return errors;
+  }
+
+  void
+  add_errors_of_cycles(SimulationResult &result, const double size)
+  {
+    if (!result.cycles || !(size > 0.))
+      return;
+    const auto &entries   = entries_with_errors();
+    const double relative = result.cycles->bound / size;
+    for (std::size_t i = 0; i < result.errors.size(); ++i)
+      result.errors[i] += relative * entries[i]->scale_in(result);
+    if (!result.gait || result.cycles->extrapolated == 0)
+      return;
+    const Gait &gait    = *result.gait;
+    const double change = result.cycles->bound / result.cycles->extrapolated; // of the displacement in a stride
+    const double part   = change / std::abs(gait.displacement);
+    const std::map<std::string, double> changes = {
+      {"gait.displacement", change},
+      {"gait.speed", change / gait.period},
+      {"gait.slip", change / (gait.period * std::abs(gait.wave_speed().value_or(HUGE_VAL)))},
+      {"gait.stride_efficiency", part * gait.efficiency.value_or(0.)}};
+    for (std::size_t i = 0; i < result.errors.size(); ++i)
+      if (const auto found = changes.find(entries[i]->key); found != changes.end())
+        result.errors[i] += found->second;
+      else if (entries[i]->scale == ResultEntry::Scale::cost) // inversely proportional to the displacement
+        result.errors[i] = part < 1. ? result.errors[i] + part / (1. - part) * std::abs(number(*entries[i], result))
+                                     : std::numeric_limits<double>::quiet_NaN();
   }
 } // namespace crawler

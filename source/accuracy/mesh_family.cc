@@ -389,15 +389,15 @@ namespace crawler
         }
       }
 
-      NumberErrors
+      std::vector<double>
       errors_of_numbers() const
       {
         std::vector<const SimulationResult *> meshes;
         for (const Level &level : levels_)
           meshes.push_back(&level.result);
-        NumberErrors errors = errors_of_extrapolation(extrapolated_, meshes, min_part * parameters_.accuracy);
-        for (std::size_t i = 0; i < NumberErrors::n; ++i)
-          errors.values[i] += time_errors_.values[i];
+        std::vector<double> errors = errors_of_extrapolation(extrapolated_, meshes, min_part * parameters_.accuracy);
+        for (std::size_t i = 0; i < errors.size(); ++i)
+          errors[i] += time_errors_.empty() ? std::numeric_limits<double>::quiet_NaN() : time_errors_[i];
         return errors;
       }
 
@@ -431,6 +431,7 @@ namespace crawler
                                  .time  = time_error_ + cycles,
                                  .model = 0.};
           result.errors       = errors_of_numbers();
+          add_errors_of_cycles(result, size_);
           if (!std::isfinite(space_error_))
             result.error = DisplacementError();
           fails_accuracy(result, wanted() * (1. + 1e-9), "the meshes do not agree");
@@ -465,8 +466,8 @@ namespace crawler
       const KeepGoing &keep_going_;
       Answer answer_;
       SimulationResult latest_, extrapolated_;
-      std::vector<Level> levels_; ///< levels that agree
-      NumberErrors time_errors_;
+      std::vector<Level> levels_;       ///< levels that agree
+      std::vector<double> time_errors_; ///< empty if they are not known
       double size_ = 0., time_error_ = 0., space_error_ = HUGE_VAL;
       unsigned int n_runs_ = 0, n_corrections_ = 0;
       bool has_order_ = false; ///< order observed between the last meshes

@@ -142,6 +142,7 @@ namespace crawler
         }
         before_       = result.displacement;
         result.errors = number_errors(result, other, factor, parameters_.accuracy);
+        add_errors_of_cycles(result, std::abs(result.displacement));
         result.corrected.reset();
         result.time                 = steepest.time;
         answer_.result              = std::move(result);

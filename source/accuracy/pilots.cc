@@ -25,8 +25,8 @@ namespace crawler
     , tolerance(std::max(1e-3 * scale, negligible_displacement()))
   {
     time.step_control = StepControl::adaptive;
-    time.petsc_prefix = "pilot_"; // options after "--" are for the real run
-    time.max_steps    = std::min(time.max_steps, rule::max_pilot_steps);
+    time.petsc_prefix = "pilot_";              // options after "--" are for the real run
+    time.max_steps    = rule::max_pilot_steps; // the limit is for the run itself
     if (cycles)
       cycles->accuracy = std::max(parameters.accuracy, rule::pilot_accuracy);
   }

@@ -156,7 +156,7 @@ namespace crawler
     Answer
     with_files(Answer answer, const std::function<SimulationResult(const NumericsChoice &)> &simulate)
     {
-      if (answer.result.time.status == Status::stopped)
+      if (answer.result.time.status == Status::stopped && answer.result.time.reason != "step_limit")
         return answer;
       SimulationResult files = simulate(answer.choice);
       if (files.time.status == Status::stopped)

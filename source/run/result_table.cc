@@ -47,16 +47,18 @@ namespace crawler
     }
 
     /// Values of optional parts of a result: an expression of the part, and nothing without it.
-#define CRAWLER_PART(member, expression)           \
+#define PART(member, expression)                   \
   [](const Result &r) -> ResultValue {             \
     if (!r.member)                                 \
       return {};                                   \
     [[maybe_unused]] const auto &part = *r.member; \
     return ResultValue(expression);                \
   }
-#define CRAWLER_VALUE(expression) [](const Result &r) -> ResultValue { return ResultValue(expression); }
+#define VALUE(expression) [](const Result &r) -> ResultValue { return ResultValue(expression); }
+#define COUNT(expression) VALUE((unsigned long)(expression))
+#define WORK(expression) PART(energy_balance, part.expression)
     /// Energy per distance of the last stride.
-#define CRAWLER_COST(expression)                         \
+#define COST(expression)                                 \
   [](const Result &r) -> ResultValue {                   \
     if (!r.gait || !r.gait->energy_balance)              \
       return {};                                         \
@@ -67,135 +69,92 @@ namespace crawler
     std::vector<ResultEntry>
     numbers_and_words()
     {
+      using enum ResultEntry::Scale;
       std::vector<ResultEntry> list = {
-        of_process(word("status", "how the run ended", CRAWLER_VALUE(std::string(word_of(r.time.status))))),
+        of_process(word("status", "how the run ended", VALUE(std::string(word_of(r.time.status))))),
         of_process(word("reason",
                         "name of what went wrong",
-                        CRAWLER_VALUE(r.time.status == Status::finished ? std::string() : r.time.reason))),
+                        VALUE(r.time.status == Status::finished ? std::string() : r.time.reason))),
         of_process(word("message",
                         "what went wrong, in a sentence",
-                        CRAWLER_VALUE(r.time.status == Status::finished ? std::string() : r.time.message))),
-        number("displacement", length, "displacement of the centre of mass", CRAWLER_VALUE(r.displacement)),
-        number("displacement_error.total",
-               length,
-               "bound of the error of the displacement",
-               CRAWLER_PART(error, part.total)),
-        number("displacement_error.space", length, "part of this bound from space", CRAWLER_PART(error, part.space)),
-        number("displacement_error.time", length, "part of this bound from time", CRAWLER_PART(error, part.time)),
+                        VALUE(r.time.status == Status::finished ? std::string() : r.time.message))),
+        number("displacement", length, "displacement of the centre of mass", VALUE(r.displacement)),
+        number("displacement_error.total", length, "bound of the error of the displacement", PART(error, part.total)),
+        number("displacement_error.space", length, "part of this bound from space", PART(error, part.space)),
+        number("displacement_error.time", length, "part of this bound from time", PART(error, part.time)),
+        number("displacement_error.model", length, "part of this bound from the model", PART(error, part.model)),
+        number("end_time", time, "time that was reached", VALUE(r.time.time)),
+        number("cycles.period", time, "period of the cycles that repeat", PART(cycles, part.period)),
+        number("cycles.computed", one, "cycles that were computed", PART(cycles, 1ul * part.computed)),
+        number("cycles.extrapolated", one, "cycles that were extrapolated", PART(cycles, 1ul * part.extrapolated)),
         number(
-          "displacement_error.model", length, "part of this bound from the model", CRAWLER_PART(error, part.model)),
-        number("end_time", time, "time that was reached", CRAWLER_VALUE(r.time.time)),
-        number("cycles.period", time, "period of the cycles that repeat", CRAWLER_PART(cycles, part.period)),
-        number("cycles.computed", one, "cycles that were computed", CRAWLER_PART(cycles, (unsigned long)part.computed)),
-        number("cycles.extrapolated",
-               one,
-               "cycles that were extrapolated",
-               CRAWLER_PART(cycles, (unsigned long)part.extrapolated)),
-        number("cycles.error",
-               length,
-               "bound of the error of the displacement by extrapolation",
-               CRAWLER_PART(cycles, part.bound)),
-        word("model", "level of the model hierarchy", CRAWLER_VALUE(std::string(word_of(r.model)))),
-        number("stress_power",
-               energy,
-               "work of the active stress",
-               CRAWLER_PART(energy_balance, part.stress_work),
-               Scale::exchanged_work),
-        number("dissipation",
-               energy,
-               "work against the friction",
-               CRAWLER_PART(energy_balance, part.dissipation),
-               Scale::exchanged_work),
-        number("elastic_energy",
-               energy,
-               "elastic energy of the last state",
-               CRAWLER_PART(energy_balance, part.elastic_energy),
-               Scale::exchanged_work),
+          "cycles.error", length, "bound of the error of the displacement by extrapolation", PART(cycles, part.bound)),
+        word("model", "level of the model hierarchy", VALUE(std::string(word_of(r.model)))),
+        number("stress_power", energy, "work of the active stress", WORK(stress_work), exchanged_work),
+        number("dissipation", energy, "work against the friction", WORK(dissipation), exchanged_work),
+        number("elastic_energy", energy, "elastic energy of the last state", WORK(elastic_energy), exchanged_work),
         number("ledger_residual",
                one,
                "residual of the energy balance, relative to the exchanged work",
                [](const Result &r) -> ResultValue {
                  return known(r.energy_balance ? r.energy_balance->residual() : r.residual_of_unknown_works);
                }),
-        number("paper_energy",
-               energy,
-               "energy of the paper",
-               CRAWLER_PART(energy_balance, part.paper_energy()),
-               Scale::exchanged_work),
+        number("paper_energy", energy, "energy of the paper", WORK(paper_energy()), exchanged_work),
         number("positive_power",
                energy,
                "work of the active stress where it is positive",
-               CRAWLER_PART(energy_balance, part.positive_work),
-               Scale::exchanged_work,
+               WORK(positive_work),
+               exchanged_work,
                true),
         number("net_friction",
                one,
                "mean net friction, relative to the mean absolute friction",
-               CRAWLER_PART(energy_balance, r.net_friction)),
-        number("min_stretch.value",
-               one,
-               "smallest stretch over body and time",
-               CRAWLER_VALUE(r.min_stretch.value),
-               Scale::strain,
-               true),
-        number("min_stretch.s", length, "where the stretch is smallest", CRAWLER_VALUE(r.min_stretch.s)),
-        number("min_stretch.t", time, "when the stretch is smallest", CRAWLER_VALUE(r.min_stretch.t)),
-        number("max_stretch.value",
-               one,
-               "largest stretch over body and time",
-               CRAWLER_VALUE(r.max_stretch.value),
-               Scale::strain,
-               true),
-        number("max_stretch.s", length, "where the stretch is largest", CRAWLER_VALUE(r.max_stretch.s)),
-        number("max_stretch.t", time, "when the stretch is largest", CRAWLER_VALUE(r.max_stretch.t)),
-        number("gait.period", time, "period of the last stride", CRAWLER_PART(gait, part.period)),
-        number("gait.frequency", "1/time", "frequency of the last stride", CRAWLER_PART(gait, 1. / part.period)),
+               PART(energy_balance, r.net_friction)),
+        number(
+          "min_stretch.value", one, "smallest stretch over body and time", VALUE(r.min_stretch.value), strain, true),
+        number("min_stretch.s", length, "where the stretch is smallest", VALUE(r.min_stretch.s)),
+        number("min_stretch.t", time, "when the stretch is smallest", VALUE(r.min_stretch.t)),
+        number(
+          "max_stretch.value", one, "largest stretch over body and time", VALUE(r.max_stretch.value), strain, true),
+        number("max_stretch.s", length, "where the stretch is largest", VALUE(r.max_stretch.s)),
+        number("max_stretch.t", time, "when the stretch is largest", VALUE(r.max_stretch.t)),
+        number("gait.period", time, "period of the last stride", PART(gait, part.period)),
+        number("gait.frequency", "1/time", "frequency of the last stride", PART(gait, 1. / part.period)),
         word("gait.period_from",
              "what the period is known from",
-             CRAWLER_PART(gait, std::string(part.is_declared ? "active stress" : "stretch"))),
-        number("gait.strides", one, "number of strides that fit into the run", CRAWLER_PART(gait, part.n_strides)),
-        number("gait.displacement",
-               length,
-               "displacement in the last stride",
-               CRAWLER_PART(gait, part.displacement),
-               Scale::itself),
-        number(
-          "gait.body_lengths", one, "body lengths covered in the last stride", CRAWLER_PART(gait, part.body_lengths())),
-        number(
-          "gait.speed", "length/time", "speed in the last stride", CRAWLER_PART(gait, part.speed()), Scale::itself),
+             PART(gait, std::string(part.is_declared ? "active stress" : "stretch"))),
+        number("gait.strides", one, "number of strides that fit into the run", PART(gait, part.n_strides)),
+        number("gait.displacement", length, "displacement in the last stride", PART(gait, part.displacement), itself),
+        number("gait.body_lengths", one, "body lengths covered in the last stride", PART(gait, part.body_lengths())),
+        number("gait.speed", "length/time", "speed in the last stride", PART(gait, part.speed()), itself),
         number("gait.cost_of_transport.stress_power",
                force,
                "work of the active stress per distance",
-               CRAWLER_COST(part.stress_work),
-               Scale::cost),
+               COST(part.stress_work),
+               cost),
         number("gait.cost_of_transport.positive_power",
                force,
                "positive work of the active stress per distance, for actuators that cannot recover work",
-               CRAWLER_COST(part.positive_work),
-               Scale::cost,
+               COST(part.positive_work),
+               cost,
                true),
         number("gait.cost_of_transport.paper_energy",
                force,
                "energy of the paper per distance",
-               CRAWLER_COST(part.paper_energy()),
-               Scale::cost),
+               COST(part.paper_energy()),
+               cost),
         number("gait.cost_of_transport.dissipation",
                force,
                "work against the friction per distance",
-               CRAWLER_COST(part.dissipation),
-               Scale::cost),
-        number("gait.slip",
-               one,
-               "1 - speed of the body/speed of the wave",
-               CRAWLER_PART(gait, known(part.slip())),
-               Scale::itself),
-        word(
-          "gait.wave.direction", "direction of the wave of stretch", CRAWLER_PART(gait, std::string(part.direction()))),
+               COST(part.dissipation),
+               cost),
+        number("gait.slip", one, "1 - speed of the body/speed of the wave", PART(gait, known(part.slip())), itself),
+        word("gait.wave.direction", "direction of the wave of stretch", PART(gait, std::string(part.direction()))),
         number("gait.wave.speed",
                "length/time",
                "speed of the wave of stretch",
-               CRAWLER_PART(gait, known(part.wave_speed())),
-               Scale::itself),
+               PART(gait, known(part.wave_speed())),
+               itself),
         number("gait.wave.coherence",
                one,
                "coherence of the wave of stretch: 1 for a pure wave",
@@ -205,19 +164,19 @@ namespace crawler
         number("gait.efficiency",
                one,
                "displacement over the largest that any gait can reach",
-               CRAWLER_VALUE(known(r.gait_efficiency)),
-               Scale::itself,
+               VALUE(known(r.gait_efficiency)),
+               itself,
                true),
         number("gait.stride_efficiency",
                one,
                "the same for the displacement of the last stride",
-               CRAWLER_PART(gait, known(part.efficiency)),
-               Scale::itself,
+               PART(gait, known(part.efficiency)),
+               itself,
                true)};
       const std::string value = ".value";
       int n_errors            = 0;
       for (std::size_t i = 0, n = list.size(); i < n; ++i)
-        if (list[i].scale != Scale::none)
+        if (list[i].scale != none)
         {
           const ResultEntry &entry = list[i];
           const std::string key =
@@ -226,72 +185,55 @@ namespace crawler
           error.error       = n_errors++;
           list.push_back(std::move(error));
         }
-      if (n_errors != static_cast<int>(NumberErrors::n))
-        throw std::logic_error("the table of results has another number of errors than NumberErrors");
       for (ResultEntry &entry : std::vector<ResultEntry>{
              word("formulation",
                   "position or stretch",
-                  CRAWLER_VALUE(std::string(r.formulation == Formulation::stretch ? "stretch" : "position"))),
-             number("mesh_changes",
-                    one,
-                    "number of changes of an adaptive mesh",
-                    CRAWLER_VALUE((unsigned long)r.mesh_changes)),
+                  VALUE(std::string(r.formulation == Formulation::stretch ? "stretch" : "position"))),
+             number("mesh_changes", one, "number of changes of an adaptive mesh", COUNT(r.mesh_changes)),
              number("most_cells",
                     one,
                     "largest number of cells of all meshes",
-                    CRAWLER_VALUE((unsigned long)std::max(r.most_cells, r.mesh ? r.mesh->n_cells : 0))),
-             number("inversion.value", one, "stretch where the body inverted", CRAWLER_PART(inversion, part.value)),
-             number("inversion.s", length, "where the body inverted", CRAWLER_PART(inversion, part.s)),
-             number("inversion.t", time, "when the body inverted", CRAWLER_PART(inversion, part.t)),
-             number("inversion.error",
-                    time,
-                    "bound of the error of the time of inversion",
-                    CRAWLER_VALUE(known(r.inversion_error))),
+                    COUNT(std::max(r.most_cells, r.mesh ? r.mesh->n_cells : 0))),
+             number("inversion.value", one, "stretch where the body inverted", PART(inversion, part.value)),
+             number("inversion.s", length, "where the body inverted", PART(inversion, part.s)),
+             number("inversion.t", time, "when the body inverted", PART(inversion, part.t)),
+             number(
+               "inversion.error", time, "bound of the error of the time of inversion", VALUE(known(r.inversion_error))),
              number("inversion.s_first",
                     length,
                     "first place where the stretch was lost",
-                    CRAWLER_PART(inversion, r.inverted_places ? r.inverted_places->first : part.s)),
+                    PART(inversion, r.inverted_places ? r.inverted_places->first : part.s)),
              number("inversion.s_last",
                     length,
                     "last place where the stretch was lost",
-                    CRAWLER_PART(inversion, r.inverted_places ? r.inverted_places->second : part.s)),
-             number("cells",
-                    one,
-                    "number of cells of the last mesh",
-                    CRAWLER_VALUE((unsigned long)(r.mesh ? r.mesh->n_cells : 0))),
-             number("degree", one, "polynomial degree of the elements", CRAWLER_PART(mesh, (unsigned long)part.degree)),
+                    PART(inversion, r.inverted_places ? r.inverted_places->second : part.s)),
+             number("cells", one, "number of cells of the last mesh", COUNT(r.mesh ? r.mesh->n_cells : 0)),
+             number("degree", one, "polynomial degree of the elements", PART(mesh, 1ul * part.degree)),
              number("degrees_of_freedom",
                     one,
                     "number of unknowns of the last mesh",
-                    CRAWLER_VALUE((unsigned long)(r.mesh ? r.mesh->n_unknowns : 0))),
-             number("steps", one, "number of accepted time steps", CRAWLER_VALUE((unsigned long)r.time.steps)),
-             number("rejected_steps",
-                    one,
-                    "number of rejected time steps",
-                    CRAWLER_VALUE((unsigned long)r.time.rejected_steps)),
-             number("newton_iterations",
-                    one,
-                    "Newton iterations of all steps",
-                    CRAWLER_VALUE((unsigned long)r.time.newton_iterations)),
-             of_process(number("cells_shared",
-                               "",
-                               "whether several ranks shared the cells",
-                               CRAWLER_VALUE(r.mesh && r.mesh->is_shared))),
-             number(
-               "refinements", one, "number of attempts before this run", CRAWLER_VALUE((unsigned long)r.refinements)),
-             word("integrator", "time integrator", CRAWLER_VALUE(r.integrator)),
-             word("engine", "engine that ran the integrator", CRAWLER_VALUE(r.engine)),
-             of_process(number("seconds.setup", "s", "wall time for the setup", CRAWLER_VALUE(r.setup_seconds))),
-             of_process(number("seconds.solve", "s", "wall time for the solution", CRAWLER_VALUE(r.solve_seconds))),
-             of_process(number("seconds.output", "s", "wall time for the output", CRAWLER_VALUE(r.output_seconds))),
+                    COUNT(r.mesh ? r.mesh->n_unknowns : 0)),
+             number("steps", one, "number of accepted time steps", COUNT(r.time.steps)),
+             number("rejected_steps", one, "number of rejected time steps", COUNT(r.time.rejected_steps)),
+             number("newton_iterations", one, "Newton iterations of all steps", COUNT(r.time.newton_iterations)),
              of_process(
-               number("seconds.error", "s", "wall time for the error bounds", CRAWLER_VALUE(r.estimate_seconds)))})
+               number(
+                 "cells_shared", "", "whether several ranks shared the cells", VALUE(r.mesh && r.mesh->is_shared))),
+             number("refinements", one, "number of attempts before this run", COUNT(r.refinements)),
+             word("integrator", "time integrator", VALUE(r.integrator)),
+             word("engine", "engine that ran the integrator", VALUE(r.engine)),
+             of_process(number("seconds.setup", "s", "wall time for the setup", VALUE(r.setup_seconds))),
+             of_process(number("seconds.solve", "s", "wall time for the solution", VALUE(r.solve_seconds))),
+             of_process(number("seconds.output", "s", "wall time for the output", VALUE(r.output_seconds))),
+             of_process(number("seconds.error", "s", "wall time for the error bounds", VALUE(r.estimate_seconds)))})
         list.push_back(std::move(entry));
       return list;
     }
-#undef CRAWLER_PART
-#undef CRAWLER_VALUE
-#undef CRAWLER_COST
+#undef PART
+#undef VALUE
+#undef COST
+#undef COUNT
+#undef WORK
   } // namespace
 
   ResultValue
@@ -299,7 +241,7 @@ namespace crawler
   {
     if (error < 0)
       return value(result);
-    return result.errors ? known(result.errors->values[static_cast<std::size_t>(error)]) : ResultValue();
+    return !result.errors.empty() ? known(result.errors[static_cast<std::size_t>(error)]) : ResultValue();
   }
 
   double
@@ -351,9 +293,9 @@ namespace crawler
   error_bound(const SimulationResult &result, const std::string &key)
   {
     const auto &entries = entries_with_errors();
-    for (std::size_t i = 0; result.errors && i < entries.size(); ++i)
-      if (entries[i]->key == key && std::isfinite(result.errors->values[i]))
-        return result.errors->values[i];
+    for (std::size_t i = 0; i < result.errors.size(); ++i)
+      if (entries[i]->key == key && std::isfinite(result.errors[i]))
+        return result.errors[i];
     return std::nullopt;
   }
 
@@ -361,11 +303,10 @@ namespace crawler
   set_error_bound(SimulationResult &result, const std::string &key, const double bound)
   {
     const auto &entries = entries_with_errors();
-    if (!result.errors)
-      result.errors.emplace();
+    result.errors.resize(entries.size(), std::numeric_limits<double>::quiet_NaN());
     for (std::size_t i = 0; i < entries.size(); ++i)
       if (entries[i]->key == key)
-        result.errors->values.at(i) = bound;
+        result.errors[i] = bound;
   }
 
   std::string

@@ -53,10 +53,10 @@ namespace crawler
     cover_residual(SimulationResult &result)
     {
       const auto &entries = entries_with_errors();
-      for (std::size_t i = 0; result.errors && i < entries.size(); ++i)
+      for (std::size_t i = 0; i < result.errors.size(); ++i)
         if (entries[i]->scale == ResultEntry::Scale::exchanged_work || entries[i]->scale == ResultEntry::Scale::cost)
         {
-          double &error = result.errors->values[i];
+          double &error = result.errors[i];
           error         = std::max(error, result.energy_balance->residual() * entries[i]->scale_in(result));
         }
     }
@@ -116,9 +116,9 @@ namespace crawler
         result.gait->efficiency.reset();
       }
       const auto &entries = entries_with_errors();
-      for (std::size_t i = 0; result.errors && i < entries.size(); ++i)
+      for (std::size_t i = 0; i < result.errors.size(); ++i)
         if (std::holds_alternative<std::monostate>(entries[i]->value(result)))
-          result.errors->values[i] = std::numeric_limits<double>::quiet_NaN();
+          result.errors[i] = std::numeric_limits<double>::quiet_NaN();
     }
   } // namespace
 

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 namespace crawler
 {
@@ -28,48 +27,8 @@ namespace crawler
     {
       Harmonics re{}, im{};
     };
-
-    /// Number of pieces of the body processed side by side; their total is filled up with pieces at rest.
-    constexpr std::size_t together = 4;
-
     /// Harmonics of all pieces.
-    class Pieces
-    {
-    public:
-      explicit Pieces(const std::size_t n_pieces)
-        : n(n_pieces)
-        , filled((n + together - 1) / together * together)
-        , numbers_(2 * n_harmonics * filled, 0.)
-      {
-      }
-
-      /// Real parts [filled] of harmonic @p h.
-      double *
-      re(const unsigned int h)
-      {
-        return &numbers_[2 * h * filled];
-      }
-      const double *
-      re(const unsigned int h) const
-      {
-        return &numbers_[2 * h * filled];
-      }
-      double *
-      im(const unsigned int h)
-      {
-        return re(h) + filled;
-      }
-      const double *
-      im(const unsigned int h) const
-      {
-        return re(h) + filled;
-      }
-
-      std::size_t n, filled;
-
-    private:
-      std::vector<double> numbers_;
-    };
+    using Pieces = std::vector<Complex>;
 
     double
     square(const double x)
@@ -77,17 +36,78 @@ namespace crawler
       return x * x;
     }
 
-    /// Table of cos and sin of 2 pi i/n, i = 0 ... n - 1.
-    std::vector<std::array<double, 2>>
-    circle(const std::size_t n)
+    /// Number of waves by the mean phase of the fundamental from piece to piece.
+    double
+    from_phases(const Pieces &E)
     {
-      std::vector<std::array<double, 2>> points(n);
-      for (std::size_t i = 0; i < n; ++i)
+      double re = 0., im = 0.;
+      for (std::size_t i = 0; i + 1 < E.size(); ++i)
       {
-        const double angle = 2. * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n);
-        points[i]          = {{std::cos(angle), std::sin(angle)}};
+        re += E[i].re[0] * E[i + 1].re[0] + E[i].im[0] * E[i + 1].im[0];
+        im += E[i].re[0] * E[i + 1].im[0] - E[i].im[0] * E[i + 1].re[0];
       }
-      return points;
+      return -std::atan2(im, re) / (2. * std::numbers::pi) * static_cast<double>(E.size());
+    }
+
+    /// Power sum_n sum_i |E_n|^2
+    double
+    power(const Pieces &E)
+    {
+      double sum = 0.;
+      for (const Complex &one : E)
+        for (unsigned int n = 0; n < n_harmonics; ++n)
+          sum += square(one.re[n]) + square(one.im[n]);
+      return sum;
+    }
+
+    /// S and its derivatives.
+    struct Value
+    {
+      double S = 0., slope = 0., curvature = 0.;
+    };
+
+    /// Function S of the number of waves of the fundamental on the body, nu = q L/P.
+    Value
+    at(const Pieces &E, const double nu)
+    {
+      const auto n_pieces = static_cast<double>(E.size());
+      const double middle = 0.5 * (n_pieces - 1.);
+      Complex step, turn, f, f_s, f_ss; // integrals of E_n e^(i n w q s), with powers of s in pieces, from the middle
+      for (unsigned int n = 0; n < n_harmonics; ++n)
+      {
+        const double angle = 2. * std::numbers::pi * (n + 1.) * nu / n_pieces;
+        step.re[n]         = std::cos(angle);
+        step.im[n]         = std::sin(angle);
+        turn.re[n]         = std::cos(angle * middle);
+        turn.im[n]         = -std::sin(angle * middle);
+      }
+      for (std::size_t i = 0; i < E.size(); ++i)
+      {
+        const double s = static_cast<double>(i) - middle;
+        for (unsigned int n = 0; n < n_harmonics; ++n)
+        {
+          const double c = turn.re[n], d = turn.im[n];
+          const double x = E[i].re[n] * c - E[i].im[n] * d, y = E[i].re[n] * d + E[i].im[n] * c;
+          f.re[n] += x;
+          f.im[n] += y;
+          f_s.re[n] += s * x;
+          f_s.im[n] += s * y;
+          f_ss.re[n] += s * s * x;
+          f_ss.im[n] += s * s * y;
+          turn.re[n] = c * step.re[n] - d * step.im[n];
+          turn.im[n] = c * step.im[n] + d * step.re[n];
+        }
+      }
+      const double all = n_pieces * power(E);
+      Value value;
+      for (unsigned int n = 0; n < n_harmonics; ++n)
+      {
+        const double k = 2. * std::numbers::pi * (n + 1.) / n_pieces, a = f.re[n], b = f.im[n];
+        value.S += (square(a) + square(b)) / all;
+        value.slope += 2. * k * (b * f_s.re[n] - a * f_s.im[n]) / all;
+        value.curvature += 2. * k * k * (square(f_s.re[n]) + square(f_s.im[n]) - a * f_ss.re[n] - b * f_ss.im[n]) / all;
+      }
+      return value;
     }
 
     Complex
@@ -103,26 +123,12 @@ namespace crawler
       return sum;
     }
 
-    /// Number of waves by the mean phase of the fundamental from piece to piece.
-    double
-    from_phases(const Pieces &E)
-    {
-      const double *const x = E.re(0), *const y = E.im(0);
-      double re = 0., im = 0.;
-      for (std::size_t i = 0; i + 1 < E.n; ++i)
-      {
-        re += x[i] * x[i + 1] + y[i] * y[i + 1];
-        im += x[i] * y[i + 1] - y[i] * x[i + 1];
-      }
-      return -std::atan2(im, re) / (2. * std::numbers::pi) * static_cast<double>(E.n);
-    }
-
     /// Number of waves of the largest S, to a sixteenth, among those that the pieces distinguish: each harmonic gives
     /// |int E_n e^(iks) ds|^2 as a table over k.
     double
     search(const Pieces &E)
     {
-      const std::size_t half = E.n / 2, n_table = steps_per_wave * half + 1;
+      const std::size_t half = E.size() / 2, n_table = steps_per_wave * half + 1;
       // Folding the body about its middle: cosines see the even part, sines the odd one; both directions are one.
       std::vector<Complex> even(half), odd(half);
       std::vector<double> cosines(half, 1.), sines(half, 0.);
@@ -132,13 +138,13 @@ namespace crawler
         const std::size_t left = half - 1 - i, right = half + i;
         for (unsigned int n = 0; n < n_harmonics; ++n)
         {
-          even[i].re[n] = E.re(n)[right] + E.re(n)[left];
-          even[i].im[n] = E.im(n)[right] + E.im(n)[left];
-          odd[i].re[n]  = E.re(n)[right] - E.re(n)[left];
-          odd[i].im[n]  = E.im(n)[right] - E.im(n)[left];
+          even[i].re[n] = E[right].re[n] + E[left].re[n];
+          even[i].im[n] = E[right].im[n] + E[left].im[n];
+          odd[i].re[n]  = E[right].re[n] - E[left].re[n];
+          odd[i].im[n]  = E[right].im[n] - E[left].im[n];
         }
         const double angle =
-          2. * std::numbers::pi / steps_per_wave * (static_cast<double>(i) + 0.5) / static_cast<double>(E.n);
+          2. * std::numbers::pi / steps_per_wave * (static_cast<double>(i) + 0.5) / static_cast<double>(E.size());
         step[i] = {{std::cos(angle), std::sin(angle)}};
       }
       std::vector<std::array<Harmonics, 2>> power(n_table); // in both directions
@@ -178,102 +184,13 @@ namespace crawler
       return best;
     }
 
-    /// Power sum_n sum_i |E_n|^2
-    double
-    power(const Pieces &E)
+    struct Peak
     {
-      double sum = 0.;
-      for (unsigned int n = 0; n < n_harmonics; ++n)
-        for (std::size_t i = 0; i < E.n; ++i)
-          sum += square(E.re(n)[i]) + square(E.im(n)[i]);
-      return sum;
-    }
-
-    /// Function S of the number of waves of the fundamental on the body, nu = q L/P.
-    class Beam
-    {
-    public:
-      explicit Beam(Pieces E)
-        : E_(std::move(E))
-        , all_(static_cast<double>(E_.n) * power(E_))
-      {
-      }
-
-      struct Value
-      {
-        double S = 0., slope = 0., curvature = 0.;
-      };
-      Value
-      at(double nu) const;
-
-      struct Peak
-      {
-        double nu, S;
-      };
-      /// Largest S near @p nu, its number of waves to round-off.
-      Peak
-      best(double nu) const;
-
-    private:
-      Pieces E_;
-      double all_;
+      double nu, S;
     };
-
-    Beam::Value
-    Beam::at(const double nu) const
-    {
-      const auto n_pieces    = static_cast<double>(E_.n);
-      const double per_piece = 2. * std::numbers::pi * nu / n_pieces, middle = 0.5 * (n_pieces - 1.);
-      // Factors e^(i w q s) at all pieces, s from the middle; and their powers.
-      const std::size_t filled = E_.filled;
-      std::vector<double> s(filled), re(filled), im(filled), turn_re(filled, 1.), turn_im(filled, 0.);
-      const double step_re = std::cos(per_piece), step_im = std::sin(per_piece);
-      re[0] = std::cos(per_piece * middle);
-      im[0] = -std::sin(per_piece * middle);
-      for (std::size_t i = 0; i < filled; ++i)
-      {
-        s[i] = static_cast<double>(i) - middle;
-        if (i == 0)
-          continue;
-        re[i] = re[i - 1] * step_re - im[i - 1] * step_im;
-        im[i] = re[i - 1] * step_im + im[i - 1] * step_re;
-      }
-      Value value;
-      for (unsigned int n = 0; n < n_harmonics; ++n)
-      {
-        // Integrals of E_n e^(i n w q s), with powers of s in pieces.
-        std::array<double, together> f_re{}, f_im{}, s_re{}, s_im{}, ss_re{}, ss_im{};
-        const double *const E_re = E_.re(n), *const E_im = E_.im(n);
-        for (std::size_t first = 0; first < filled; first += together)
-          for (std::size_t l = 0; l < together; ++l)
-          {
-            const std::size_t i = first + l;
-            const double c = turn_re[i] * re[i] - turn_im[i] * im[i], d = turn_re[i] * im[i] + turn_im[i] * re[i];
-            turn_re[i]     = c;
-            turn_im[i]     = d;
-            const double x = E_re[i] * c - E_im[i] * d, y = E_re[i] * d + E_im[i] * c;
-            const double sx = s[i] * x, sy = s[i] * y;
-            f_re[l] += x;
-            f_im[l] += y;
-            s_re[l] += sx;
-            s_im[l] += sy;
-            ss_re[l] += s[i] * sx;
-            ss_im[l] += s[i] * sy;
-          }
-        const auto sum = [](const std::array<double, together> &parts) {
-          return std::accumulate(parts.begin(), parts.end(), 0.);
-        };
-        const double k = 2. * std::numbers::pi * (n + 1.) / n_pieces;
-        const double a = sum(f_re), b = sum(f_im), a_s = sum(s_re), b_s = sum(s_im);
-        value.S += (square(a) + square(b)) / all_;
-        value.slope += 2. * k * (b * a_s - a * b_s) / all_;
-        value.curvature += 2. * k * k * (square(a_s) + square(b_s) - a * sum(ss_re) - b * sum(ss_im)) / all_;
-      }
-      return value;
-    }
-
-    Beam::Peak
-    Beam::best(double nu) const
+    /// Largest S near @p nu, its number of waves to round-off.
+    Peak
+    best(const Pieces &E, double nu)
     {
       constexpr unsigned int max_corrections = 30;
       constexpr double most = 0.5 / search_steps_per_wave, last = 1e-7;
@@ -282,7 +199,7 @@ namespace crawler
       double S = 0.;
       for (unsigned int i = 0; i < max_corrections; ++i)
       {
-        const Value here = at(nu);
+        const Value here = at(E, nu);
         const double correction =
           here.curvature < 0. ? std::clamp(-here.slope / here.curvature, -most, most) : std::copysign(most, here.slope);
         nu += correction;
@@ -299,40 +216,35 @@ namespace crawler
       double nu, S, opposite;
     };
     Largest
-    largest_wave(Pieces E, const std::size_t n_s)
+    largest_wave(const Pieces &E, const std::size_t n_s)
     {
       // Pairs of pieces take half the time. A wave with more than half of all e is the largest, since waves of other
       // numbers are orthogonal: so the search is near the phase from piece to piece, else among all. If pairs of pieces
       // find nearly all they see as much as the whole.
       constexpr double half_of_all = 0.5, nearly_all = 0.9;
       Pieces pairs(n_s / 2);
-      for (unsigned int n = 0; n < n_harmonics; ++n)
-        for (std::size_t i = 0; i < pairs.n; ++i)
+      for (std::size_t i = 0; i < pairs.size(); ++i)
+        for (unsigned int n = 0; n < n_harmonics; ++n)
         {
-          pairs.re(n)[i] = E.re(n)[2 * i] + E.re(n)[2 * i + 1];
-          pairs.im(n)[i] = E.im(n)[2 * i] + E.im(n)[2 * i + 1];
+          pairs[i].re[n] = E[2 * i].re[n] + E[2 * i + 1].re[n];
+          pairs[i].im[n] = E[2 * i].im[n] + E[2 * i + 1].im[n];
         }
-      const double of_pairs = static_cast<double>(pairs.n) * power(pairs) / (static_cast<double>(n_s) * power(E));
-      Beam beam(pairs);
-      Beam::Peak peak = beam.best(from_phases(pairs));
-      bool is_best    = true;
-      double found    = peak.S * of_pairs;
+      const double of_pairs = 0.5 * power(pairs) / power(E);
+      Peak peak             = best(pairs, from_phases(pairs));
+      bool is_best          = true;
+      double found          = peak.S * of_pairs;
       if (found < half_of_all)
       {
         peak.nu = search(pairs);
-        found   = beam.at(peak.nu).S * of_pairs;
+        found   = at(pairs, peak.nu).S * of_pairs;
         is_best = false;
         if (found < half_of_all)
           peak.nu = search(E);
       }
-      if (found < nearly_all)
-      {
-        beam    = Beam(std::move(E));
-        is_best = false;
-      }
-      if (!is_best)
-        peak = beam.best(peak.nu);
-      return {peak.nu, peak.S, beam.at(-peak.nu).S};
+      const Pieces &seen = found < nearly_all ? E : pairs;
+      if (!is_best || found < nearly_all)
+        peak = best(seen, peak.nu);
+      return {peak.nu, peak.S, at(seen, -peak.nu).S};
     }
   } // namespace
 
@@ -348,38 +260,35 @@ namespace crawler
     for (const auto &w : stretch)
       for (std::size_t i = 0; i < n_s; ++i)
         mean[i] += per_phase * w[i];
-    const auto turns = circle(n_t);
     Pieces E(n_s);
     double largest = 0., squares = 0.;
-    // Odd harmonics have the other sign half a period later.
     const std::size_t half = n_t / 2;
-    std::vector<double> odd(n_s), even(n_s);
     for (std::size_t j = 0; j < half; ++j)
     {
+      Complex turn;
+      for (std::size_t n = 0; n < n_harmonics; ++n)
+      {
+        const double angle = 2. * std::numbers::pi * static_cast<double>((n + 1) * j % n_t) / static_cast<double>(n_t);
+        turn.re[n]         = per_phase * std::cos(angle);
+        turn.im[n]         = -per_phase * std::sin(angle);
+      }
       for (std::size_t i = 0; i < n_s; ++i)
       {
         const double e = stretch[j][i] - mean[i], later = stretch[j + half][i] - mean[i];
         largest = std::max({largest, std::abs(e), std::abs(later)});
         squares += per_phase * (e * e + later * later);
-        odd[i]  = e - later;
-        even[i] = e + later;
-      }
-      for (unsigned int n = 0; n < n_harmonics; ++n)
-      {
-        const double re = per_phase * turns[(n + 1) * j % n_t][0], im = -per_phase * turns[(n + 1) * j % n_t][1];
-        const double *const x = n % 2 == 0 ? odd.data() : even.data();
-        double *const E_re = E.re(n), *const E_im = E.im(n);
-        for (std::size_t i = 0; i < n_s; ++i)
+        // Odd harmonics have the other sign half a period later.
+        for (unsigned int n = 0; n < n_harmonics; ++n)
         {
-          E_re[i] += x[i] * re;
-          E_im[i] += x[i] * im;
+          const double x = n % 2 == 0 ? e - later : e + later;
+          E[i].re[n] += x * turn.re[n];
+          E[i].im[n] += x * turn.im[n];
         }
       }
     }
     if (largest <= nothing || swing > max_swing * largest || squares - 2. * power(E) > max_unresolved * squares)
       return std::nullopt;
-
-    const Largest wave = largest_wave(std::move(E), n_s);
+    const Largest wave = largest_wave(E, n_s);
     return StretchWave{length / (period * wave.nu), std::max(wave.S - wave.opposite, 0.)};
   }
 } // namespace crawler

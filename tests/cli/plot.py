@@ -201,6 +201,8 @@ def test_units():
     texts = " ".join(words("named.svg")) if code == 0 else ""
     check(code == 0 and all(word in texts for word in ("[mm]", "time $t$ [s]", "active stress $m$ [mN]")) and "[time]" not in texts,
           f"units of the user: {texts} {printed}")
+    end = crawler("paper", "named")
+    check("\ndisplacement,mm," in pathlib.Path("named/paper/numbers.csv").read_text(encoding="utf-8"), f"units of numbers.csv: {end.stderr}")
 
 
 def test_copied_program():
@@ -290,7 +292,7 @@ def test_paper():
             check(all(round_trip(line[-1], *one) for line, one in zip(cells[1:], found)), f"points for LaTeX: {cells}")
         else:
             check([line[-1] for line in cells] == ["outcome", *["finished"] * 6], f"outcomes: {cells}")
-    for arguments, code, word in (([], 2, "DIR missing"), (["nowhere"], 2, '"nowhere" is not a folder'), (["empty"], 6, "summary.json"),
+    for arguments, code, word in (([], 2, "DIR missing"), (["nowhere"], 2, '"nowhere" is not a folder'), (["empty"], 2, "summary.json"),
                                   (["optimum"], 2, "an optimisation, but that of a run or sweep"), (["run", "--columns", "3"], 2, "one of 1, 2"),
                                   (["run", "--height", "5"], 2, "from 20 to 250"), (["run", "--lastt-stride"], 2, '"--last-stride"'),
                                   (["sweep", "--value", "nothing"], 2, "nearest"), (["run", "--output", "no/where"], 6, "no/where")):

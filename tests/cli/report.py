@@ -187,8 +187,8 @@ def test_refused(program):
     (folder / "full/report.html").unlink()
     (folder / "full/report.html/x").mkdir(parents=True)
     for name, code, words in (("nothing", 2, "does not exist"), ("run.prm", 2, "is a file"), ("empty", 2, "has no results"),
-                              ("no_json", 2, "summary.json\" is damaged"), ("no_picture", 2, "kymograph.vts\" is damaged"),
-                              ("no_table", 2, "results.h5\""), ("full", 6, "cannot write \"full/report.html\"")):
+                              ("no_json", 6, "summary.json\" is damaged"), ("no_picture", 6, "kymograph.vts\" is damaged"),
+                              ("no_table", 6, "results.h5\""), ("full", 6, "cannot write \"full/report.html\"")):
         result = program("report", name)
         check(result.returncode == code and words in result.stderr and result.stderr.count("\n") == 1 and not result.stdout,
               f"{name}: {result.returncode}, {result.stderr.strip()}")

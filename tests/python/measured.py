@@ -280,6 +280,7 @@ class Files(unittest.TestCase):
         self.assertEqual(read(points.replace("2.000", "2.5")).values[0, 0], 1.368)
         with self.assertRaisesRegex(InputError, '"1.368", which may be 1.368 or 1368'):
             read(points)
+        self.assertEqual(len(read(WIDE + ";;;;\n;;;;\n").t), len(read(WIDE).t))  # rows of empty cells
 
     def test_refusals_name_the_place(self):
         rows = WIDE.split("\n", 1)[1]
@@ -294,6 +295,7 @@ class Files(unittest.TestCase):
                 (b"a\0b", "a binary file", {}), (b"\x89HDF\r\n\x1a\n", "HDF5", {}), (WIDE, '"--head"', {"head": "x1"}), (WIDE, '"--animal"', {"animal": "1"}),
                 (longer.replace("m;", "strain;", 1).replace("\n1;0;0", "\n-5;0;0"), "a strain above -1", {}),
                 (longer, 'has the column m, but "--quantity" is strain', {"quantity": "strain"}),
+                (WIDE + "#DIV/0!;1;2;3;4\n", 'row 6 of ".*" has "#DIV/0!" under t', {}),
                 (WIDE + "4;1\n", "row 6 .* has 2 cells, but 5 are expected, as in most", {}),
                 (longer.replace("\n1;0;0", "\n1_0;0;0"), '"1_0" under', {}), (WIDE, "NAME=COLUMN", {"columns": "q=t"}),
                 ("t,y1,y2,y3,y4\n" + "".join(f"{j},1,2,3,4\n" for j in range(5)), "but no x", {}), (WIDE, 'the column "q"', {"columns": "t=q"}),

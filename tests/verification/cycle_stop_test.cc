@@ -5,6 +5,7 @@
 #include "../support/test.h"
 
 #include <crawler/base/exceptions.h>
+#include <crawler/run/result_table.h>
 #include <crawler/studies/core/compute.h>
 
 using namespace crawler;
@@ -281,4 +282,33 @@ TEST(CycleStop, AmongManyRuns)
   EXPECT_LE(std::abs(tasks[0].computed.result.displacement - tasks[2].computed.result.displacement),
             tasks[0].computed.result.error->total + tasks[2].computed.result.error->total);
   EXPECT_LT(5 * tasks[0].computed.result.time.steps, tasks[2].computed.result.time.steps);
+}
+
+// A standing wave is its own mirror image half a period later (the body slides to and fro), so that a whole stride
+// displaces nothing; what is left of the start decays in the strides that are not computed.
+TEST(CycleStop, TheLastComputedStrideHasABoundForTheStridesAfterIt)
+{
+  for (const char *p : {"1.05", "2", "3"})
+  {
+    const auto parameters = test::parameters_with({{"Accuracy", "1e-3"},
+                                                   {"Body/Friction coefficient", "10"},
+                                                   {"Body/Anchoring exponent", p},
+                                                   {"Active stress/Generator", "standing wave"},
+                                                   {"Active stress/Standing wave/Amplitude", "0.4"},
+                                                   {"Active stress/Standing wave/Wave number", "0.5"},
+                                                   {"Time/End time", "60"}});
+    const Scene scene     = parameters.create_scene();
+    const auto result     = answer_in_memory(parameters,
+                                         scene,
+                                         {.energy_balance = true,
+                                              .cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false),
+                                              .gait           = Simulation::GaitWish::any},
+                                         {})
+                          .result;
+    ASSERT_TRUE(result.cycles && result.gait) << p;
+    const double stride = std::abs(result.gait->displacement);
+    EXPECT_LE(stride, error_bound(result, "gait.displacement").value()) << p;
+    EXPECT_LE(stride / result.gait->period, error_bound(result, "gait.speed").value()) << p;
+    EXPECT_FALSE(error_bound(result, "gait.cost_of_transport.stress_power")) << p;
+  }
 }

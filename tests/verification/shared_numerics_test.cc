@@ -80,7 +80,7 @@ namespace
         if (std::holds_alternative<double>(value) && std::holds_alternative<double>(true_value))
         {
           EXPECT_LE(std::abs(std::get<double>(value) - std::get<double>(true_value)),
-                    result.errors->values[e] + finer.computed.result.errors->values[e])
+                    result.errors[e] + finer.computed.result.errors[e])
             << family.name << ", point " << i << ", " << entries[e]->key;
         }
       }

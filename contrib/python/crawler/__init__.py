@@ -142,7 +142,7 @@ def batch(scenes: Iterable[Scene], *, set: Values | None = None, check: bool = F
     if isinstance(scenes, (Mapping, str, os.PathLike)):
         raise InputError("this is one scene, but a list of scenes is expected; run() computes one")
     overrides = _overrides(set, keywords)
-    answers = _compiled().batch([_source(scene, overrides) for scene in scenes])
+    answers = _compiled().batch([_source(scene, overrides, f"scenes[{i}]") for i, scene in enumerate(scenes)])
     return [_checked(_result(answer), check) for answer in answers]
 
 
@@ -364,12 +364,12 @@ def _overrides(settings, keywords):
     return [f"{name}={_text(value, name)}" for name, value in pairs]
 
 
-def _source(scene, overrides):
-    """Input of the compiled part."""
+def _source(scene, overrides, name="scene"):
+    """Input of the compiled part; name: of a scene without a file, for messages."""
     if isinstance(scene, Mapping):
-        name, text = "scene", to_prm(scene)
+        text = to_prm(scene)
     elif isinstance(scene, str) and re.search(r"\n|^\s*(set|subsection|include)\s", scene):
-        name, text = "scene", scene
+        text = scene
     elif isinstance(scene, (str, os.PathLike)):
         name, text = os.fspath(scene), None
     else:

@@ -22,7 +22,7 @@ sys.modules["needs"] = needs  # exceptions of the scripts of pictures are those 
 import kymograph  # noqa: E402
 import matplotlib.pyplot as plt  # noqa: E402
 import sweep  # noqa: E402
-from plotting import label, save, unit_names, with_own_units  # noqa: E402
+from plotting import existing, label, save, unit_names, with_own_units  # noqa: E402
 
 WIDTHS, HEIGHTS = {1: 86, 2: 178}, {1: 80, 2: 70}  # of a figure, by its columns [mm]
 STYLE = {"font.family": "STIXGeneral", "mathtext.fontset": "stix", "pdf.fonttype": 42, "font.size": 8, "axes.titlesize": 8,
@@ -74,13 +74,13 @@ def text_of(cell):
 def of_run(folder, size, words):
     """Figure of a run, and its numbers as rows for CSV and for LaTeX, the headings first."""
     figure = kymograph.draw(kymograph.arguments().parse_args([str(folder), *words]), size)
-    summary = results.read(folder)
+    summary, units = results.read(folder), unit_names(folder)
     table, cells = [("number", "unit", "value", "bound")], [("number", "value and bound")]
     for entry in program()["numbers"]:
         key, unit = entry["key"], entry["unit"]
         value, bound = number_in(summary, key), number_in(summary, bound_of(key))
         if math.isfinite(value) and math.isfinite(bound):
-            table.append((key, unit, repr(value), repr(bound)))
+            table.append((key, with_own_units(f"[{unit}]", units)[1:-1], repr(value), repr(bound)))
             cells.append((label(key, unit, key.removesuffix(".value").replace("_", " ").replace(".", ", ")), in_latex(value, bound)))
     if len(table) == 1:
         raise InputError(f"{folder} has no number with an error bound (the run is {summary.status}); one that finished is expected")
@@ -126,8 +126,7 @@ def main():
     height = HEIGHTS[options.columns] if options.height is None else options.height
     if not 20 <= height <= 250:
         raise InputError(f'"--height" is "{height:g}", but a number of millimetres from 20 to 250 is expected')
-    if not options.folder.is_dir():
-        raise InputError(f'"{options.folder}" is not a folder; the output folder of a run or sweep is expected')
+    existing(options.folder / "summary.json", "the output folder of a run or sweep that has ended")
     kind = getattr(results.read(options.folder), "kind", "run")
     if kind not in ("run", "sweep"):
         raise InputError(f'"{options.folder}" is the folder of {dict(optimize="an optimisation").get(kind, "a " + kind)}, but that of a run or sweep is expected')

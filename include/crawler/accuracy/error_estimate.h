@@ -2,7 +2,6 @@
 #pragma once
 
 #include <crawler/accuracy/numerics_choice.h>
-#include <crawler/run/displacement_error.h>
 #include <crawler/run/run_parameters.h>
 #include <crawler/run/simulation.h>
 

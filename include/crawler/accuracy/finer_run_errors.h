@@ -4,6 +4,7 @@
 #include <crawler/run/simulation_result.h>
 
 #include <span>
+#include <vector>
 
 namespace crawler
 {
@@ -17,15 +18,22 @@ namespace crawler
    * Numbers found by sampling N quadrature points along the body, where the sign of the power changes or the stretch is
    * extreme, converge more slowly; their error is 1.5 factor x + (part + 2/N^2) S (doc/numerics.md, "Error bounds").
    */
-  NumberErrors
+  std::vector<double>
   number_errors(const SimulationResult &result, const SimulationResult &finer, double factor, double part);
 
   /// Errors of a result that is extrapolated from the last two of some @p meshes, each twice as fine as the one before:
   /// for works, say, the change by the extrapolation. Numbers that are not extrapolated, such as stretches, are those
   /// of the finest mesh; their errors are twice the change since the mesh before, or the change since the one before
   /// that if this is larger: peaks of steep fronts do not converge regularly.
-  NumberErrors
+  std::vector<double>
   errors_of_extrapolation(const SimulationResult &extrapolated,
                           std::span<const SimulationResult *const> meshes,
                           double part);
+
+  /// Adds what the extrapolation of cycles leaves open, to the errors of a @p result with a displacement of this
+  /// @p size: works have the same relative error as the displacement; the stride is the last computed one, whose
+  /// displacement may change by the bound of the displacement over the number of extrapolated cycles. A cost of
+  /// transport that is not known at all then has no error.
+  void
+  add_errors_of_cycles(SimulationResult &result, double size);
 } // namespace crawler

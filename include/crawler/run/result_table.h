@@ -35,7 +35,7 @@ namespace crawler
     bool is_sampled = false; ///< found by looking at Gauss points, or derived from such a number
     bool is_word    = false;
     bool of_process = false; ///< describes the process, not the scene: no column of a sweep
-    int error       = -1;    ///< index in NumberErrors::values of the number whose error this is; value is null then
+    int error       = -1; ///< index in SimulationResult::errors of the number whose error this is; value is null then
 
     ResultValue
     value_in(const SimulationResult &result) const;
@@ -48,7 +48,7 @@ namespace crawler
   const std::vector<ResultEntry> &
   result_table();
 
-  /// Entries with an error bound, in the order of NumberErrors::values.
+  /// Entries with an error bound, in the order of SimulationResult::errors.
   const std::vector<const ResultEntry *> &
   entries_with_errors();
 

@@ -6,9 +6,7 @@
 #include <crawler/equation/stretch_form.h>
 #include <crawler/reduced_models/model.h>
 #include <crawler/run/cycle_stop.h>
-#include <crawler/run/displacement_error.h>
 #include <crawler/run/gait.h>
-#include <crawler/run/number_errors.h>
 #include <crawler/time/stepper.h>
 
 #include <limits>
@@ -19,6 +17,17 @@
 
 namespace crawler
 {
+  /// Estimated error of a displacement and its parts; not a number where unknown [length].
+  struct DisplacementError
+  {
+    static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+    double total = unknown; ///< sum of the parts
+    double space = unknown; ///< part of the mesh
+    double time  = unknown; ///< part of the time steps, and of cycles that were extrapolated
+    double model = unknown; ///< part of the model level; 0 if the full equation was solved
+  };
+
   /// Derivative of the displacement by an entry of the parameter file.
   struct EntrySensitivity
   {
@@ -66,8 +75,10 @@ namespace crawler
     {
       double value, error;
     };
-    std::optional<Corrected> corrected;          ///< if the adjoint gave it
-    std::optional<NumberErrors> errors;          ///< errors of other numbers, if a finer run measured them
+    std::optional<Corrected> corrected; ///< if the adjoint gave it
+    /// Error bounds of the other numbers, in the order of entries_with_errors() (result_table.h); not a number where
+    /// unknown, empty if no finer run measured them.
+    std::vector<double> errors;
     std::vector<EntrySensitivity> sensitivities; ///< sensitivities, on request, the most important first
 
     /// Standard deviation of the number under a key of the result table that uncertain entries cause, to first order;

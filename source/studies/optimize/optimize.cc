@@ -206,10 +206,9 @@ namespace crawler
       const OptimizeResults results(cases.names(), memory.starts());
       const auto n_neighbours =
         static_cast<std::size_t>(std::ranges::count_if(starts, [](const StartName &one) { return one.neighbour > 0; }));
-      const auto ignore = [](const Table &) {};
       for (const auto &[file, group] : {std::pair(OptimizeMemory::evaluations_file, OptimizeMemory::evaluations_group),
                                         std::pair(OptimizeMemory::file, OptimizeMemory::group)})
-        write_table_csv(MPI_COMM_SELF, folder / file, group, (folder / file).replace_extension("csv"), ignore);
+        write_table_csv(MPI_COMM_SELF, folder / file, group, (folder / file).replace_extension("csv"));
       std::vector<std::string> summaries;
       bool runs_are_good = true;
       for (const std::size_t best : results.best)

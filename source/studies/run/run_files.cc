@@ -119,9 +119,12 @@ namespace crawler
       log.line(line);
     if (outcome.status != Status::finished)
       log.warn(outcome.reason + ": " + outcome.message);
+    const auto picture = folder / animation;
     log.line(fmt::format("Results are in {}/{}.",
                          folder.string(),
-                         animation.empty() ? "" : fmt::format("; open {} in ParaView", (folder / animation).string())));
+                         !animation.empty() && std::filesystem::exists(picture)
+                           ? fmt::format("; open {} in ParaView", picture.string())
+                           : ""));
     log.require_written();
     if (outcome.status == Status::finished)
       return ExitCode::finished;

@@ -269,8 +269,7 @@ namespace crawler
   write_table_csv(MPI_Comm communicator,
                   const std::filesystem::path &table_path,
                   const std::string &group,
-                  const std::filesystem::path &csv,
-                  const std::function<void(const Table &part)> &see)
+                  const std::filesystem::path &csv)
   {
     constexpr unsigned long together = 256; // rows of each rank, a quarter of a megabyte
     const RowReader table(communicator, table_path, group);
@@ -288,7 +287,6 @@ namespace crawler
       const Table part          = table.read(first, std::min(together, table.n_rows() - first));
       for (const std::string &rows : gather(csv_rows(part), communicator))
         file << rows;
-      see(part);
     }
     on_first_rank(communicator, [&]() {
       file.close();

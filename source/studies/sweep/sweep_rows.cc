@@ -63,34 +63,6 @@ namespace crawler
           for (const double ratio : std::get<Numbers>(values))
             counts.largest_error_ratio = std::fmax(counts.largest_error_ratio, ratio);
     }
-
-    /// Sums the counts over all ranks, on rank 0.
-    SweepCounts
-    sum(MPI_Comm communicator, const SweepCounts &counts)
-    {
-      SweepCounts all;
-      all.n_points              = counts.n_points;
-      const nlohmann::json mine = {
-        counts.statuses, counts.reasons, counts.verdicts, counts.wrong_answers, counts.largest_error_ratio};
-      for (const std::string &text :
-           gather(mine.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace), communicator))
-      {
-        const auto json = nlohmann::json::parse(text);
-        const auto add  = [](const nlohmann::json &its, std::map<std::string, unsigned long> &sums) {
-          for (const auto &[name, n] : its.items())
-            sums[name] += n.get<unsigned long>();
-        };
-        add(json[0], all.statuses);
-        add(json[1], all.reasons);
-        add(json[2], all.verdicts);
-        all.wrong_answers.merge(json[3].get<std::map<unsigned long, std::string>>());
-        while (all.wrong_answers.size() > max_wrong_answers)
-          all.wrong_answers.erase(std::prev(all.wrong_answers.end()));
-        if (json[4].is_number()) // null: unknown
-          all.largest_error_ratio = std::fmax(all.largest_error_ratio, json[4].get<double>());
-      }
-      return all;
-    }
   } // namespace
 
   std::vector<RowFile::Column>
@@ -158,14 +130,17 @@ namespace crawler
                     const std::string &file,
                     const std::string &group)
   {
-    const auto path = folder / file;
+    constexpr unsigned long together = 4096; // rows in memory
+    const auto path                  = folder / file;
+    write_table_csv(communicator, path, group, std::filesystem::path(path).replace_extension("csv"));
     SweepCounts counts;
-    counts.n_points = RowReader(communicator, path, group).n_rows();
-    write_table_csv(
-      communicator, path, group, std::filesystem::path(path).replace_extension("csv"), [&](const Table &part) {
-        count(part, counts);
-      });
-    return sum(communicator, counts);
+    on_first_rank(communicator, [&]() {
+      const RowReader table(MPI_COMM_SELF, path, group);
+      counts.n_points = table.n_rows();
+      for (unsigned long first = 0; first < counts.n_points; first += together)
+        count(table.read(first, std::min(together, counts.n_points - first)), counts);
+    });
+    return counts;
   }
 
   unsigned long

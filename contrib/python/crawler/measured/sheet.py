@@ -12,6 +12,7 @@ from .units import split_unit
 
 GAPS = {"", "nan", "na", "n/a", "-", "--", "null", "none"}
 COMMENTS = ("#", "%", "//")
+ERROR = re.compile(r"#(N/?[A-Z]|[^\s;,]*[!?])(?=[;,\t]|$)")  # of a spreadsheet: #N/A, #DIV/0!, in any language
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 DECIMAL_COMMA = re.compile(r"[+-]?(\d*,\d+|\d+,)([eE][+-]?\d+)?")
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")  # 1,000: a thousand, or a number with three decimals
@@ -203,11 +204,11 @@ def read_sheet(data, name, decimal=""):
     lines, comment, forced = [], "", None
     for number, line in enumerate(text_of(data, name).splitlines(), 1):
         shown = line.strip()
-        if not shown:
+        if not shown.strip(';,"\t'):  # spreadsheets write rows of empty cells below a table
             continue
         if not lines and (match := re.fullmatch(r'"?sep=(.)"?', shown)):
             forced = match[1]  # Excel
-        elif not shown.startswith(COMMENTS):
+        elif not shown.startswith(COMMENTS) or ERROR.match(shown):
             lines.append((number, line))
         elif not lines:
             comment = shown.lstrip("#%/ ")

@@ -69,9 +69,9 @@ def picture_of(options, name):
 def existing(path, what):
     """Path of a file, which must exist. @p what: description of the file, for the error message."""
     if not path.parent.is_dir():
-        raise InputError(f"{path.parent} is not a folder; {what} is expected")
+        raise InputError(f'"{path.parent}" is not a folder; {what} is expected')
     if not path.is_file():
-        raise InputError(f"{path} does not exist; {what} is expected")
+        raise InputError(f'"{path}" does not exist; {what} is expected')
     return path
 
 
@@ -81,7 +81,7 @@ def read_summary(folder, what):
     try:
         return json.loads(path.read_text(encoding="utf-8"))
     except ValueError as error:
-        raise InputError(f"{path} is not a summary of crawler ({error})") from None
+        raise FileError(f"{path} is not a summary of crawler ({error})") from None
 
 
 def results():
@@ -135,7 +135,7 @@ class Kymograph:
     """Fields over body and time of a run: s [length], t [time], and under their names arrays with a row for each t."""
 
     def __init__(self, folder, *names):
-        what = "the output folder of a run with Output/Kymograph = true and snapshots"
+        what = "the output folder of a run that was not stopped, with Output/Kymograph = true and snapshots,"
         path = existing(folder / "kymograph.vts", what)
         self.folder, parameters = folder, Parameters(existing(folder / "parameters.prm", what))
         self.length, self.duration = (parameters.number(name) for name in ("Body/Length", "Time/End time"))

@@ -59,7 +59,7 @@ def reasons():
 
 
 def data_of(folder, kind):
-    """Data of the page of a folder. Raises InputError where a file is damaged."""
+    """Data of the page of a folder. Raises FileError where a file is damaged."""
     name, _, table, group = kind
     effective = text_of(folder / "parameters.prm") or ""
     entries, own = entries_of(effective), program()

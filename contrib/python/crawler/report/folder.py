@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Content of the files of a folder for a page: dicts and lists for JSON, None for what is missing. All functions raise
-InputError if a file is damaged."""
+FileError if a file is damaged."""
 import json
 import math
 import os
@@ -28,7 +28,7 @@ def summary_in(folder):
     try:
         return None if text is None else {"status": json.loads(text)["status"], **json.loads(text)}
     except (LookupError, TypeError, ValueError):
-        raise InputError(f'"{folder / "summary.json"}" is damaged: a JSON object with the key "status" is expected') from None
+        raise FileError(f'"{folder / "summary.json"}" is damaged: a JSON object with the key "status" is expected') from None
 
 
 def differ(one, other):
@@ -79,7 +79,7 @@ def run_in(folder, title, most_times):
         try:
             kymograph = read_kymograph(path)
         except FileError:
-            raise InputError(f'"{path}" is damaged: an intact kymograph that crawler wrote is expected') from None
+            raise FileError(f'"{path}" is damaged: an intact kymograph that crawler wrote is expected') from None
         run["kymograph"] = fields_of(kymograph, most_times)
         if "ground_factor" in kymograph:
             run["ground"] = {name: plain(kymograph[f"ground_{name}"], DIGITS) for name in ("x", "factor")}
@@ -91,7 +91,7 @@ def data_of_fit(path):
     residuals."""
     columns = read_columns(path)
     if list(columns) != ["kind", "t", "place", "data", "model", "residual"] or not all(isinstance(columns[name], np.ndarray) for name in columns if name != "kind"):
-        raise InputError(f'"{path}" is damaged: the columns kind, t, place, data, model and residual are expected')
+        raise FileError(f'"{path}" is damaged: the columns kind, t, place, data, model and residual are expected')
     kinds, tables = np.array(columns.pop("kind")), []
     for kind in dict.fromkeys(kinds.tolist()):
         unit, here = {"strain": "1", "speed": "length/time"}.get(kind, "length"), np.flatnonzero(kinds == kind)
@@ -161,4 +161,4 @@ def table_in(path, group):
                     free -= column.size
             return table
     except (OSError, LookupError, ValueError, RuntimeError, AttributeError, TypeError):
-        raise InputError(f'"{path}" is damaged: an intact table that crawler wrote is expected') from None
+        raise FileError(f'"{path}" is damaged: an intact table that crawler wrote is expected') from None

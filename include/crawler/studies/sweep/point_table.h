@@ -93,11 +93,10 @@ namespace crawler
   points_done(MPI_Comm communicator, const std::function<std::vector<bool>()> &list);
 
   /// Writes the table of a RowFile as comma-separated values, in parts of some rows each, which the ranks share
-  /// (collective); each rank sees its own parts. Throws FileError, on all ranks.
+  /// (collective). Throws FileError, on all ranks.
   void
   write_table_csv(MPI_Comm communicator,
                   const std::filesystem::path &table,
                   const std::string &group,
-                  const std::filesystem::path &csv,
-                  const std::function<void(const Table &part)> &see);
+                  const std::filesystem::path &csv);
 } // namespace crawler

@@ -49,8 +49,8 @@ namespace crawler
     }
   };
 
-  /// Writes the table as comma-separated values beside it (results.csv of results.h5), in parts of some rows each,
-  /// which the ranks share (collective); the counts are known on rank 0. Throws FileError, on all ranks.
+  /// Writes the table as comma-separated values beside it (results.csv of results.h5), and counts its rows on rank 0
+  /// (collective). Throws FileError, on all ranks.
   SweepCounts
   write_results_csv(MPI_Comm communicator,
                     const std::filesystem::path &folder,
