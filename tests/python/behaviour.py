@@ -87,6 +87,7 @@ def check_errors(folder):
     refused(lambda: crawler.sweep(FILE, {"Body/Lenght": [1]}), crawler.InputError, "Lenght")
     refused(lambda: crawler.sweep(FILE, {"Body/Friction profile": ['"']}), crawler.InputError, "double quotes")
     refused(lambda: crawler.batch([FILE, {"Body/Length": -1}]), crawler.InputError, "scenes[1]", "Body/Length")
+    refused(lambda: crawler.run(FILE, set={"Body/Friction profile": [[1, 2], [3, 4]]}), crawler.InputError, "a list in a list")
     refused(lambda: crawler.batch({"Body/Length": 1}), crawler.InputError, "a list of scenes is expected")
     refused(lambda: crawler.check(FILE, set={"Model": "linear"}), crawler.InputError, "linear")
     refused(lambda: crawler.read(folder), crawler.FileError, "summary.json")

@@ -113,6 +113,9 @@ namespace crawler
       const auto found = std::find(names.begin(), names.end(), name);
       if (found == names.end())
       {
+        if (names.size() == 1 && names[0].find(';') != std::string::npos)
+          refuse("\"{}\" has its columns between semicolons, but commas between them and decimal points are expected",
+                 file);
         constexpr std::size_t most = 10;
         const bool all_are_named   = names.size() <= most;
         const auto near            = nearest_names(name, names, 1);

@@ -136,6 +136,17 @@ namespace
     EXPECT_EQ(zip.value(1, 1), "y, \"z\"");
     EXPECT_THROW(design("grid", p), InputError);
     EXPECT_EQ(design("grid", "A/x : 1, 2" + words).n_points(), 4u);
+    write_file(path, "p;q\n1,5;2\n");
+    try
+    {
+      design("zip", p);
+      ADD_FAILURE() << "columns between semicolons are taken";
+    }
+    catch (const InputError &error)
+    {
+      EXPECT_NE(std::string(error.what()).find("has its columns between semicolons"), std::string::npos)
+        << error.what();
+    }
     std::filesystem::remove(path);
   }
 
