@@ -95,26 +95,16 @@ namespace crawler
   void
   Assembler::find_piece_ends(const unsigned int n_pieces)
   {
+    std::vector<double> ends, in_cells;
+    for (unsigned int i = 0; i <= n_pieces; ++i)
+      ends.push_back(discretization_.length() * i / n_pieces);
+    piece_ends_ = {n_pieces, 0, discretization_.own_places(ends), {}};
+    for (const CellPlace &place : piece_ends_.places)
+      in_cells.push_back(place.x);
+    piece_ends_.shape = interpolation_matrix(discretization_.element().nodes, in_cells);
     const auto &left  = discretization_.cell_left();
-    const auto &size  = discretization_.cell_size();
-    const auto s      = [&](const unsigned int end) { return discretization_.length() * end / n_pieces; };
-    piece_ends_       = {n_pieces, 0, {}, {}};
-    unsigned int next = 0;
-    while (next <= n_pieces && !left.empty() && s(next) < left.front())
-      ++next;
-    piece_ends_.first = next;
-    for (unsigned int c = 0; c < left.size(); ++c)
-    {
-      const bool is_last = !discretization_.has_right_neighbour() && c + 1 == left.size();
-      std::vector<double> places;
-      for (; next <= n_pieces && (is_last || s(next) < left[c] + size[c]); ++next)
-      {
-        places.push_back(std::clamp((s(next) - left[c]) / size[c], 0., 1.));
-        piece_ends_.cells.push_back(c);
-      }
-      const auto shape = interpolation_matrix(discretization_.element().nodes, places);
-      piece_ends_.shape.insert(piece_ends_.shape.end(), shape.begin(), shape.end());
-    }
+    while (piece_ends_.first <= n_pieces && !left.empty() && ends[piece_ends_.first] < left.front())
+      ++piece_ends_.first;
   }
 
   std::vector<double>
@@ -125,10 +115,10 @@ namespace crawler
     const auto u         = discretization_.to_local<double>(displacement(y), u_local_);
     const unsigned int n = discretization_.element().n, q = discretization_.element().degree;
     std::vector<double> values(n_pieces + 1, 0.);
-    for (std::size_t e = 0; e < piece_ends_.cells.size(); ++e)
+    for (std::size_t e = 0; e < piece_ends_.places.size(); ++e)
       for (unsigned int i = 0; i < n; ++i)
         values[piece_ends_.first + e] +=
-          piece_ends_.shape[e * n + i] * u[static_cast<std::size_t>(piece_ends_.cells[e]) * q + i];
+          piece_ends_.shape[e * n + i] * u[static_cast<std::size_t>(piece_ends_.places[e].cell) * q + i];
     if (discretization_.n_ranks() > 1)
       MPI_Allreduce(MPI_IN_PLACE,
                     values.data(),

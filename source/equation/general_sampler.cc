@@ -5,22 +5,20 @@ namespace crawler
 {
   namespace
   {
-    using Place = GeneralSampler::Place;
-
     template <typename Part>
     auto
-    parts(const std::vector<Place> &places, const Part &part)
+    parts(const std::vector<CellPlace> &places, const Part &part)
     {
-      std::vector<std::decay_t<decltype(part(Place()))>> result;
-      for (const Place &place : places)
+      std::vector<std::decay_t<decltype(part(CellPlace()))>> result;
+      for (const CellPlace &place : places)
         result.push_back(part(place));
       return result;
     }
 
-    std::vector<Place>
+    std::vector<CellPlace>
     in_all_cells(const Discretization &d, const std::vector<double> &places)
     {
-      std::vector<Place> result;
+      std::vector<CellPlace> result;
       for (unsigned int c = 0; c < d.n_local_cells(); ++c)
         for (const double x : places)
           result.push_back({c, x});
@@ -28,11 +26,11 @@ namespace crawler
     }
   } // namespace
 
-  GeneralSampler::GeneralSampler(const Assembler &assembler, const std::vector<Place> &places)
+  GeneralSampler::GeneralSampler(const Assembler &assembler, const std::vector<CellPlace> &places)
     : GeneralSampler(assembler,
-                     parts(places, [](const Place &place) { return place.cell; }),
-                     parts(places, [](const Place &place) { return place.x; }),
-                     parts(places, [&](const Place &place) {
+                     parts(places, [](const CellPlace &place) { return place.cell; }),
+                     parts(places, [](const CellPlace &place) { return place.x; }),
+                     parts(places, [&](const CellPlace &place) {
                        const Discretization &d = assembler.discretization();
                        return d.cell_left().empty() ? 0.
                                                     : d.cell_left()[place.cell] + place.x * d.cell_size()[place.cell];
@@ -49,7 +47,7 @@ namespace crawler
   GeneralSampler::at_ends(const Assembler &assembler)
   {
     const unsigned int n_cells = assembler.discretization().n_local_cells();
-    std::vector<Place> places;
+    std::vector<CellPlace> places;
     if (n_cells > 0)
       places = {{0, 0.}, {n_cells - 1, 1.}};
     return std::make_unique<GeneralSampler>(assembler, places);

@@ -15,11 +15,9 @@ namespace crawler
     std::vector<double> in_cells;
     for (const double s : points)
     {
-      const auto next = std::upper_bound(
-        cells.begin(), cells.end(), s, [](const double place, const Cell &cell) { return place < cell.left; });
-      const auto c = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - cells.begin(), 1)) - 1;
-      cells_.push_back(c);
-      in_cells.push_back(std::clamp((s - cells[c].left) / cells[c].size, 0., 1.));
+      const auto [cell, x] = place_in(cells, s);
+      cells_.push_back(cell);
+      in_cells.push_back(x);
     }
     weights_ = interpolation_matrix(element.stretch_points, in_cells);
   }

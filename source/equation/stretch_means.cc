@@ -34,10 +34,7 @@ namespace crawler
     Integrals result;
     for (const double s : places)
     {
-      const auto next = std::upper_bound(
-        cells.begin(), cells.end(), s, [](const double place, const Cell &cell) { return place < cell.left; });
-      const auto c   = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - cells.begin(), 1)) - 1;
-      const double x = std::clamp((s - cells[c].left) / cells[c].size, 0., 1.);
+      const auto [c, x] = place_in(cells, s);
       // Gauss points of the part from 0 to x: exact for the polynomials of degree q - 1.
       std::vector<double> points = element.stretch_points;
       for (double &point : points)

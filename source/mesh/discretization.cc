@@ -239,4 +239,14 @@ namespace crawler
   template void Discretization::add_to_owned(std::span<const double>, std::span<double>) const;
   template void Discretization::add_to_owned(std::span<const std::complex<double>>,
                                              std::span<std::complex<double>>) const;
+
+  std::vector<CellPlace>
+  Discretization::own_places(const std::vector<double> &points) const
+  {
+    std::vector<CellPlace> places;
+    for (const double s : points)
+      if (const auto [cell, x] = place_in(cells_, s); cell >= first_cell_ && cell < first_cell_ + n_local_cells())
+        places.push_back({cell - first_cell_, x});
+    return places;
+  }
 } // namespace crawler

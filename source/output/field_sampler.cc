@@ -13,7 +13,7 @@ namespace crawler
   namespace
   {
     std::vector<double>
-    places(const std::vector<FieldSampler::Point> &points)
+    places(const std::vector<CellPlace> &points)
     {
       std::vector<double> x;
       for (const auto &point : points)
@@ -32,7 +32,7 @@ namespace crawler
     }
   } // namespace
 
-  FieldSampler::FieldSampler(const Assembler &assembler, const Units &units, std::vector<Point> points)
+  FieldSampler::FieldSampler(const Assembler &assembler, const Units &units, std::vector<CellPlace> points)
     : assembler_(assembler)
     , units_(units)
     , points_(std::move(points))
@@ -40,17 +40,12 @@ namespace crawler
     , stretch_(assembler.discretization().element(), places(points_))
   {
     const Discretization &d = assembler.discretization();
-    for (const Point &point : points_)
+    for (const CellPlace &point : points_)
       coordinates_.push_back(d.cell_left()[point.cell] + point.x * d.cell_size()[point.cell]);
     if (assembler.scene().is_plain())
       stress_ = assembler.scene().active_stress->at(coordinates_);
     else
-    {
-      std::vector<GeneralSampler::Place> general;
-      for (const Point &point : points_)
-        general.push_back({point.cell, point.x});
-      general_ = std::make_unique<GeneralSampler>(assembler, general);
-    }
+      general_ = std::make_unique<GeneralSampler>(assembler, points_);
     for (double &s : coordinates_)
       s *= units.length;
     for (auto *field : {&fields_.position,

@@ -23,27 +23,6 @@ namespace crawler
   {
   }
 
-  std::vector<FieldSampler::Point>
-  Kymograph::own_points(const Discretization &discretization) const
-  {
-    std::vector<FieldSampler::Point> points;
-    const auto &left = discretization.cell_left();
-    if (left.empty())
-      return points;
-    const double end = left.back() + discretization.cell_size().back();
-    for (const double point : points_)
-    {
-      const double s  = discretization.length() * point;
-      const bool last = !discretization.has_right_neighbour();
-      if (s < left.front() || (last ? point < 1. && s > end : s >= end))
-        continue;
-      const auto cell = static_cast<unsigned int>(
-        std::max<std::ptrdiff_t>(0, std::upper_bound(left.begin(), left.end(), s) - left.begin() - 1));
-      points.push_back({cell, std::clamp((s - left[cell]) / discretization.cell_size()[cell], 0., 1.)});
-    }
-    return points;
-  }
-
   KymographWriter::KymographWriter(const double length,
                                    const double end_time,
                                    std::shared_ptr<const Profile> ground,
@@ -62,7 +41,12 @@ namespace crawler
       return;
     const Discretization &d = snapshot.assembler.discretization();
     if (!sampler_ || mesh_number_ != snapshot.mesh_number)
-      sampler_ = std::make_unique<FieldSampler>(snapshot.assembler, snapshot.units, own_points(d));
+    {
+      std::vector<double> s = points_;
+      for (double &point : s)
+        point *= d.length();
+      sampler_ = std::make_unique<FieldSampler>(snapshot.assembler, snapshot.units, d.own_places(s));
+    }
     mesh_number_      = snapshot.mesh_number;
     const Fields &own = sampler_->sample(snapshot.computed_time, snapshot.y, snapshot.v);
     Fields all; // empty except on rank 0

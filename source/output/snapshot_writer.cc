@@ -6,11 +6,11 @@ namespace crawler
 {
   namespace
   {
-    std::vector<FieldSampler::Point>
+    std::vector<CellPlace>
     line_points(const Discretization &discretization)
     {
       const unsigned int q = discretization.element().degree;
-      std::vector<FieldSampler::Point> points;
+      std::vector<CellPlace> points;
       for (unsigned int c = 0; c < discretization.n_local_cells(); ++c)
         for (unsigned int i = 0; i <= q; ++i)
           points.push_back({c, static_cast<double>(i) / q});

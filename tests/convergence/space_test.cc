@@ -20,7 +20,7 @@ namespace
   {
     const ReferenceElement fine(8);
     const Discretization &d = snapshot.assembler.discretization();
-    std::vector<FieldSampler::Point> points;
+    std::vector<CellPlace> points;
     for (unsigned int c = 0; c < d.n_local_cells(); ++c)
       for (const double x : fine.points)
         points.push_back({c, x});

@@ -24,7 +24,7 @@ namespace
   seen_in(const Snapshot &snapshot)
   {
     const Discretization &d = snapshot.assembler.discretization();
-    std::vector<FieldSampler::Point> points;
+    std::vector<CellPlace> points;
     for (unsigned int i = 0; i <= 20; ++i)
     {
       const double place      = 0.05 * i * d.n_cells();

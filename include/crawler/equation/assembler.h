@@ -182,7 +182,7 @@ namespace crawler
     struct PieceEnds
     {
       unsigned int n_pieces = 0, first = 0;
-      std::vector<unsigned int> cells;
+      std::vector<CellPlace> places;
       std::vector<double> shape; ///< [end][n nodes]
     };
     PieceEnds piece_ends_;

@@ -9,13 +9,8 @@ namespace crawler
   class GeneralSampler
   {
   public:
-    struct Place
-    {
-      unsigned int cell; ///< number among this rank's cells
-      double x;          ///< place in the cell, from 0 to 1
-    };
-
-    GeneralSampler(const Assembler &assembler, const std::vector<Place> &places);
+    /// @p places: in cells numbered among this rank's.
+    GeneralSampler(const Assembler &assembler, const std::vector<CellPlace> &places);
     /// Samples at the same places in all cells.
     GeneralSampler(const Assembler &assembler, const std::vector<double> &places);
     /// Samples at the left end of the first and the right end of the last of this rank's cells.

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace crawler
 {
@@ -19,6 +21,22 @@ namespace crawler
       archive(left, size, level, is_left_half);
     }
   };
+
+  /// Place in a cell.
+  struct CellPlace
+  {
+    unsigned int cell; ///< number of the cell
+    double x;          ///< from 0 to 1
+  };
+
+  /// Place of the point @p s among all @p cells: in the right one of two that meet there, outside at the next end.
+  inline CellPlace
+  place_in(const std::vector<Cell> &cells, const double s)
+  {
+    const auto next = std::ranges::upper_bound(cells, s, {}, &Cell::left);
+    const auto c    = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - cells.begin(), 1)) - 1;
+    return {static_cast<unsigned int>(c), std::clamp((s - cells[c].left) / cells[c].size, 0., 1.)};
+  }
 
   /// Change of a cell; two halves of a former cell are joined if both are marked.
   enum class CellChange : signed char

@@ -89,6 +89,10 @@ namespace crawler
     {
       return static_cast<unsigned int>(cell_left_.size());
     }
+    /// Places of those of ascending points that are in this rank's cells, which they are numbered among.
+    std::vector<CellPlace>
+    own_places(const std::vector<double> &points) const;
+
     /// Number of local nodes: 0 on a rank without cells.
     std::size_t
     n_local() const

@@ -34,13 +34,8 @@ namespace crawler
   class FieldSampler
   {
   public:
-    struct Point
-    {
-      unsigned int cell; ///< number among this rank's cells
-      double x;          ///< from 0 to 1 in the cell
-    };
-
-    FieldSampler(const Assembler &assembler, const Units &units, std::vector<Point> points);
+    /// @p points: in cells numbered among this rank's.
+    FieldSampler(const Assembler &assembler, const Units &units, std::vector<CellPlace> points);
 
     /// The fields of the state @p y with the velocity @p v (collective). Throws NonfiniteStress.
     const Fields &
@@ -56,7 +51,7 @@ namespace crawler
   private:
     const Assembler &assembler_;
     const Units units_;
-    const std::vector<Point> points_;
+    const std::vector<CellPlace> points_;
     std::vector<double> coordinates_;
     std::vector<double> values_;   ///< [point][node] shape functions
     const StretchSampler stretch_; ///< at the x of the points

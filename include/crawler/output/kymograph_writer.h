@@ -56,8 +56,6 @@ namespace crawler
 
   private:
     /// The points that lie in this rank's cells.
-    std::vector<FieldSampler::Point>
-    own_points(const Discretization &discretization) const;
 
     const std::vector<double> points_;
     std::unique_ptr<FieldSampler> sampler_; ///< for the mesh mesh_number_
