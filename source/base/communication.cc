@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <numeric>
@@ -87,6 +88,16 @@ namespace crawler
       start += length;
     }
     return texts;
+  }
+
+  std::string
+  first_text(const std::string &text, MPI_Comm communicator)
+  {
+    if (size_of(communicator) == 1 || !is_true_anywhere(!text.empty(), communicator))
+      return text;
+    const auto all = gather(text, communicator);
+    const auto one = std::ranges::find_if(all, [](const std::string &its) { return !its.empty(); });
+    return broadcast(one == all.end() ? "" : *one, communicator);
   }
 
   std::vector<double>

@@ -137,18 +137,9 @@ namespace crawler
     const StressFailures *failures = scene_.active_stress->failures();
     if (failures == nullptr) // null on all ranks
       return false;
-    const int rank = static_cast<int>(rank_of(communicator_)), n_ranks = static_cast<int>(size_of(communicator_));
-    int first = failures->count > run_->n_failures ? rank : n_ranks;
-    if (n_ranks > 1)
-      MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, communicator_);
-    if (first == n_ranks)
+    const std::string message = first_text(failures->count > run_->n_failures ? failures->latest : "", communicator_);
+    if (message.empty())
       return false;
-    std::string message = failures->latest;
-    if (n_ranks > 1)
-    {
-      const std::vector<std::string> all = gather(message, communicator_);
-      message = broadcast(rank == 0 ? all[static_cast<std::size_t>(first)] : "", communicator_);
-    }
     run_->diagnosis = {Status::failed, "nonfinite", message};
     return true;
   }
@@ -157,17 +148,10 @@ namespace crawler
   bool
   Simulation::law_failed()
   {
-    const auto bad   = mesh_.assembler->bad_law(units_);
-    const int n      = size_of(communicator_);
-    int speaker      = bad ? rank_of(communicator_) : n;
-    std::string text = bad ? bad->entry + "\n" + bad->message : "";
-    MPI_Allreduce(MPI_IN_PLACE, &speaker, 1, MPI_INT, MPI_MIN, communicator_);
-    if (speaker == n)
+    const auto bad         = mesh_.assembler->bad_law(units_);
+    const std::string text = first_text(bad ? bad->entry + "\n" + bad->message : "", communicator_);
+    if (text.empty())
       return false;
-    unsigned long length = text.size();
-    MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, speaker, communicator_);
-    text.resize(length);
-    MPI_Bcast(text.data(), static_cast<int>(length), MPI_CHAR, speaker, communicator_);
     const auto end  = text.find('\n');
     run_->diagnosis = {
       Status::failed,

@@ -26,6 +26,10 @@ namespace crawler
   std::string
   broadcast(const std::string &text, MPI_Comm communicator);
 
+  /// Returns on all ranks the text of the first one whose text is not empty, if there is one (collective).
+  std::string
+  first_text(const std::string &text, MPI_Comm communicator);
+
   /// Returns on rank 0 the texts of all ranks in rank order, on the others nothing (collective).
   std::vector<std::string>
   gather(const std::string &text, MPI_Comm communicator);

@@ -192,12 +192,9 @@ namespace crawler
   void
   throw_on_all_ranks(MPI_Comm communicator, const std::string &problem)
   {
-    const auto problems = gather(problem, communicator);
-    on_first_rank(communicator, [&]() {
-      for (const std::string &one : problems)
-        if (!one.empty())
-          throw FileError(one + "; the rows written so far are kept, and --resume computes the rest");
-    });
+    const std::string first = first_text(problem, communicator);
+    if (!first.empty())
+      throw FileError(first + "; the rows written so far are kept, and --resume computes the rest");
   }
 
   void

@@ -43,13 +43,10 @@ namespace crawler
     void
     agree_on_failure(MPI_Comm communicator, TimeOutcome &outcome)
     {
-      const int n = static_cast<int>(size_of(communicator));
-      int speaker = outcome.status == Status::none ? n : static_cast<int>(rank_of(communicator));
-      MPI_Allreduce(MPI_IN_PLACE, &speaker, 1, MPI_INT, MPI_MIN, communicator);
-      if (speaker == n)
+      const std::string text =
+        first_text(outcome.status == Status::none ? "" : outcome.reason + "\n" + outcome.message, communicator);
+      if (text.empty())
         return;
-      const auto texts        = gather(outcome.reason + "\n" + outcome.message, communicator);
-      const std::string text  = broadcast(texts.empty() ? "" : texts[static_cast<std::size_t>(speaker)], communicator);
       const std::size_t split = text.find('\n');
       outcome.status          = Status::failed;
       outcome.reason          = text.substr(0, split);
