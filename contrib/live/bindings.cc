@@ -5,7 +5,7 @@
 #include <crawler/base/plain_numbers.h>
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/statistics_writer.h>
-#include <crawler/run/result_json.h>
+#include <crawler/run/summary.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/run/run_in_memory.h>
 

@@ -14,7 +14,6 @@
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/statistics_writer.h>
 #include <crawler/parameters/entry_lists.h>
-#include <crawler/run/result_json.h>
 #include <crawler/run/summary.h>
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/entry_rules.h>

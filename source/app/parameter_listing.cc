@@ -6,7 +6,7 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/parameters/entry_lists.h>
 #include <crawler/parameters/parameter_file.h>
-#include <crawler/run/result_json.h>
+#include <crawler/run/summary.h>
 #include <crawler/studies/core/parameters.h>
 
 #include <fmt/format.h>

@@ -2,9 +2,9 @@
 #include <crawler/base/clock.h>
 #include <crawler/reduced_models/perturbation.h>
 #include <crawler/run/gait_efficiency.h>
+#include <crawler/run/recorder.h>
 #include <crawler/run/reduced_model.h>
 #include <crawler/run/result_table.h>
-#include <crawler/run/user_units.h>
 
 #include <fmt/format.h>
 

@@ -141,4 +141,9 @@ namespace crawler
     bool were_known_         = false;                 ///< sudden_changes_ knew the extremes seen last
     double friction_impulse_ = 0., net_impulse_ = 0.; ///< int dt of both
   };
+
+  /// Converts natural units to those of the user's @p scene. A finished run has the time of the scene's end, and with
+  /// an energy balance its gait efficiency.
+  SimulationResult
+  in_user_units(SimulationResult result, const Scene &scene, const Units &units);
 } // namespace crawler

@@ -4,52 +4,40 @@
 #include <petscvec.h>
 
 #include <span>
+#include <type_traits>
 
 namespace crawler
 {
-  /// Read access to the own part of a Vec, during its lifetime.
-  class ReadAccess
+  /// Access to the own part of a Vec, during its lifetime; only to read if Value is const.
+  template <typename Value>
+  class VecAccess
   {
   public:
-    explicit ReadAccess(Vec vec)
+    explicit VecAccess(Vec vec)
       : vec_(vec)
     {
       PetscInt n = 0;
       VecGetLocalSize(vec, &n);
-      VecGetArrayRead(vec, &data_);
+      if constexpr (std::is_const_v<Value>)
+        VecGetArrayRead(vec, &data_);
+      else
+        VecGetArray(vec, &data_);
       span = {data_, static_cast<std::size_t>(n)};
     }
-    ~ReadAccess()
+    ~VecAccess()
     {
-      VecRestoreArrayRead(vec_, &data_);
+      if constexpr (std::is_const_v<Value>)
+        VecRestoreArrayRead(vec_, &data_);
+      else
+        VecRestoreArray(vec_, &data_);
     }
-    std::span<const double> span;
+    std::span<Value> span;
 
   private:
     Vec vec_;
-    const double *data_ = nullptr;
+    Value *data_ = nullptr;
   };
 
-  /// Write access to the own part of a Vec, during its lifetime.
-  class WriteAccess
-  {
-  public:
-    explicit WriteAccess(Vec vec)
-      : vec_(vec)
-    {
-      PetscInt n = 0;
-      VecGetLocalSize(vec, &n);
-      VecGetArray(vec, &data_);
-      span = {data_, static_cast<std::size_t>(n)};
-    }
-    ~WriteAccess()
-    {
-      VecRestoreArray(vec_, &data_);
-    }
-    std::span<double> span;
-
-  private:
-    Vec vec_;
-    double *data_ = nullptr;
-  };
+  using ReadAccess  = VecAccess<const double>;
+  using WriteAccess = VecAccess<double>;
 } // namespace crawler

@@ -2,10 +2,9 @@
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/exceptions.h>
-#include <crawler/studies/optimize/kinematic_gait.h>
+#include <crawler/studies/optimize/gait_models.h>
 #include <crawler/studies/optimize/optimize_start.h>
 #include <crawler/studies/optimize/rol_optimizer.h>
-#include <crawler/studies/optimize/simulated_gait.h>
 
 #include <fmt/format.h>
 

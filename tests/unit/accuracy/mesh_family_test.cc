@@ -6,7 +6,7 @@
 #include "../../support/test.h"
 
 #include <crawler/accuracy/mesh_family.h>
-#include <crawler/run/result_json.h>
+#include <crawler/run/summary.h>
 
 using namespace crawler;
 using test::Settings;
