@@ -75,7 +75,7 @@ namespace crawler
       if (!cost)
         return;
       const auto positive = gait.cost_of_transport(gait.energy_balance->positive_work);
-      lines.push_back(fmt::format("  cost of transport {:.4g}{}{} (work per distance{})",
+      lines.push_back(fmt::format("  cost of transport {:.4g}{}{} (work per distance of the last stride{})",
                                   *cost,
                                   error_bound_in_words(result, "gait.cost_of_transport.stress_power"),
                                   units.behind("force"),

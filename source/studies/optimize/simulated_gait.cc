@@ -148,7 +148,7 @@ namespace crawler
       std::string
       description() const override
       {
-        return "simulations, with derivatives by the adjoint";
+        return "simulations, with derivatives by the adjoint, or by differences where it does not cover an entry";
       }
 
     private:

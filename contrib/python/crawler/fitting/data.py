@@ -294,7 +294,7 @@ def _places_of_markers(samples, parameters, length, name):
         except ValueError:
             raise InputError(f'"Fit/Markers at" is "{wanted}", but "first" or a list of numbers is expected') from None
     if len(places) != x.shape[1]:
-        raise InputError(f'"Fit/Markers at" has {len(places)} places, but {name} has {x.shape[1]} markers')
+        raise InputError(f'"Fit/Markers at" has {len(places)} places, but {name} has {x.shape[1]} marker{"s" * (x.shape[1] != 1)}')
     if any(not math.isfinite(one) or not 0 <= one <= length for one in places) or any(np.diff(places) <= 0):
         raise InputError(f'"Fit/Markers at" is "{wanted}", but increasing places from 0 to Body/Length = {length:g} are expected')
     return np.array(places), 0.0 if free == "automatic" else float(free)

@@ -460,9 +460,10 @@ def draw(sweep, options, size=None):
         is_map = "verdict" in sweep.data and len(sweep.varying()) > 1 and not (options.lines or options.fit)
         options.value = "outcome" if is_map else "displacement"
     by_status = options.value in WORDS
+    advice = ("--value status shows" if len(sweep.varying()) > 1 else "the column status of results.csv says") + " what became of the points"
     if by_status:
         if options.value not in sweep.data:
-            raise InputError("only a sweep with Sweep/Cross-check = true has outcomes; --value status shows what became of the points")
+            raise InputError(f"only a sweep with Sweep/Cross-check = true has outcomes; {advice}")
         values = np.full(len(sweep.chosen), np.nan)
     else:
         numbers = [name for name in sweep.data if sweep.is_number(name)]
@@ -472,7 +473,7 @@ def draw(sweep, options, size=None):
     if by_status:
         marks.names = [name.replace("finished, value not known", "finished") for name in marks.names]
     elif not marks.drawn.any():
-        raise InputError(f'no point has a {options.value} ({marks.in_words()}); --value status shows what became of the points')
+        raise InputError(f'no point has a {options.value} ({marks.in_words()}); {advice}')
     x, y, rest = choose(sweep, options)
     as_lines = options.lines or options.fit or not y
     if as_lines and sweep.design == "grid" and not by_status:
