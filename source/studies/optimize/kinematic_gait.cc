@@ -265,10 +265,33 @@ namespace crawler
         jacobian_.reset();
       }
 
-      void
-      measure_slopes(const std::vector<double> &start)
+      /// True if the samples of the strain at @p x are those of linear_, but for round-off.
+      bool
+      are_linear(const Samples &samples, const std::vector<double> &x) const
       {
-        constexpr double step = 1e-2, round_off = 1e-11;
+        constexpr double round_off = 1e-11;
+        const Samples guess        = linear_samples(x);
+        for (const auto member : {&StrainSamples::strain, &StrainSamples::rate})
+        {
+          const std::vector<double> &own = samples.on_grid.*member, &first = linear_->samples.on_grid.*member,
+                                    &guessed = guess.on_grid.*member;
+          double size = 1e-3, largest = 0.;
+          for (std::size_t i = 0; i < own.size(); ++i)
+          {
+            size    = std::max({size, std::abs(own[i]), std::abs(first[i])});
+            largest = std::max(largest, std::abs(guessed[i] - own[i]));
+          }
+          if (largest > round_off * size)
+            return false;
+        }
+        return true;
+      }
+
+      /// Sets linear_ if the strain is linear. Returns false if a changed strain is not admissible.
+      bool
+      measure_slopes(const std::vector<double> &start, const bool nearly_inverts)
+      {
+        const double step     = nearly_inverts ? 1e-4 : 1e-2;
         const auto &variables = family_.variables;
         const auto n          = static_cast<double>(start.size());
         Linear linear{start, std::make_shared<const State>(family_.parameters(start)), {}, {}};
@@ -293,7 +316,7 @@ namespace crawler
             x[i] += d;
             Samples samples;
             if (!at(x, samples))
-              return;
+              return true;
             samples.add(-1., linear.samples);
             linear.slopes.emplace_back().add(1. / d, samples);
           }
@@ -302,43 +325,35 @@ namespace crawler
           {
             std::vector<double> x = start;
             for (std::size_t i = 0; i < x.size(); ++i)
-              x[i] += away(i, part / (3. * n) * (1. + 0.3 * std::sin(static_cast<double>(i))));
+              x[i] = nearly_inverts ? std::clamp((1. - part) * x[i], variables[i].from, variables[i].to) // tamer
+                                    : x[i] + away(i, part / (3. * n) * (1. + 0.3 * std::sin(static_cast<double>(i))));
             Samples samples;
             at(x, samples);
-            const Samples guess = linear_samples(x);
-            for (const auto member : {&StrainSamples::strain, &StrainSamples::rate})
+            if (!are_linear(samples, x))
             {
-              const std::vector<double> &own = samples.on_grid.*member, &first = linear_->samples.on_grid.*member,
-                                        &guessed = guess.on_grid.*member;
-              double size = 0., largest = 0.;
-              for (std::size_t i = 0; i < own.size(); ++i)
-              {
-                size    = std::max({size, std::abs(own[i]), std::abs(first[i])});
-                largest = std::max(largest, std::abs(guessed[i] - own[i]));
-              }
-              if (largest > round_off * std::max(size, 1e-3))
-              {
-                linear_.reset();
-                return;
-              }
+              linear_.reset();
+              return true;
             }
           }
         }
-        catch (const InputError &) // the strain is not admissible there
+        catch (const InputError &)
         {
           linear_.reset();
+          return false;
         }
+        return true;
       }
 
       /// Measures the derivatives of the strain at the start, and tests whether they hold for another strain, with all
-      /// variables changed.
+      /// variables changed. Where the body nearly inverts only small changes are admissible, and those to tamer gaits.
       void
       look_for_linearity(const std::vector<double> &start)
       {
         linear_.reset();
         jacobian_.reset();
         choose_limited_places(/*many=*/true);
-        measure_slopes(start);
+        if (!measure_slopes(start, /*nearly_inverts=*/false))
+          measure_slopes(start, /*nearly_inverts=*/true);
         if (!linear_)
           choose_limited_places(/*many=*/false);
         else if (wishes_.strain)
