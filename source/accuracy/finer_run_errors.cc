@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -78,15 +78,18 @@ namespace crawler
     const Gait &gait    = *result.gait;
     const double change = result.cycles->bound / result.cycles->extrapolated; // of the displacement in a stride
     const double part   = change / std::abs(gait.displacement);
-    const std::map<std::string, double> changes = {
-      {"gait.displacement", change},
-      {"gait.speed", change / gait.period},
-      {"gait.slip", change / (gait.period * std::abs(gait.wave_speed().value_or(HUGE_VAL)))},
-      {"gait.stride_efficiency", part * gait.efficiency.value_or(0.)}};
+    const auto add      = [&](const std::string &key, const double more) {
+      if (const auto known = error_bound(result, key))
+        set_error_bound(result, key, *known + more);
+    };
+    add("gait.displacement", change);
+    add("gait.speed", change / gait.period);
+    if (const auto speed = gait.wave_speed())
+      add("gait.slip", change / (gait.period * std::abs(*speed)));
+    if (gait.efficiency)
+      add("gait.stride_efficiency", part * *gait.efficiency);
     for (std::size_t i = 0; i < result.errors.size(); ++i)
-      if (const auto found = changes.find(entries[i]->key); found != changes.end())
-        result.errors[i] += found->second;
-      else if (entries[i]->scale == ResultEntry::Scale::cost) // inversely proportional to the displacement
+      if (entries[i]->scale == ResultEntry::Scale::cost) // inversely proportional to the displacement
         result.errors[i] = part < 1. ? result.errors[i] + part / (1. - part) * std::abs(number(*entries[i], result))
                                      : std::numeric_limits<double>::quiet_NaN();
   }

@@ -326,7 +326,7 @@ def _text(value, name):
     if isinstance(value, np.ndarray) and value.ndim == 0:
         return _text(value.item(), name)
     if isinstance(value, (list, tuple, range, np.ndarray)):
-        if any(np.ndim(one) for one in value):
+        if any(isinstance(one, (list, tuple, range)) or isinstance(one, np.ndarray) and one.ndim for one in value):
             raise InputError(f'"{name}" has a list in a list, but one list is expected')
         return ", ".join(_text(one, name) for one in value)
     raise InputError(f'"{name}" is {value!r}, but a number, a text, True, False or a list is expected')

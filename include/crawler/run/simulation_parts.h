@@ -8,7 +8,6 @@
 #include <crawler/lanes/lane_stepper.h>
 #include <crawler/mesh/mesh_marking.h>
 #include <crawler/output/observer.h>
-#include <crawler/run/numerics.h>
 #include <crawler/run/output_times.h>
 #include <crawler/run/recorder.h>
 #include <crawler/run/run_journal.h>
@@ -16,9 +15,9 @@
 #include <crawler/run/step_limiter.h>
 #include <crawler/time/petsc_stepper.h>
 
-#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
