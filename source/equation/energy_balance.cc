@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/equation/cell_kernels.h>
 #include <crawler/equation/energy_balance.h>
 
 #include <algorithm>
@@ -13,12 +12,6 @@ namespace crawler
     /// Growth of a step over the one before beyond which earlier points are not used.
     constexpr double largest_growth = 25.;
   } // namespace
-
-  Rates
-  rates_of(const CellIntegrals &sums, const double end_power)
-  {
-    return {{sums.stress_power, sums.dissipation, sums.positive_power, sums.absolute_power, end_power}};
-  }
 
   void
   EnergyBalance::add_works(const Rates &increments)

@@ -315,8 +315,7 @@ namespace crawler
         if (lane.end_feedback)
           lane.end_feedback->values(
             step.time - (1. - tableau_.c[i]) * step.size, {stage.end_stretch, stage.end_rate, {}, {}}, {m, {}, {}, {}});
-        const double end_power = m[1] * stage.right_velocity - m[0] * stage.left_velocity;
-        Rates works{{stage.stress_power, stage.dissipation, stage.positive_power, stage.absolute_power, end_power}};
+        Rates works = rates_of(stage, m[1] * stage.right_velocity - m[0] * stage.left_velocity);
         for (double &work : works)
           work *= step.size * tableau_.b[i];
         lane.recorder->result.energy_balance->add_works(works);

@@ -73,8 +73,7 @@ namespace crawler
                                                        {{stage.end_stretch[0], stage.end_stretch[1]}},
                                                        {{stage.end_rate[0], stage.end_rate[1]}},
                                                        {{stage.left_velocity, stage.right_velocity}}});
-    run_->quadrature.add_stage(
-      place, {{stage.stress_power, stage.dissipation, stage.positive_power, stage.absolute_power, end_power}});
+    run_->quadrature.add_stage(place, rates_of(stage, end_power));
   }
 
   /// Takes stretch and works of an accepted step, if no observer needs more of its end.

@@ -158,8 +158,7 @@ namespace crawler
   {
     if (!mesh_.end_power)
       mesh_.end_power = std::make_unique<EndPower>(*mesh_.assembler);
-    return {
-      {sums.stress_power, sums.dissipation, sums.positive_power, sums.absolute_power, (*mesh_.end_power)(t, y, v)}};
+    return rates_of(sums, (*mesh_.end_power)(t, y, v));
   }
 
   /// State within the step that has just been made, from the integrator's dense output; kept in inside_.

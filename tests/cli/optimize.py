@@ -271,7 +271,7 @@ def test_stops(place):
 
     # Within the first start there is a best so far, too.
     within = run("optimize_from_rest", place / "within", stop_at="step:30:TERM")
-    expect(within.returncode == 5 and summary(place / "within")["optimize"]["status"] == "stopped"
+    expect(within.returncode == 5 and summary(place / "within")["status"] == "stopped"
            and (place / "within" / "best" / "summary.json").exists(), f"a signal: {within.returncode}, {within.stderr}")
     for limit, code in (("0.001", 5), ("1e6", 0)):
         limited = run("optimize_harmonics", place / "limited", f"Optimize/Time limit={limit}", options=["--resume"])
@@ -375,6 +375,10 @@ def test_obstacles(place):
     expect(against.returncode == 3 and "Largest stress rate is EXCEEDED" in against.stdout
            and optima(place / "against")[0]["exceeded_limit"] == "Largest stress rate",
            f"an empty set: {against.stdout}{against.stderr}")
+    # The run of the best gait finished, but the study did not.
+    whole = summary(place / "against")
+    expect((whole["status"], whole["reason"]) == ("failed", "limits_exceeded") and "Largest stress rate" in whole["message"],
+           f"status of the study: {whole['status']}, {whole['reason']}, {whole['message']}")
 
 
 def test_bad_input(place):

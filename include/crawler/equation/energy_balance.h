@@ -8,15 +8,18 @@
 
 namespace crawler
 {
-  struct CellIntegrals;
-
   /// Rates whose integrals over time are works: of the active stress, of friction, of the positive and of the absolute
   /// power of the active stress, and of the power that leaves through the ends (doc/theory.md section 6) [energy/time].
   using Rates = std::array<double, 5>;
 
-  /// Rates of a state with these integrals, where @p end_power leaves through the ends, [m v] from s = 0 to L.
+  /// Rates of a state with these integrals (CellIntegrals, or those of a stage of the lanes), where @p end_power leaves
+  /// through the ends, [m v] from s = 0 to L.
+  template <typename Integrals>
   Rates
-  rates_of(const CellIntegrals &sums, double end_power);
+  rates_of(const Integrals &sums, const double end_power)
+  {
+    return {{sums.stress_power, sums.dissipation, sums.positive_power, sums.absolute_power, end_power}};
+  }
 
   /// Works over a run, and energies at its present state.
   struct EnergyBalance

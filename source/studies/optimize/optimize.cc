@@ -222,7 +222,7 @@ namespace crawler
       const std::string status = !stop.empty() ? "stopped" : end.code == ExitCode::finished ? "finished" : "failed";
       const double seconds     = clock.seconds(); // without pictures
       write_file(folder / "summary.json",
-                 optimize_json(results, summaries, status, end.reason, seconds, options.command_line));
+                 optimize_json(results, summaries, status, end.reason, end.warning, seconds, options.command_line));
       for (const std::string &line : in_words(results, cases, summaries))
         log.line(line);
       if (!results.best.empty())

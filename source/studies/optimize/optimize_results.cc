@@ -91,10 +91,17 @@ namespace crawler
                 const std::vector<std::string> &summaries,
                 const std::string &status,
                 const std::string &reason,
+                const std::string &message,
                 const double seconds,
                 const std::string &command_line)
   {
     Json all = summaries.empty() ? Json::object() : Json::parse(summaries.back());
+    if (!reason.empty())
+    {
+      all["status"]  = status;
+      all["reason"]  = reason;
+      all["message"] = message;
+    }
     Json own = {{"status", status},
                 {"reason", reason.empty() ? Json() : Json(reason)},
                 {"objective", results.names.objective},

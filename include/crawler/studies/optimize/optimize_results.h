@@ -37,12 +37,14 @@ namespace crawler
                 const std::filesystem::path &folder,
                 const std::vector<std::string> &summaries);
 
-  /// Summary: that of the run of the last optimum, @p summaries of the runs of all, and the report of the optimiser.
+  /// Summary: that of the run of the last optimum, @p summaries of the runs of all, and the report of the optimiser. If
+  /// there is a @p reason why the study did not finish, it replaces the ending of the run.
   std::string
   optimize_json(const OptimizeResults &results,
                 const std::vector<std::string> &summaries,
                 const std::string &status,
                 const std::string &reason,
+                const std::string &message,
                 double seconds,
                 const std::string &command_line);
 
