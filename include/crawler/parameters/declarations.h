@@ -33,6 +33,16 @@ namespace crawler
     void
     leave();
 
+    /// Declares the entries of a parameter struct in a section; @p more are other arguments of its add_parameters().
+    template <typename Struct, typename... More>
+    void
+    section(const std::string &name, Struct &parameters, const More &...more)
+    {
+      enter(name);
+      parameters.add_parameters(*this, more...);
+      leave();
+    }
+
     /// Gives the member of an entry its value by a text; returns false and changes nothing if that is not admissible.
     using Take = std::function<bool(const std::string &text)>;
 

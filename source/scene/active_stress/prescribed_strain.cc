@@ -154,7 +154,6 @@ namespace crawler
     for (const std::string &name : generators)
       if (std::find(choices.begin(), choices.end(), name) == choices.end())
         choices.push_back(name);
-    declarations.enter("Prescribed strain");
     declarations.choice("Given by", given_by, choices)
       .means("How the strain e(s,t), the stretch minus 1, is given: by a formula, a sine wave, a table in a file, or "
              "another generator with the entries of its own section, whose values are read as strain. The nonlinear "
@@ -175,7 +174,6 @@ namespace crawler
       .means("Table: CSV with the header s,t,strain and a row for each point of a full grid over the whole body and "
              "duration, in any order, or HDF5 with s[ns], t[nt] and strain[nt,ns]; cubic splines in s and t go through "
              "them. Used if given by table.");
-    declarations.leave();
   }
 
   PrescribedStrain::PrescribedStrain(const PrescribedStrainParameters &parameters,

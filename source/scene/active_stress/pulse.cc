@@ -39,7 +39,6 @@ namespace crawler
   PulseParameters::add_parameters(Declarations &declarations)
   {
     const Range not_negative{.lower = 0., .lower_included = true};
-    declarations.enter("Pulse");
     declarations.choice("Shape", shape, {"gaussian", "compact"})
       .means("Shape of the pulse as a function of the distance z from its centre in widths: exp(-z^2), or exp(1 - "
              "1/(1-z^2)) for |z| < 1 and 0 beyond.");
@@ -55,7 +54,6 @@ namespace crawler
     declarations.number("Repetition period", repetition_period, not_negative, "time")
       .means("Time from one pulse to the next; 0 for a single pulse.");
     envelope.add_parameters(declarations);
-    declarations.leave();
   }
 
   Pulse::Pulse(const PulseParameters &parameters, const double length, const double end_time)

@@ -29,7 +29,6 @@ namespace crawler
   void
   SegmentsParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Segments");
     declarations.whole_number("Number of segments", number, 1, 1000)
       .means("Number N of actuated segments, all of the same length.");
     declarations.numbers("Amplitude", amplitude, "force")
@@ -58,7 +57,6 @@ namespace crawler
     declarations.number("Ramp duration", ramp_duration, {.lower = 0., .lower_included = true}, "time")
       .means("Time in which the stress grows by a smooth step from 0 at t = 0 to its full size; the rate limit applies "
              "to the stress without this factor.");
-    declarations.leave();
   }
 
   Segments::Segments(const SegmentsParameters &parameters, const double length, const double end_time)

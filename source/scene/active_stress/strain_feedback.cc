@@ -47,7 +47,6 @@ namespace crawler
   void
   StrainFeedbackParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Strain feedback");
     declarations.text("Active stress", active_stress, "a formula of s, t, w, w_t, w_near, w_delayed", "force")
       .means(
         "The active stress: s is the material coordinate, t the time, w the stretch, w_t its rate, w_near the stretch "
@@ -62,7 +61,6 @@ namespace crawler
     declarations.number("Delay", delay, Range{0., std::numeric_limits<double>::infinity(), true, false}, "time")
       .means("Time by which w_delayed lags behind the stretch; before t = 0 it is the initial stretch. Time steps are "
              "not longer than this.");
-    declarations.leave();
   }
 
   StrainFeedback::StrainFeedback(const StrainFeedbackParameters &parameters, const double length, const double end_time)

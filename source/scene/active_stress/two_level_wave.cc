@@ -103,7 +103,6 @@ namespace crawler
   TwoLevelWaveParameters::add_parameters(Declarations &declarations)
   {
     const Range strains{.lower = -1., .upper = 1e6, .upper_included = true};
-    declarations.enter("Two-level wave");
     declarations.number("Smallest strain", smallest_strain, strains, "1")
       .means("Smallest strain emin, on the rest of each period.");
     declarations.number("Largest strain", largest_strain, strains, "1")
@@ -130,7 +129,6 @@ namespace crawler
     declarations.number("Ramp duration", ramp_duration, not_negative, "time")
       .means("Time in which the strain grows by a smooth step from 0 at t = 0 to its full size; the nonlinear model "
              "starts from rest and needs it.");
-    declarations.leave();
   }
 
   TwoLevelWave::TwoLevelWave(const TwoLevelWaveParameters &parameters, const Scene &scene)

@@ -34,7 +34,6 @@ namespace crawler
   TravellingWaveParameters::add_parameters(Declarations &declarations)
   {
     const Range not_negative{.lower = 0., .lower_included = true};
-    declarations.enter("Travelling wave");
     declarations.number("Amplitude", amplitude, any_number(), "force").means("Amplitude of the active stress.");
     declarations.number("Offset", offset, any_number(), "force").means("Constant that is added to the wave.");
     declarations
@@ -51,7 +50,6 @@ namespace crawler
     declarations.number("Phase", phase, any_number(), "1").means("Phase of the wave at s = 0, t = 0, in radians.");
     profile.add_parameters(declarations);
     envelope.add_parameters(declarations);
-    declarations.leave();
   }
 
   TravellingWave::TravellingWave(const TravellingWaveParameters &parameters, const double length, const double end_time)
@@ -184,7 +182,6 @@ namespace crawler
   void
   StandingWaveParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Standing wave");
     declarations.number("Amplitude", amplitude, any_number(), "force").means("Amplitude of the active stress.");
     declarations.number("Offset", offset, any_number(), "force").means("Constant that is added to the wave.");
     declarations
@@ -199,7 +196,6 @@ namespace crawler
     declarations.number("Phase", phase, any_number(), "1").means("Phase of the oscillation at t = 0, in radians.");
     profile.add_parameters(declarations);
     envelope.add_parameters(declarations);
-    declarations.leave();
   }
 
   StandingWave::StandingWave(const StandingWaveParameters &parameters, const double length, const double end_time)
