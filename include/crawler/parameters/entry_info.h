@@ -26,6 +26,8 @@ namespace crawler
   Range
   positive();
   Range
+  not_negative();
+  Range
   between(double lower, double upper);
 
   enum class EntryKind

@@ -47,14 +47,14 @@ namespace crawler
       .means("Width of a smooth front as a share of the period.");
     declarations.number("Phase", phase, any_number(), "1")
       .means("Phase of the first segment at t = 0 as a share of the period: it is switched on at phase 0.");
-    declarations.number("Gap", gap, {.lower = 0., .lower_included = true}, "1")
+    declarations.number("Gap", gap, not_negative(), "1")
       .means("Length of the passive part between neighbouring segments as a share of the length of a segment.");
     declarations.number("Saturation", saturation, positive(), "force")
       .means("Largest absolute value of the active stress; larger ones are clipped to it. Automatic: no limit.");
     declarations.number("Rate limit", rate_limit, positive(), "force/time")
       .means(
         "Largest absolute rate of change of the active stress: square signals become trapezoids. Automatic: no limit.");
-    declarations.number("Ramp duration", ramp_duration, {.lower = 0., .lower_included = true}, "time")
+    declarations.number("Ramp duration", ramp_duration, not_negative(), "time")
       .means("Time in which the stress grows by a smooth step from 0 at t = 0 to its full size; the rate limit applies "
              "to the stress without this factor.");
   }
