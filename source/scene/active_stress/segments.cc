@@ -64,9 +64,8 @@ namespace crawler
     , length_(length)
     , envelope_({{}, {}, /*window_edge=*/0., parameters.ramp_duration}, segments_section, length)
   {
-    const auto &p  = parameters_;
-    const double D = p.duty_cycle;
-    const auto n   = p.number;
+    const auto &p = parameters_;
+    const auto n  = p.number;
     if (p.amplitude.size() != 1 && p.amplitude.size() != n)
       throw InputError(
         fmt::format("the list of amplitudes has {} numbers, but 1 or {}, one for each segment, are expected",
@@ -75,15 +74,7 @@ namespace crawler
         segments_section + "Amplitude");
     if (p.switching == "smooth")
     {
-      const double most = std::min(D, 1. - D);
-      if (p.front_width > most * (1. + round_off))
-        throw InputError(fmt::format("the fronts are {:g} of a period wide, but at most {:g} is expected for the duty "
-                                     "cycle {:g}",
-                                     p.front_width,
-                                     most,
-                                     D),
-                         segments_section + "Front width");
-      smooth_.emplace(D, p.front_width);
+      smooth_.emplace(p.duty_cycle, p.front_width, segments_section);
       require_smooth_rate();
     }
 
