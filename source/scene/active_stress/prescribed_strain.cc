@@ -142,7 +142,7 @@ namespace crawler
       if (parameters.given_by == "wave")
         return wave_strain(parameters, length);
       if (parameters.given_by == "table")
-        return std::make_unique<StrainTable>(parameters.file, length, end_time, prescribed_strain_section + "File");
+        return read_strain_table(parameters.file, length, end_time, prescribed_strain_section + "File");
       return formula_strain(strain_formula(parameters, length, end_time));
     }
   } // namespace
@@ -366,18 +366,16 @@ namespace crawler
     }
   } // namespace
 
-  StrainTable::StrainTable(const std::string &name,
-                           const double length,
-                           const double end_time,
-                           const std::string &entry)
-    : StrainByEvaluators([table = std::make_shared<const GridInterpolation>(read(name, length, end_time, entry),
-                                                                            GridInterpolation::Method::cubic,
-                                                                            GridInterpolation::Outside::go_on)](
-                           const std::vector<double> &points) -> Evaluators {
-      const std::shared_ptr<GridInterpolation::AtPoints> at = table->at(points);
-      return {stress_at_points([at](const double t, const std::span<double> e) { at->values(t, e); }),
-              stress_at_points([at](const double t, const std::span<double> e_t) { at->rates(t, e_t); })};
-    })
+  std::unique_ptr<const StrainHistory>
+  read_strain_table(const std::string &name, const double length, const double end_time, const std::string &entry)
   {
+    return std::make_unique<StrainByEvaluators>(
+      [table = std::make_shared<const GridInterpolation>(
+         read(name, length, end_time, entry), GridInterpolation::Method::cubic, GridInterpolation::Outside::go_on)](
+        const std::vector<double> &points) -> Strains {
+        const std::shared_ptr<GridInterpolation::AtPoints> at = table->at(points);
+        return {stress_at_points([at](const double t, const std::span<double> e) { at->values(t, e); }),
+                stress_at_points([at](const double t, const std::span<double> e_t) { at->rates(t, e_t); })};
+      });
   }
 } // namespace crawler
