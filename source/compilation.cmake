@@ -31,7 +31,7 @@ endfunction()
 
 # The small loops over cells, points and samples; limited range: complex products without a check for infinities, which are looked for afterwards.
 function(crawler_compile_small_loops)
-  foreach(source equation/cell_kernels mesh/block_tridiagonal_kernels formula/formula formula/enclosure_rules formula/formula_bound
+  foreach(source equation/cell_kernels mesh/block_tridiagonal_kernels formula/formula formula/operation_rules formula/formula_bound
           base/grid_interpolation base/cubic_spline run/lane_sampler run/stretch_wave)
     set_source_files_properties(${CRAWLER_SOURCE}/${source}.cc PROPERTIES
       COMPILE_OPTIONS "${CRAWLER_FASTEST};-fcx-limited-range" SKIP_PRECOMPILE_HEADERS ON)

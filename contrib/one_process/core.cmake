@@ -22,7 +22,7 @@ foreach(one base/archive base/clock base/communication base/csv_numbers base/cub
         base/grid_interpolation base/nearest_name base/plain_numbers base/table
         output/active_stress_table output/field_sampler output/kymograph_writer output/output_parameters
         output/picture_times output/scenery output/statistics_writer output/usual_size output/vtk_xml
-        parameters/axis parameters/declarations parameters/entry_info parameters/entry_store parameters/listed_numbers
+        parameters/axis parameters/declarations parameters/entry_info parameters/entry_lists parameters/listed_numbers
         parameters/parameter_file parameters/plain_text parameters/slips
         studies/core/entry_notes studies/core/entry_rules studies/core/form studies/core/input studies/core/parameters
         studies/core/scene_numbers studies/core/sensitivity_entries studies/core/variables

@@ -36,7 +36,7 @@ namespace crawler
     const std::vector<Format> &
     formats()
     {
-      static const std::vector<Format> list = {{"prm", &Declarations::print_prm},
+      static const std::vector<Format> list = {{"prm", print_prm},
                                                {"json", print_json},
                                                {"markdown", print_markdown},
                                                {"schema", print_schema},

@@ -209,7 +209,7 @@ namespace crawler
     {
       for (const auto &[own_code, name, loop] : operators)
         if (own_code == code)
-          return add({.loop = loop, .tangent = tangent_of(name), .bound = bound_of(name), .side = side_of(name)}, 2);
+          return add({.loop = loop, .rules = rules_of(name)}, 2);
       throw mu::ParserError(mu::ecINTERNAL_ERROR);
     }
 
@@ -235,11 +235,7 @@ namespace crawler
       // Functions without a name are the sign: -x (muParser defines no other).
       const auto name         = names_.find(reinterpret_cast<Function>(function._pRawFun));
       const std::string known = name == names_.end() ? "-" : name->second;
-      add({.loop     = loop,
-           .tangent  = tangent_of(known),
-           .bound    = bound_of(known),
-           .side     = side_of(known),
-           .function = function._pRawFun},
+      add({.loop = loop, .rules = rules_of(known), .function = function._pRawFun},
           static_cast<std::size_t>(std::abs(count)));
     }
 
@@ -260,7 +256,7 @@ namespace crawler
       formula_.of_both_[condition.skip_b].target = formula_.of_both_.size();
       conditions_.pop_back();
       stack_.insert(stack_.end() - 2, condition.value);
-      add({.loop = select, .tangent = tangent_of("?"), .bound = bound_of("?")}, 3);
+      add({.loop = select, .rules = rules_of("?")}, 3);
     }
 
     /// Takes the arguments from the stack, puts the result there and adds the operation to its list.
@@ -293,7 +289,7 @@ namespace crawler
         on.on_s_in_steps &= its.on_s_in_steps || !its.on_s;
         on.on_t_in_steps &= its.on_t_in_steps || !its.on_t;
       }
-      const bool is_step = operation.tangent == nullptr;
+      const bool is_step = operation.rules.tangent == nullptr;
       on.on_s_in_steps |= is_step && !on.on_t;
       on.on_t_in_steps |= is_step && !on.on_s;
       return on;

@@ -31,7 +31,7 @@ namespace crawler
           arguments_.back().jumps_known = leaves_out_jumps_ || formula_->dependence_[argument].on_s;
         }
         Enclosure &result = values_[operation.result];
-        result            = operation.bound(arguments_);
+        result            = operation.rules.bound(arguments_);
         for (Interval *const x : {&result.value, &result.rate})
           if (empty(*x))
             *x = Interval::whole();
@@ -53,13 +53,13 @@ namespace crawler
   {
     std::vector<Interval> sides;
     compute(s, t, [&](const Formula::Operation &operation) {
-      if (operation.side == nullptr)
+      if (operation.rules.side == nullptr)
         return;
       const Formula::Dependence &on = formula_->dependence_[operation.result];
       const bool counts             = variable == Variable::s ? on.on_s && (!on.on_t || (in_steps && on.on_t_in_steps))
                                                               : on.on_t && (!on.on_s || (in_steps && on.on_s_in_steps));
       if (counts)
-        sides.push_back(operation.side(arguments_).value);
+        sides.push_back(operation.rules.side(arguments_).value);
     });
     return sides;
   }

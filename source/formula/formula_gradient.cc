@@ -55,7 +55,7 @@ namespace crawler
           continue;
         std::fill_n(rates_.data() + i * block_size, block_size, 1.);
         for_operations(n, [&](const Formula::Operation &operation, const double *result, const std::size_t size) {
-          if (operation.tangent == nullptr)
+          if (operation.rules.tangent == nullptr)
             return;
           argument_values_.clear();
           argument_rates_.clear();
@@ -64,7 +64,7 @@ namespace crawler
             argument_values_.push_back(values_.data() + argument * block_size);
             argument_rates_.push_back(rates_.data() + argument * block_size);
           }
-          operation.tangent(
+          operation.rules.tangent(
             argument_values_, argument_rates_, result, rates_.data() + operation.result * block_size, size);
         });
         std::copy_n(rates_.data() + formula_->result_ * block_size, n, derivatives[i].data() + first);

@@ -8,7 +8,6 @@ namespace crawler
   void
   DiscretizationParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Discretization");
     declarations.choice("Formulation", formulation)
       .means("Unknowns that are solved for: position, of high order on bodies that deform smoothly; stretch, for "
              "bodies that collapse, soft ones with thin layers, and fronts; automatic takes the cheaper one.");
@@ -30,7 +29,6 @@ namespace crawler
     declarations.choice("Share cells", share_cells)
       .means("Whether the ranks of mpirun share the cells, or each computes the whole body. Automatic: shared from "
              "2000 cells on; with fewer, communication costs more than it saves.");
-    declarations.leave();
   }
 
   bool

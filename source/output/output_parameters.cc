@@ -7,7 +7,6 @@ namespace crawler
   void
   OutputParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Output");
     declarations.whole_number("Number of snapshots", n_snapshots, 0, 1000000)
       .means("Number of snapshots for ParaView at equal time intervals until the end time, in addition to the initial "
              "state. 0: none, and no kymograph. Automatic: 64 for each stride, at least 64 and at most 640; 256 if the "
@@ -45,6 +44,5 @@ namespace crawler
       .means("Entries that are not known exactly, numbers as for Sensitivities, and their standard deviations, in "
              "their units or in per cent of their values. They give the standard deviation of the displacement and of "
              "the works, to first order and as if the entries were independent.");
-    declarations.leave();
   }
 } // namespace crawler

@@ -2,7 +2,6 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/nearest_name.h>
 #include <crawler/parameters/declarations.h>
-#include <crawler/parameters/entry_store.h>
 #include <crawler/parameters/listed_numbers.h>
 #include <crawler/parameters/slips.h>
 
@@ -98,31 +97,6 @@ namespace crawler
         return fmt::format("{}", value);
     }
 
-    // Readers of values: nothing if a text is not admissible.
-
-    auto
-    reader(const Range &range)
-    {
-      return [range](const std::string &text) {
-        const auto number = to_number(text);
-        return number && range.contains(*number) ? number : std::nullopt;
-      };
-    }
-    auto
-    reader(const unsigned int lower, const unsigned int upper)
-    {
-      return [lower, upper](const std::string &text) {
-        const auto count = to_count(text);
-        return count && *count >= lower && *count <= upper ? count : std::nullopt;
-      };
-    }
-
-    std::string
-    count_range(const unsigned int lower, const unsigned int upper)
-    {
-      return fmt::format("a whole number from {} to {}", lower, upper);
-    }
-
     /// Hint naming the nearest word of a choice.
     std::string
     nearest_word(const std::string &value, const std::vector<std::string> &words)
@@ -137,11 +111,8 @@ namespace crawler
 
   Declarations::Declarations(std::string only)
     : only_(std::move(only))
-    , store_(std::make_unique<EntryStore>())
   {
   }
-
-  Declarations::~Declarations() = default;
 
   void
   Declarations::enter(const std::string &section)
@@ -174,11 +145,13 @@ namespace crawler
     if (info_.names_file)
       info_.documentation +=
         " A file name is relative to the folder of this parameter file (with --set, to the current one).";
-    const auto of_trimmed = [](const auto &function) {
-      return [function](const std::string &text) { return function(trimmed(text)); };
-    };
-    owner_.store_->declare(split_path(info_.path), info_, of_trimmed(match_), of_trimmed(assign_));
+    if (!take_(info_.default_value))
+      throw std::logic_error("the default of \"" + info_.path + "\" is not admissible");
+    if (!owner_.numbers_.emplace(info_.path, owner_.entries_.size()).second)
+      throw std::logic_error("\"" + info_.path + "\" is declared twice");
     owner_.entries_.push_back(info_);
+    owner_.values_.push_back(info_.default_value);
+    owner_.takes_.push_back(take_);
   }
 
   template <typename Value, typename Read>
@@ -191,66 +164,58 @@ namespace crawler
                       const Read &read)
   {
     constexpr bool is_optional = may_be_automatic<Value>;
-    Entry result(
-      *this,
-      name,
-      {path_of(name), default_text(value), is_optional ? expected + " or the word \"automatic\"" : expected, unit, ""});
-    values.may_be_automatic = is_optional;
-    result.info_.values     = std::move(values);
-    result.match_           = [read](const std::string &text) {
-      return (is_optional && text == automatic) || read(text).has_value();
-    };
-    result.assign_ = [&value, read](const std::string &text) {
-      if constexpr (is_optional)
-        value = read(text);
-      else
-        value = *read(text);
-    };
-    return result;
+    values.may_be_automatic    = is_optional;
+    return {*this,
+            {.path          = path_of(name),
+             .default_value = default_text(value),
+             .expected      = is_optional ? expected + " or the word \"automatic\"" : expected,
+             .unit          = unit,
+             .values        = std::move(values)},
+            [&value, read](const std::string &text) {
+              const auto taken      = read(text);
+              const bool admissible = taken || (is_optional && text == automatic);
+              if (!admissible)
+                return false;
+              if constexpr (is_optional)
+                value = taken;
+              else
+                value = *taken;
+              return true;
+            }};
   }
 
+  template <typename Value>
   Declarations::Entry
-  Declarations::number(const std::string &name, double &value, const Range &range, const std::string &unit)
+  Declarations::number(const std::string &name, Value &value, const Range &range, const std::string &unit)
   {
-    return entry(name, value, range.in_words(), unit, {EntryKind::number, range}, reader(range));
+    return entry(name, value, range.in_words(), unit, {EntryKind::number, range}, [range](const std::string &text) {
+      const auto number = to_number(text);
+      return number && range.contains(*number) ? number : std::nullopt;
+    });
   }
+  template Declarations::Entry
+  Declarations::number(const std::string &, double &, const Range &, const std::string &);
+  template Declarations::Entry
+  Declarations::number(const std::string &, std::optional<double> &, const Range &, const std::string &);
 
+  template <typename Value>
   Declarations::Entry
-  Declarations::number(const std::string &name,
-                       std::optional<double> &value,
-                       const Range &range,
-                       const std::string &unit)
-  {
-    return entry(name, value, range.in_words(), unit, {EntryKind::number, range}, reader(range));
-  }
-
-  Declarations::Entry
-  Declarations::whole_number(const std::string &name,
-                             unsigned int &value,
-                             const unsigned int lower,
-                             const unsigned int upper)
-  {
-    return entry(name,
-                 value,
-                 count_range(lower, upper),
-                 "",
-                 {EntryKind::whole_number, between(lower, upper)},
-                 reader(lower, upper));
-  }
-
-  Declarations::Entry
-  Declarations::whole_number(const std::string &name,
-                             std::optional<unsigned int> &value,
-                             const unsigned int lower,
-                             const unsigned int upper)
+  Declarations::whole_number(const std::string &name, Value &value, const unsigned int lower, const unsigned int upper)
   {
     return entry(name,
                  value,
-                 count_range(lower, upper),
+                 fmt::format("a whole number from {} to {}", lower, upper),
                  "",
                  {EntryKind::whole_number, between(lower, upper)},
-                 reader(lower, upper));
+                 [lower, upper](const std::string &text) {
+                   const auto count = to_count(text);
+                   return count && *count >= lower && *count <= upper ? count : std::nullopt;
+                 });
   }
+  template Declarations::Entry
+  Declarations::whole_number(const std::string &, unsigned int &, unsigned int, unsigned int);
+  template Declarations::Entry
+  Declarations::whole_number(const std::string &, std::optional<unsigned int> &, unsigned int, unsigned int);
 
   Declarations::Entry
   Declarations::numbers(const std::string &name, std::vector<double> &value, const std::string &unit)
@@ -269,32 +234,27 @@ namespace crawler
 
   Declarations::Entry
   Declarations::choice(const std::string &name,
+                       const std::string &default_word,
                        const std::vector<std::string> &words,
-                       const std::size_t value,
-                       const std::function<void(std::size_t)> &assign)
+                       const std::function<void(const std::string &)> &assign)
   {
-    const auto place = [words](const std::string &text) {
-      return static_cast<std::size_t>(std::find(words.begin(), words.end(), text) - words.begin());
-    };
-    Entry result(*this, name, {path_of(name), words[value], quoted_list(words), "", ""});
-    result.info_.values = {.kind = EntryKind::choice, .words = words};
-    result.match_       = [place, n = words.size()](const std::string &text) { return place(text) < n; };
-    result.assign_      = [place, assign](const std::string &text) { assign(place(text)); };
-    return result;
+    return {*this,
+            {.path          = path_of(name),
+             .default_value = default_word,
+             .expected      = words.size() == 1 ? "the word " + quoted_list(words) : quoted_list(words),
+             .values        = {.kind = EntryKind::choice, .words = words}},
+            [words, assign](const std::string &text) {
+              if (std::find(words.begin(), words.end(), text) == words.end())
+                return false;
+              assign(text);
+              return true;
+            }};
   }
 
   Declarations::Entry
   Declarations::choice(const std::string &name, std::string &value, const std::vector<std::string> &words)
   {
-    return entry(name,
-                 value,
-                 words.size() == 1 ? "the word " + quoted_list(words) : quoted_list(words),
-                 "",
-                 {.kind = EntryKind::choice, .words = words},
-                 [words](const std::string &text) {
-                   return std::find(words.begin(), words.end(), text) != words.end() ? std::optional(text)
-                                                                                     : std::nullopt;
-                 });
+    return choice(name, value, words, [&value](const std::string &word) { value = word; });
   }
 
   Declarations::Entry
@@ -369,7 +329,8 @@ namespace crawler
   {
     std::vector<std::string> words = split_path(path);
     const auto key                 = take_key(words.back());
-    const EntryInfo &entry         = find(words);
+    const unsigned int index       = find(words);
+    const EntryInfo &entry         = entries_[index];
     if (key)
     {
       const auto number = to_number(trimmed(value));
@@ -378,12 +339,15 @@ namespace crawler
           fmt::format(
             "\"{}[{}]\" is \"{}\", but a number is expected{}", entry.path, *key, value, number_hint(trimmed(value))),
           entry.path);
-      set(entry.path, with_listed_number(entry, this->value(entry.path), *key, *number));
+      set(entry.path, with_listed_number(entry, values_[index], *key, *number));
       return;
     }
     const std::string text = with_absolute_name(path, value, folder);
-    if (store_->set(words, text))
+    if (takes_[index](text))
+    {
+      values_[index] = text;
       return;
+    }
     const bool is_number = entry.expected.find("number") != std::string::npos;
     throw InputError(fmt::format("\"{}\" is \"{}\", but {} is expected{}{}",
                                  entry.path,
@@ -416,7 +380,7 @@ namespace crawler
   {
     std::vector<std::string> words = split_path(path);
     take_key(words.back());
-    return find(words);
+    return entries_[find(words)];
   }
 
   std::string
@@ -424,18 +388,16 @@ namespace crawler
   {
     std::vector<std::string> words = split_path(path);
     const auto key                 = take_key(words.back());
-    const EntryInfo &entry         = find(words);
-    const std::string text         = value(static_cast<unsigned int>(&entry - entries_.data()));
-    return key ? to_text(listed_number(entry, text, *key)) : text;
+    const unsigned int index       = find(words);
+    return key ? to_text(listed_number(entries_[index], values_[index], *key)) : values_[index];
   }
 
-  const EntryInfo &
+  unsigned int
   Declarations::find(const std::vector<std::string> &path) const
   {
-    const std::string full = path_text(path);
-    for (const EntryInfo &entry : entries_)
-      if (entry.path == full)
-        return entry;
+    const auto found = numbers_.find(path_text(path));
+    if (found != numbers_.end())
+      return found->second;
     refuse_name(path);
   }
 
@@ -493,18 +455,6 @@ namespace crawler
                                  near.size() > 1 ? "names are" : "name is",
                                  quoted_list(near)),
                      path);
-  }
-
-  std::string
-  Declarations::value(const unsigned int index) const
-  {
-    return store_->get(split_path(entries_[index].path));
-  }
-
-  void
-  Declarations::print_prm(std::ostream &out) const
-  {
-    store_->print_prm(out);
   }
 
   std::vector<std::string>

@@ -36,9 +36,13 @@ namespace crawler
   Range
   positive()
   {
-    Range range;
-    range.lower = 0;
-    return range;
+    return {.lower = 0.};
+  }
+
+  Range
+  not_negative()
+  {
+    return {.lower = 0., .lower_included = true};
   }
 
   Range

@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <ostream>
+#include <sstream>
 
 namespace crawler
 {
@@ -73,6 +75,89 @@ namespace crawler
       return schema;
     }
 
+    /// Breaks @p text into lines of at most @p width characters; the last one is shorter than that, as
+    /// dealii::ParameterHandler writes them.
+    std::vector<std::string>
+    lines_of(const std::string &text, const std::size_t width)
+    {
+      std::vector<std::string> lines;
+      std::istringstream words(text);
+      for (std::string word; words >> word;)
+      {
+        const bool is_last = (words >> std::ws).eof();
+        if (lines.empty() || lines.back().size() + 1 + word.size() + (is_last ? 1 : 0) > width)
+          lines.push_back(word);
+        else
+          lines.back() += " " + word;
+      }
+      return lines;
+    }
+
+    /// Prints the entries with the numbers @p own, all of one section.
+    void
+    print_entries(const Declarations &declarations,
+                  const std::vector<unsigned int> &own,
+                  const std::string &indent,
+                  std::ostream &out)
+    {
+      constexpr std::size_t width = 78;
+      const auto name_of = [&](const unsigned int i) { return split_path(declarations.entries()[i].path).back(); };
+      std::size_t longest_name = 0, longest_value = 0;
+      for (const unsigned int i : own)
+      {
+        longest_name  = std::max(longest_name, name_of(i).size());
+        longest_value = std::max(longest_value, declarations.value(i).size());
+      }
+      for (const unsigned int i : own)
+      {
+        const EntryInfo &entry  = declarations.entries()[i];
+        const std::string value = declarations.value(i), name = name_of(i);
+        const std::string unit = entry.unit.empty() ? "" : " Unit: " + entry.unit + ".";
+        if (i != own.front())
+          out << "\n";
+        for (const std::string &line :
+             lines_of(entry.documentation + " Expected: " + entry.expected + "." + unit, width - indent.size() - 2))
+          out << indent << "# " << line << "\n";
+        out << indent << "set " << name << std::string(longest_name - name.size(), ' ') << " = " << value;
+        if (value != entry.default_value)
+          out << std::string(longest_value - value.size(), ' ') << " # default: " << entry.default_value;
+        out << "\n";
+      }
+    }
+
+    /// Prints a section with the sections below, @p depth deep, in the order of their declaration; the paths of its
+    /// entries begin with @p section.
+    void
+    print_section(const Declarations &declarations,
+                  const std::string &section,
+                  const std::size_t depth,
+                  std::ostream &out)
+    {
+      std::vector<unsigned int> own;
+      std::vector<std::string> below;
+      for (unsigned int i = 0; i < declarations.entries().size(); ++i)
+      {
+        const std::string &path = declarations.entries()[i].path;
+        if (!path.starts_with(section))
+          continue;
+        const std::string rest = path.substr(section.size()), name = rest.substr(0, rest.find('/'));
+        if (name == rest)
+          own.push_back(i);
+        else if (std::ranges::find(below, name) == below.end())
+          below.push_back(name);
+      }
+      const std::string indent(2 * depth, ' ');
+      print_entries(declarations, own, indent, out);
+      if (!own.empty() && !below.empty())
+        out << "\n\n";
+      for (const std::string &name : below)
+      {
+        out << indent << "subsection " << name << "\n";
+        print_section(declarations, section + name + "/", depth + 1, out);
+        out << indent << "end\n" << (depth == 0 ? "\n\n" : "\n");
+      }
+    }
+
     void
     make_object(Json &schema)
     {
@@ -80,6 +165,13 @@ namespace crawler
       schema["additionalProperties"] = false;
     }
   } // namespace
+
+  void
+  print_prm(const Declarations &declarations, std::ostream &out)
+  {
+    out << "# Listing of Parameters\n# ---------------------\n";
+    print_section(declarations, "", 0, out);
+  }
 
   void
   print_schema(const Declarations &declarations, std::ostream &out)

@@ -145,12 +145,12 @@ namespace crawler
     declarations.flag("Error estimate", error_estimate)
       .means("Whether a second, finer run measures the error of the displacement; it costs about as much as a run "
              "without output.");
-    body.add_parameters(declarations);
-    ground.add_parameters(declarations);
-    active_stress.add_parameters(declarations);
-    discretization.add_parameters(declarations);
-    time.add_parameters(declarations);
-    output.add_parameters(declarations);
+    declarations.section("Body", body);
+    declarations.section("Ground", ground);
+    declarations.section("Active stress", active_stress);
+    declarations.section("Discretization", discretization);
+    declarations.section("Time", time);
+    declarations.section("Output", output);
   }
 
   Scene

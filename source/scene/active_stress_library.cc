@@ -126,18 +126,22 @@ namespace crawler
   void
   ActiveStressParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Active stress");
     add_generators(declarations, /*is_term=*/false);
-    declarations.enter("Sum");
-    for (std::size_t i = 0; i < sum.terms.size(); ++i)
-    {
-      declarations.enter(fmt::format("Term {}", i + 1));
-      sum.terms[i].combination.add_parameters(declarations);
-      sum.terms[i].stress.add_generators(declarations, /*is_term=*/true);
-      declarations.leave();
-    }
-    declarations.leave();
-    declarations.leave();
+    declarations.section("Sum", sum);
+  }
+
+  void
+  SumParameters::add_parameters(Declarations &declarations)
+  {
+    for (std::size_t i = 0; i < terms.size(); ++i)
+      declarations.section(fmt::format("Term {}", i + 1), terms[i]);
+  }
+
+  void
+  TermParameters::add_parameters(Declarations &declarations)
+  {
+    combination.add_parameters(declarations);
+    stress.add_generators(declarations, /*is_term=*/true);
   }
 
   void
@@ -156,18 +160,18 @@ namespace crawler
     }
     declarations.choice("Generator", generator, names)
       .means(is_term ? "Generator of the term, as in Active stress." : documentation + ".");
-    optimal_wave.add_parameters(declarations);
-    travelling_wave.add_parameters(declarations);
-    standing_wave.add_parameters(declarations);
-    pulse.add_parameters(declarations);
-    segments.add_parameters(declarations);
-    expression.add_parameters(declarations);
-    prescribed_strain.add_parameters(declarations, of_strain);
-    two_level_wave.add_parameters(declarations);
-    library.add_parameters(declarations);
-    strain_feedback.add_parameters(declarations);
-    table.add_parameters(declarations);
-    modes.add_parameters(declarations);
+    declarations.section("Optimal wave", optimal_wave);
+    declarations.section("Travelling wave", travelling_wave);
+    declarations.section("Standing wave", standing_wave);
+    declarations.section("Pulse", pulse);
+    declarations.section("Segments", segments);
+    declarations.section("Expression", expression);
+    declarations.section("Prescribed strain", prescribed_strain, of_strain);
+    declarations.section("Two-level wave", two_level_wave);
+    declarations.section("Library", library);
+    declarations.section("Strain feedback", strain_feedback);
+    declarations.section("Table", table);
+    declarations.section("Modes", modes);
   }
 
   std::unique_ptr<ActiveStress>

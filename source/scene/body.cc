@@ -7,7 +7,6 @@ namespace crawler
   void
   Body::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Body");
     declarations.number("Length", length, positive(), "length").means("Rest length L of the body.");
     declarations.number("Elastic modulus", elastic_modulus, positive(), "force")
       .means("Elastic modulus k: force per unit strain.");
@@ -30,7 +29,6 @@ namespace crawler
       .means(
         "Interpolation between the numbers of the lists and the rows of the CSV files of this section; their values "
         "are kept beyond the first and the last row. Cubic: a spline of the logarithms, which gives positive values.");
-    declarations.leave();
   }
 
   BodyProfiles

@@ -166,7 +166,6 @@ namespace crawler
       documentation += (names.empty() ? "" : "; ") + law.name + " (" + law.description + ")";
       names.push_back(law.name);
     }
-    declarations.enter("Ground");
     declarations
       .file("Profile",
             profile,
@@ -190,7 +189,6 @@ namespace crawler
     declarations.number("Switching velocity", switching_velocity, positive(), "length/time")
       .means(
         "Velocity v_s of the transition between backward and forward motion; needed if the Backward ratio is not 1.");
-    declarations.leave();
   }
 
   std::unique_ptr<const FrictionLaw>

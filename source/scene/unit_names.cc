@@ -14,13 +14,11 @@ namespace crawler
   UnitNames::add_parameters(Declarations &declarations)
   {
     const std::string name = "a name, like mm";
-    declarations.enter("Units");
     declarations.text("Length", length, name)
       .means("Name of the unit of length in pictures, reports, table headers and on the screen. It is only a name: "
              "nothing is converted.");
     declarations.text("Time", time, name).means("Name of the unit of time.");
     declarations.text("Force", force, name).means("Name of the unit of force.");
-    declarations.leave();
   }
 
   void

@@ -25,7 +25,6 @@ namespace crawler
   void
   TimeParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Time");
     declarations.number("End time", end_time, positive(), "time")
       .means("Duration T; the body starts at rest at time 0.");
     declarations.text("Integrator", integrator, quoted_list(integrator_names()))
@@ -56,7 +55,6 @@ namespace crawler
     declarations.number("Checkpoint interval", checkpoint_interval, between(0., 1e9), "s")
       .means("Wall time between two states that a run saves in restart.dat, from which --resume continues after a "
              "crash. A run that takes less saves none unless it is stopped.");
-    declarations.leave();
   }
 
   void

@@ -22,11 +22,9 @@ namespace crawler
     }
   };
 
-  /// An operation. A skip (without a loop) jumps to `target` if no point of the block needs the operations between.
-  struct FormulaOperation
+  /// How an operation propagates derivatives and enclosures.
+  struct OperationRules
   {
-    using Function = void (*)();
-    using Loop     = void (*)(Function, std::span<const FormulaOperand> arguments, double *result, std::size_t n);
     /// Derivative of the result, from the arguments, their derivatives and the result (one number per point each).
     using Tangent = void (*)(std::span<const double *const> arguments,
                              std::span<const double *const> rates,
@@ -37,10 +35,21 @@ namespace crawler
     /// Encloses the result (enclosure.h).
     using Bound = Enclosure (*)(std::span<const Enclosure> arguments);
 
+    Tangent tangent = nullptr; ///< null: the result is constant except for jumps
+    Bound bound     = nullptr;
+    /// Encloses the side on which the operation is computed, a whole number that changes where it jumps or has a kink;
+    /// null if it does neither.
+    Bound side = nullptr;
+  };
+
+  /// An operation. A skip (without a loop) jumps to `target` if no point of the block needs the operations between.
+  struct FormulaOperation
+  {
+    using Function = void (*)();
+    using Loop     = void (*)(Function, std::span<const FormulaOperand> arguments, double *result, std::size_t n);
+
     Loop loop                           = nullptr;
-    Tangent tangent                     = nullptr; ///< null: the result is constant except for jumps
-    Bound bound                         = nullptr;
-    Bound side                          = nullptr; ///< Encloses the number of the smooth piece; null: there is one.
+    OperationRules rules                = {};
     Function function                   = nullptr; ///< Of any type, for loops that call a function.
     std::vector<unsigned int> arguments = {};      ///< Values; for a skip the condition.
     unsigned int result                 = 0;       ///< Value.

@@ -7,35 +7,44 @@
 
 #include <filesystem>
 #include <functional>
-#include <iosfwd>
-#include <memory>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace crawler
 {
-  class EntryStore;
-
   /**
    * The list of all entries of the parameter file. A parameter struct declares its members here, each with its default,
    * range, unit and a sentence; from then on the member has the value of the entry:
    *
    *   declarations.number("Length", length, positive(), "length").means("Rest length L of the body.");
    *
-   * Values are kept and printed by an EntryStore. Names are unique and have one spelling.
+   * Names are unique and have one spelling.
    */
   class Declarations
   {
   public:
     /// Restricts the list to @p only, the name of a section or an entry; other declarations are skipped.
     explicit Declarations(std::string only = "");
-    ~Declarations();
 
     void
     enter(const std::string &section);
     void
     leave();
+
+    /// Declares the entries of a parameter struct in a section; @p more are other arguments of its add_parameters().
+    template <typename Struct, typename... More>
+    void
+    section(const std::string &name, Struct &parameters, const More &...more)
+    {
+      enter(name);
+      parameters.add_parameters(*this, more...);
+      leave();
+    }
+
+    /// Gives the member of an entry its value by a text; returns false and changes nothing if that is not admissible.
+    using Take = std::function<bool(const std::string &text)>;
 
     /// A declared entry, which requires its explanation in one or more sentences.
     class [[nodiscard]] Entry
@@ -47,28 +56,26 @@ namespace crawler
     private:
       friend class Declarations;
       Declarations &owner_;
-      std::string name_;
       EntryInfo info_;
-      std::function<bool(const std::string &)> match_;
-      std::function<void(const std::string &)> assign_;
+      Take take_;
 
-      Entry(Declarations &owner, std::string name, EntryInfo info)
+      Entry(Declarations &owner, EntryInfo info, Take take)
         : owner_(owner)
-        , name_(std::move(name))
         , info_(std::move(info))
+        , take_(std::move(take))
       {
       }
     };
 
     // Optional values also admit the word "automatic" (an empty optional).
+    /// A double, or an optional one.
+    template <typename Value>
     Entry
-    number(const std::string &name, double &value, const Range &range, const std::string &unit);
+    number(const std::string &name, Value &value, const Range &range, const std::string &unit);
+    /// An unsigned int, or an optional one.
+    template <typename Value>
     Entry
-    number(const std::string &name, std::optional<double> &value, const Range &range, const std::string &unit);
-    Entry
-    whole_number(const std::string &name, unsigned int &value, unsigned int lower, unsigned int upper);
-    Entry
-    whole_number(const std::string &name, std::optional<unsigned int> &value, unsigned int lower, unsigned int upper);
+    whole_number(const std::string &name, Value &value, unsigned int lower, unsigned int upper);
     /// A list of numbers; it may be empty if the default is.
     Entry
     numbers(const std::string &name, std::vector<double> &value, const std::string &unit);
@@ -79,9 +86,8 @@ namespace crawler
     Entry
     choice(const std::string &name, Enum &value)
     {
-      return choice(name, all_words<Enum>(), static_cast<std::size_t>(value), [&value](const std::size_t i) {
-        value = static_cast<Enum>(i);
-      });
+      return choice(
+        name, word_of(value), all_words<Enum>(), [&value](const std::string &word) { value = *from_word<Enum>(word); });
     }
     Entry
     flag(const std::string &name, bool &value);
@@ -135,18 +141,17 @@ namespace crawler
 
     /// The present value of the entry with number @p index of entries().
     std::string
-    value(unsigned int index) const;
-
-    /// Prints the present values as a .prm file with every entry explained.
-    void
-    print_prm(std::ostream &out) const;
+    value(unsigned int index) const
+    {
+      return values_[index];
+    }
 
   private:
     Entry
     choice(const std::string &name,
+           const std::string &default_word,
            const std::vector<std::string> &words,
-           std::size_t value,
-           const std::function<void(std::size_t)> &assign);
+           const std::function<void(const std::string &word)> &assign);
     template <typename Value, typename Read>
     Entry
     entry(const std::string &name,
@@ -156,8 +161,8 @@ namespace crawler
           EntryValues values,
           const Read &read);
 
-    /// Finds a declared entry. Throws InputError with the nearest names if there is none.
-    const EntryInfo &
+    /// Finds the number of a declared entry. Throws InputError with the nearest names if there is none.
+    unsigned int
     find(const std::vector<std::string> &path) const;
     [[noreturn]] void
     refuse_name(const std::vector<std::string> &words) const;
@@ -166,9 +171,11 @@ namespace crawler
     path_of(const std::string &name) const;
 
     const std::string only_;
-    std::unique_ptr<EntryStore> store_;
     std::vector<std::string> section_; ///< section of the next declarations
     std::vector<EntryInfo> entries_;
+    std::vector<std::string> values_;                       ///< of the entries, as text
+    std::vector<Take> takes_;                               ///< of the entries
+    std::unordered_map<std::string, unsigned int> numbers_; ///< of the entries by their paths
     std::vector<std::string> sections_;
   };
 

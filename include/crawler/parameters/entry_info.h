@@ -26,6 +26,8 @@ namespace crawler
   Range
   positive();
   Range
+  not_negative();
+  Range
   between(double lower, double upper);
 
   enum class EntryKind
@@ -55,12 +57,12 @@ namespace crawler
   {
     std::string path; ///< "Section/Subsection/Entry"
     std::string default_value;
-    std::string expected; ///< the admissible values in words
-    std::string unit;     ///< empty for words and counts
-    std::string documentation;
-    bool names_file         = false; ///< the value names a file to be read, or may do so
-    bool names_several      = false; ///< files, separated by semicolons
-    std::string file_ending = "";    ///< if not empty, only values with this ending name files
-    EntryValues values      = {};
+    std::string expected;           ///< the admissible values in words
+    std::string unit          = ""; ///< empty for words and counts
+    std::string documentation = "";
+    bool names_file           = false; ///< the value names a file to be read, or may do so
+    bool names_several        = false; ///< files, separated by semicolons
+    std::string file_ending   = "";    ///< if not empty, only values with this ending name files
+    EntryValues values        = {};
   };
 } // namespace crawler

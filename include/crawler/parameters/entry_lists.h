@@ -9,6 +9,10 @@ namespace crawler
 
   // Lists of entries, with their defaults, for other programs and for readers.
 
+  /// Prints the present values as a .prm file with every entry explained, in the form of dealii::ParameterHandler.
+  void
+  print_prm(const Declarations &declarations, std::ostream &out);
+
   /// Prints JSON: an array of objects with entry, default, expected, unit, documentation.
   void
   print_json(const Declarations &declarations, std::ostream &out);

@@ -25,6 +25,9 @@ namespace crawler
   struct SumParameters
   {
     std::vector<TermParameters> terms;
+
+    void
+    add_parameters(Declarations &declarations);
   };
 
   /// Section "Active stress": the generator's name, and the section of each generator.
@@ -58,6 +61,9 @@ namespace crawler
   {
     SumTermParameters combination;
     ActiveStressParameters stress;
+
+    void
+    add_parameters(Declarations &declarations);
   };
 
   /// Names of all generators. The section of each has the same name, with a capital letter.

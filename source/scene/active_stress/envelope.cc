@@ -9,21 +9,16 @@
 
 namespace crawler
 {
-  namespace
-  {
-    const Range not_negative{.lower = 0., .lower_included = true};
-  }
-
   void
   EnvelopeParameters::add_parameters(Declarations &declarations)
   {
-    declarations.number("Window start", window_start, not_negative, "length")
+    declarations.number("Window start", window_start, not_negative(), "length")
       .means("Start of the window outside which the active stress is 0. Automatic: no edge at s = 0.");
-    declarations.number("Window end", window_end, not_negative, "length")
+    declarations.number("Window end", window_end, not_negative(), "length")
       .means("End of the window. Automatic: no edge at s = L.");
-    declarations.number("Window edge", window_edge, not_negative, "length")
+    declarations.number("Window edge", window_edge, not_negative(), "length")
       .means("Width of the window's edges, which are smooth steps inside the window; with 0 the stress jumps there.");
-    declarations.number("Ramp duration", ramp_duration, not_negative, "time")
+    declarations.number("Ramp duration", ramp_duration, not_negative(), "time")
       .means("Time in which the stress grows by a smooth step from 0 at t = 0 to its full size.");
   }
 

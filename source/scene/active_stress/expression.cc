@@ -27,13 +27,11 @@ namespace crawler
   void
   ExpressionParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Expression");
     declarations.text("Active stress", active_stress, "a formula of s and t", "force")
       .means("The active stress m(s,t): s is the material coordinate, t the time; pi, L (body length) and T (end time) "
              "are available, as are sin, cos, tan, sinh, cosh, tanh, exp, log, sqrt, abs, sign, min, max, pow, mod, "
              "floor, ceil, erf, erfc, ^, comparisons and a ? b : c.");
     declarations.constants("Constants", constants, {"Active stress"}).means("Constants that the formula may use.");
-    declarations.leave();
   }
 
   Expression::Expression(const ExpressionParameters &parameters, const double length, const double end_time)

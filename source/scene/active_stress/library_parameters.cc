@@ -7,11 +7,9 @@ namespace crawler
   void
   LibraryParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Library");
     declarations.file("File", file, "the name of a shared object")
       .means("Shared object with the active stress as a plug-in (doc/generators/library.md).");
     declarations.text("Parameters", parameters, "a list name=value, name=value")
       .means("Parameters that are passed to the plug-in, which defines their names.");
-    declarations.leave();
   }
 } // namespace crawler

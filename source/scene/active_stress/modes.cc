@@ -72,7 +72,6 @@ namespace crawler
   void
   ModesParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Modes");
     declarations.whole_number("Harmonics", harmonics, 0, 64)
       .means(
         "Number N of harmonics along the body. The modes there are 1, sin x, cos x, ..., sin Nx, cos Nx with x = 2 "
@@ -94,7 +93,6 @@ namespace crawler
       .means("Coefficients of the modes: for a travelling wave, of all modes along the body; otherwise of those with "
              "the first function of time, then with the second, and so on. Missing ones are 0. Where numbers of the "
              "scene are named, as in Optimize/Variables, Coefficients[2] is the second of them.");
-    declarations.leave();
   }
 
   Modes::Modes(const ModesParameters &parameters, const double length, const double end_time)

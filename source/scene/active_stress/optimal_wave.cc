@@ -29,7 +29,6 @@ namespace crawler
   void
   OptimalWaveParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Optimal wave");
     declarations.number("Perturbation parameter", perturbation_parameter, any_number(), "1")
       .means("Perturbation parameter chi: the active stress is proportional to it, the displacement to its square.");
     declarations.choice("Shape", shape, {"Fourier", "expression", "table"})
@@ -62,7 +61,6 @@ namespace crawler
       .means("Number of the wave, the slowest being 1 (crawler check lists them). Used if Root is index.");
     declarations.number("Wave speed", wave_speed, any_number(), "length/time")
       .means("Wave speed c, not 0; a positive one runs from s = L to s = 0. Used if the wave is chosen by wave speed.");
-    declarations.leave();
   }
 
   OptimalWave::OptimalWave(const OptimalWaveParameters &parameters, const Body &body, const double end_time)

@@ -142,7 +142,7 @@ namespace crawler
       if (parameters.given_by == "wave")
         return wave_strain(parameters, length);
       if (parameters.given_by == "table")
-        return std::make_unique<StrainTable>(parameters.file, length, end_time, prescribed_strain_section + "File");
+        return read_strain_table(parameters.file, length, end_time, prescribed_strain_section + "File");
       return formula_strain(strain_formula(parameters, length, end_time));
     }
   } // namespace
@@ -154,7 +154,6 @@ namespace crawler
     for (const std::string &name : generators)
       if (std::find(choices.begin(), choices.end(), name) == choices.end())
         choices.push_back(name);
-    declarations.enter("Prescribed strain");
     declarations.choice("Given by", given_by, choices)
       .means("How the strain e(s,t), the stretch minus 1, is given: by a formula, a sine wave, a table in a file, or "
              "another generator with the entries of its own section, whose values are read as strain. The nonlinear "
@@ -175,7 +174,6 @@ namespace crawler
       .means("Table: CSV with the header s,t,strain and a row for each point of a full grid over the whole body and "
              "duration, in any order, or HDF5 with s[ns], t[nt] and strain[nt,ns]; cubic splines in s and t go through "
              "them. Used if given by table.");
-    declarations.leave();
   }
 
   PrescribedStrain::PrescribedStrain(const PrescribedStrainParameters &parameters,
@@ -368,18 +366,16 @@ namespace crawler
     }
   } // namespace
 
-  StrainTable::StrainTable(const std::string &name,
-                           const double length,
-                           const double end_time,
-                           const std::string &entry)
-    : StrainByEvaluators([table = std::make_shared<const GridInterpolation>(read(name, length, end_time, entry),
-                                                                            GridInterpolation::Method::cubic,
-                                                                            GridInterpolation::Outside::go_on)](
-                           const std::vector<double> &points) -> Evaluators {
-      const std::shared_ptr<GridInterpolation::AtPoints> at = table->at(points);
-      return {stress_at_points([at](const double t, const std::span<double> e) { at->values(t, e); }),
-              stress_at_points([at](const double t, const std::span<double> e_t) { at->rates(t, e_t); })};
-    })
+  std::unique_ptr<const StrainHistory>
+  read_strain_table(const std::string &name, const double length, const double end_time, const std::string &entry)
   {
+    return std::make_unique<StrainByEvaluators>(
+      [table = std::make_shared<const GridInterpolation>(
+         read(name, length, end_time, entry), GridInterpolation::Method::cubic, GridInterpolation::Outside::go_on)](
+        const std::vector<double> &points) -> Strains {
+        const std::shared_ptr<GridInterpolation::AtPoints> at = table->at(points);
+        return {stress_at_points([at](const double t, const std::span<double> e) { at->values(t, e); }),
+                stress_at_points([at](const double t, const std::span<double> e_t) { at->rates(t, e_t); })};
+      });
   }
 } // namespace crawler

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
 #include <crawler/scene/active_stress/profile.h>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace crawler
 {
@@ -43,12 +45,18 @@ namespace crawler
     return 2. / (z + 2. + std::sqrt(z * z + 4.));
   }
 
-  Switching::Switching(const double duty, const double front)
+  Switching::Switching(const double duty, const double front, const std::string &section)
     : duty_(duty)
     , front_(front)
   {
-    if (!(duty > 0. && duty < 1. && front >= 0. && front <= std::min(duty, 1. - duty) * (1. + 1e-12)))
-      throw std::logic_error("a switch whose fronts do not fit into its period");
+    const double most = std::min(duty, 1. - duty);
+    if (front > most * (1. + 1e-12))
+      throw InputError(fmt::format("the fronts are {:g} of a period wide, but at most {:g} is expected for the duty "
+                                   "cycle {:g}",
+                                   front,
+                                   most,
+                                   duty),
+                       section + "Front width");
   }
 
   double

@@ -38,8 +38,6 @@ namespace crawler
   void
   PulseParameters::add_parameters(Declarations &declarations)
   {
-    const Range not_negative{.lower = 0., .lower_included = true};
-    declarations.enter("Pulse");
     declarations.choice("Shape", shape, {"gaussian", "compact"})
       .means("Shape of the pulse as a function of the distance z from its centre in widths: exp(-z^2), or exp(1 - "
              "1/(1-z^2)) for |z| < 1 and 0 beyond.");
@@ -50,12 +48,11 @@ namespace crawler
       .means("Place of the centre of the pulse at t = 0, which may be outside the body. Automatic: far enough outside "
              "that the pulse enters the body without a jump.");
     declare_direction(direction, declarations);
-    declarations.number("Speed", speed, not_negative, "length/time")
+    declarations.number("Speed", speed, not_negative(), "length/time")
       .means("Speed of the pulse; with 0 it stays in place.");
-    declarations.number("Repetition period", repetition_period, not_negative, "time")
+    declarations.number("Repetition period", repetition_period, not_negative(), "time")
       .means("Time from one pulse to the next; 0 for a single pulse.");
     envelope.add_parameters(declarations);
-    declarations.leave();
   }
 
   Pulse::Pulse(const PulseParameters &parameters, const double length, const double end_time)

@@ -29,7 +29,6 @@ namespace crawler
   void
   SegmentsParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Segments");
     declarations.whole_number("Number of segments", number, 1, 1000)
       .means("Number N of actuated segments, all of the same length.");
     declarations.numbers("Amplitude", amplitude, "force")
@@ -48,17 +47,16 @@ namespace crawler
       .means("Width of a smooth front as a share of the period.");
     declarations.number("Phase", phase, any_number(), "1")
       .means("Phase of the first segment at t = 0 as a share of the period: it is switched on at phase 0.");
-    declarations.number("Gap", gap, {.lower = 0., .lower_included = true}, "1")
+    declarations.number("Gap", gap, not_negative(), "1")
       .means("Length of the passive part between neighbouring segments as a share of the length of a segment.");
     declarations.number("Saturation", saturation, positive(), "force")
       .means("Largest absolute value of the active stress; larger ones are clipped to it. Automatic: no limit.");
     declarations.number("Rate limit", rate_limit, positive(), "force/time")
       .means(
         "Largest absolute rate of change of the active stress: square signals become trapezoids. Automatic: no limit.");
-    declarations.number("Ramp duration", ramp_duration, {.lower = 0., .lower_included = true}, "time")
+    declarations.number("Ramp duration", ramp_duration, not_negative(), "time")
       .means("Time in which the stress grows by a smooth step from 0 at t = 0 to its full size; the rate limit applies "
              "to the stress without this factor.");
-    declarations.leave();
   }
 
   Segments::Segments(const SegmentsParameters &parameters, const double length, const double end_time)
@@ -66,9 +64,8 @@ namespace crawler
     , length_(length)
     , envelope_({{}, {}, /*window_edge=*/0., parameters.ramp_duration}, segments_section, length)
   {
-    const auto &p  = parameters_;
-    const double D = p.duty_cycle;
-    const auto n   = p.number;
+    const auto &p = parameters_;
+    const auto n  = p.number;
     if (p.amplitude.size() != 1 && p.amplitude.size() != n)
       throw InputError(
         fmt::format("the list of amplitudes has {} numbers, but 1 or {}, one for each segment, are expected",
@@ -77,15 +74,7 @@ namespace crawler
         segments_section + "Amplitude");
     if (p.switching == "smooth")
     {
-      const double most = std::min(D, 1. - D);
-      if (p.front_width > most * (1. + round_off))
-        throw InputError(fmt::format("the fronts are {:g} of a period wide, but at most {:g} is expected for the duty "
-                                     "cycle {:g}",
-                                     p.front_width,
-                                     most,
-                                     D),
-                         segments_section + "Front width");
-      smooth_.emplace(D, p.front_width);
+      smooth_.emplace(p.duty_cycle, p.front_width, segments_section);
       require_smooth_rate();
     }
 

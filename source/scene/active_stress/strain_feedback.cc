@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 namespace crawler
 {
@@ -47,7 +46,6 @@ namespace crawler
   void
   StrainFeedbackParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Strain feedback");
     declarations.text("Active stress", active_stress, "a formula of s, t, w, w_t, w_near, w_delayed", "force")
       .means(
         "The active stress: s is the material coordinate, t the time, w the stretch, w_t its rate, w_near the stretch "
@@ -55,14 +53,12 @@ namespace crawler
     declarations.constants("Constants", constants, {"Active stress"}).means("Constants that the formula may use.");
     declarations.number("Distance", distance, any_number(), "length")
       .means("Distance from s to the place whose stretch is w_near; positive towards s = L.");
-    declarations
-      .number("Sensor length", sensor_length, Range{0., std::numeric_limits<double>::infinity(), true, false}, "length")
+    declarations.number("Sensor length", sensor_length, not_negative(), "length")
       .means("If positive, w_near is the mean stretch of the piece of this length around that place; at the ends of "
              "the body the piece is shifted inwards. 0: the stretch at the place.");
-    declarations.number("Delay", delay, Range{0., std::numeric_limits<double>::infinity(), true, false}, "time")
+    declarations.number("Delay", delay, not_negative(), "time")
       .means("Time by which w_delayed lags behind the stretch; before t = 0 it is the initial stretch. Time steps are "
              "not longer than this.");
-    declarations.leave();
   }
 
   StrainFeedback::StrainFeedback(const StrainFeedbackParameters &parameters, const double length, const double end_time)

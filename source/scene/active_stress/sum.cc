@@ -212,7 +212,6 @@ namespace crawler
   void
   SumTermParameters::add_parameters(Declarations &declarations)
   {
-    const Range not_negative{.lower = 0., .lower_included = true};
     declarations.choice("Combine", combine, {"add", "multiply"})
       .means("m is the sum of all terms that add, times the product of all terms that multiply.");
     declarations.number("Factor", factor, any_number(), "1").means("Factor that multiplies the term's generator.");
@@ -220,7 +219,7 @@ namespace crawler
       declarations.numbers("Window in " + x, entries.interval, unit)
         .means("Range of " + x + " in which the term acts, as two numbers; outside the term is 0. Empty: " + whole +
                ".");
-      declarations.number("Edge width in " + x, entries.edge_width, not_negative, unit)
+      declarations.number("Edge width in " + x, entries.edge_width, not_negative(), unit)
         .means("Width of the window's edges, which are smooth steps inside its ends; with 0 the term jumps there.");
     };
     window(in_s, "s", "the whole body", "length");

@@ -105,7 +105,6 @@ namespace crawler
   void
   TableParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Table");
     declarations.file("File", file, "the name of a CSV or HDF5 file")
       .means("CSV with the header s,t,m and a row for each point of a full grid, in any order; or HDF5 with the "
              "datasets s[ns], t[nt] and m[nt,ns], s and t increasing.");
@@ -124,7 +123,6 @@ namespace crawler
     declarations.number("Unit of m", unit_of_m, any_number(), "force")
       .means("Factor that converts m of the table into an active stress; a negative one if the table has contractions "
              "as positive numbers.");
-    declarations.leave();
   }
 
   ActiveStressTable::ActiveStressTable(const TableParameters &parameters, const double length, const double end_time)

@@ -103,7 +103,6 @@ namespace crawler
   TwoLevelWaveParameters::add_parameters(Declarations &declarations)
   {
     const Range strains{.lower = -1., .upper = 1e6, .upper_included = true};
-    declarations.enter("Two-level wave");
     declarations.number("Smallest strain", smallest_strain, strains, "1")
       .means("Smallest strain emin, on the rest of each period.");
     declarations.number("Largest strain", largest_strain, strains, "1")
@@ -118,19 +117,17 @@ namespace crawler
     declare_direction(direction, declarations);
     declarations.choice("Given by", given_by, {"frequency", "wave speed", "work"})
       .means("What determines the speed of the wave; frequency = wave number * wave speed/L.");
-    const Range not_negative{.lower = 0., .lower_included = true};
-    declarations.number("Frequency", frequency, not_negative, "1/time")
+    declarations.number("Frequency", frequency, not_negative(), "1/time")
       .means("Frequency f; with 0 the wave stands still. Used if given by frequency.");
-    declarations.number("Wave speed", wave_speed, not_negative, "length/time")
+    declarations.number("Wave speed", wave_speed, not_negative(), "length/time")
       .means("Speed of the wave along the body. Used if given by wave speed.");
     declarations.number("Work", work, positive(), "force length")
       .means("Work that the wave does until the end time. Used if given by work; then the wave number must be whole "
              "and there is no ramp.");
     declarations.number("Phase", phase, any_number(), "1").means("Phase of the wave at s = 0, t = 0, in radians.");
-    declarations.number("Ramp duration", ramp_duration, not_negative, "time")
+    declarations.number("Ramp duration", ramp_duration, not_negative(), "time")
       .means("Time in which the strain grows by a smooth step from 0 at t = 0 to its full size; the nonlinear model "
              "starts from rest and needs it.");
-    declarations.leave();
   }
 
   TwoLevelWave::TwoLevelWave(const TwoLevelWaveParameters &parameters, const Scene &scene)

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -26,18 +25,8 @@ namespace crawler
 
   WaveProfile::WaveProfile(const WaveProfileParameters &parameters, const std::string &section)
   {
-    if (parameters.profile == "sine")
-      return;
-    const double duty = parameters.duty_cycle, most = std::min(duty, 1. - duty);
-    const double front = parameters.profile == "square" ? 0. : parameters.front_width;
-    if (front > most * (1. + 1e-12))
-      throw InputError(fmt::format("the fronts are {:g} of a period wide, but at most {:g} is expected for the duty "
-                                   "cycle {:g}",
-                                   front,
-                                   most,
-                                   duty),
-                       section + "Front width");
-    switching_.emplace(duty, front);
+    if (parameters.profile != "sine")
+      switching_.emplace(parameters.duty_cycle, parameters.profile == "square" ? 0. : parameters.front_width, section);
   }
 
   double

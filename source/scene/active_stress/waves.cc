@@ -33,25 +33,20 @@ namespace crawler
   void
   TravellingWaveParameters::add_parameters(Declarations &declarations)
   {
-    const Range not_negative{.lower = 0., .lower_included = true};
-    declarations.enter("Travelling wave");
     declarations.number("Amplitude", amplitude, any_number(), "force").means("Amplitude of the active stress.");
     declarations.number("Offset", offset, any_number(), "force").means("Constant that is added to the wave.");
-    declarations
-      .number(
-        "Wave number", wave_number, {.lower = 0., .upper = 1000., .lower_included = true, .upper_included = true}, "1")
+    declarations.number("Wave number", wave_number, between(0., 1000.), "1")
       .means("Number n of waves on the body, not necessarily whole; with 0 the whole body acts at once.");
     declare_direction(direction, declarations);
     declarations.choice("Given by", given_by, {"frequency", "wave speed"})
       .means("Which of the two determines the speed of the wave; frequency = wave number * wave speed/L.");
-    declarations.number("Frequency", frequency, not_negative, "1/time")
+    declarations.number("Frequency", frequency, not_negative(), "1/time")
       .means("Frequency f; with 0 the wave stands still. Used if given by frequency.");
-    declarations.number("Wave speed", wave_speed, not_negative, "length/time")
+    declarations.number("Wave speed", wave_speed, not_negative(), "length/time")
       .means("Speed of the wave along the body. Used if given by wave speed.");
     declarations.number("Phase", phase, any_number(), "1").means("Phase of the wave at s = 0, t = 0, in radians.");
     profile.add_parameters(declarations);
     envelope.add_parameters(declarations);
-    declarations.leave();
   }
 
   TravellingWave::TravellingWave(const TravellingWaveParameters &parameters, const double length, const double end_time)
@@ -184,22 +179,18 @@ namespace crawler
   void
   StandingWaveParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Standing wave");
     declarations.number("Amplitude", amplitude, any_number(), "force").means("Amplitude of the active stress.");
     declarations.number("Offset", offset, any_number(), "force").means("Constant that is added to the wave.");
-    declarations
-      .number(
-        "Wave number", wave_number, {.lower = 0., .upper = 1000., .lower_included = true, .upper_included = true}, "1")
+    declarations.number("Wave number", wave_number, between(0., 1000.), "1")
       .means("Number n of waves on the body, not necessarily whole: the stress is proportional to cos(2 pi n s/L + "
              "phase in space); with 0 the whole body acts at once.");
     declarations.number("Phase in space", phase_in_space, any_number(), "1")
       .means("Phase of the cosine at s = 0, in radians; -pi/2 makes it a sine.");
-    declarations.number("Frequency", frequency, {.lower = 0., .lower_included = true}, "1/time")
+    declarations.number("Frequency", frequency, not_negative(), "1/time")
       .means("Frequency f; with 0 the stress does not change.");
     declarations.number("Phase", phase, any_number(), "1").means("Phase of the oscillation at t = 0, in radians.");
     profile.add_parameters(declarations);
     envelope.add_parameters(declarations);
-    declarations.leave();
   }
 
   StandingWave::StandingWave(const StandingWaveParameters &parameters, const double length, const double end_time)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/parameters/entry_lists.h>
 #include <crawler/studies/core/form.h>
 
 #include <fmt/format.h>
@@ -72,7 +73,7 @@ namespace crawler
   Form::effective() const
   {
     std::ostringstream text;
-    declarations.print_prm(text);
+    print_prm(declarations, text);
     return text.str();
   }
 

@@ -13,7 +13,6 @@ namespace crawler
   void
   SweepParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Sweep");
     declarations.choice("Design", design, {"grid", "zip", "random", "latin hypercube"})
       .means("How the axes are combined: grid, every value with every other one; zip, the first values of all axes "
              "together, then the second ones, and so on; random, points drawn from the axes independently; latin "
@@ -40,7 +39,6 @@ namespace crawler
              "limit applies to each run of a point. Automatic: none.");
     declarations.number("Time limit", time_limit, positive(), "s")
       .means("Wall time after which no more points are computed; --resume computes the rest. Automatic: none.");
-    declarations.leave();
   }
 
   void
@@ -48,7 +46,6 @@ namespace crawler
   {
     const std::string numbers = "values separated by commas, \"linspace(first, last, count)\" or \"logspace(first "
                                 "exponent, last exponent, count)\"";
-    declarations.enter("Tradeoff");
     declarations.text("Models", models, "a list of \"perturbation\", \"kinematic\" and \"nonlinear\"")
       .means("Levels of the model that crawler tradeoff tries. The first two need no mesh; for nonlinear all other "
              "lists of this section are combined.");
@@ -76,13 +73,11 @@ namespace crawler
         "Time after which a run is stopped (reason time_limit); tighter tolerances on its mesh are then not tried.");
     declarations.number("Time limit", time_limit, positive(), "s")
       .means("Time after which the command ends normally, as after a signal; it can be resumed.");
-    declarations.leave();
   }
 
   void
   OptimizeParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Optimize");
     declarations
       .choice("Objective", objective, {"displacement", "speed", "cost of transport", "merit", "periodic merit"})
       .means("Quantity that is optimised: the displacement; the speed of the last stride (of the whole duration at the "
@@ -128,13 +123,11 @@ namespace crawler
     declarations.number("Time limit", time_limit, positive(), "s")
       .means(
         "Wall time after which the best gait so far is the result; --resume continues the search. Automatic: none.");
-    declarations.leave();
   }
 
   void
   FitParameters::add_parameters(Declarations &declarations)
   {
-    declarations.enter("Fit");
     declarations.files("Data", data, "the name of a file, or of several, separated by semicolons")
       .means("Measured data: tracks of markers or samples of strain, in a file that crawler table can read "
              "(doc/measured_data.md); or columns t and centre, the path of the centre of mass, or t and speed, perhaps "
@@ -169,17 +162,16 @@ namespace crawler
              "is the result.");
     declarations.whole_number("Seed", seed, 0, std::numeric_limits<unsigned int>::max())
       .means("Seed of the random starts: the same seed gives the same starts.");
-    declarations.leave();
   }
 
   void
   Parameters::add_parameters(Declarations &declarations)
   {
     RunParameters::add_parameters(declarations);
-    sweep.add_parameters(declarations);
-    tradeoff.add_parameters(declarations);
-    optimize.add_parameters(declarations);
-    fit.add_parameters(declarations);
-    units.add_parameters(declarations);
+    declarations.section("Sweep", sweep);
+    declarations.section("Tradeoff", tradeoff);
+    declarations.section("Optimize", optimize);
+    declarations.section("Fit", fit);
+    declarations.section("Units", units);
   }
 } // namespace crawler

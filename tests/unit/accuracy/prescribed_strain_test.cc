@@ -42,7 +42,7 @@ namespace
     const test::TemporaryFolder folder;
     const std::string name = (folder.path / "strain.csv").string();
     test::write_text(name, rows);
-    std::string message = test::complaint_of([&]() { StrainTable(name, 1., 1., "entry"); });
+    std::string message = test::complaint_of([&]() { read_strain_table(name, 1., 1., "entry"); });
     if (const auto place = message.find("\"" + name + "\""); place != std::string::npos)
       message.replace(place, name.size() + 2, "FILE");
     return message;
@@ -162,9 +162,9 @@ TEST(StrainTable, MustCoverBodyAndDuration)
   const test::TemporaryFolder folder;
   const std::string name = (folder.path / "strain.csv").string();
   test::write_text(name, grid(5, wave_of));
-  EXPECT_THROW(StrainTable(name, 2., 1., ""), InputError);
-  EXPECT_THROW(StrainTable(name, 1., 1.5, ""), InputError);
-  EXPECT_NO_THROW(StrainTable(name, 1., 1., ""));
+  EXPECT_THROW(read_strain_table(name, 2., 1., ""), InputError);
+  EXPECT_THROW(read_strain_table(name, 1., 1.5, ""), InputError);
+  EXPECT_NO_THROW(read_strain_table(name, 1., 1., ""));
 }
 
 TEST(PrescribedStrain, SaysWhatIsWrong)

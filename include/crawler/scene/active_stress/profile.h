@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <string>
 #include <vector>
 
 namespace crawler
@@ -31,8 +32,8 @@ namespace crawler
   {
   public:
     /// @p duty [1] is between 0 and 1; @p front [1] is from 0 to the smaller of duty and 1 - duty (to round-off).
-    /// Throws std::logic_error otherwise: entries must be checked before.
-    Switching(double duty, double front);
+    /// Throws InputError for the entry Front width of @p section, a path with a slash at the end, if it is larger.
+    Switching(double duty, double front, const std::string &section = "");
 
     /// Degree to which it is on, from 0 to 1.
     double
