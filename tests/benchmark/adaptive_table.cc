@@ -80,9 +80,8 @@ namespace
   travelling_pulse(const double width)
   {
     Case pulse{fmt::format("pulse of width {:g}", width),
-               test::parameters_with({{"Active stress/Generator", "expression"},
-                                      {"Active stress/Expression/Active stress",
-                                       fmt::format("0.5*(1-exp(-(t/0.1)^2))*exp(-((s-0.2-0.6*t)/{})^2)", width)}}),
+               test::parameters_with(
+                 test::set("expression; Active stress = 0.5*(1-exp(-(t/0.1)^2))*exp(-((s-0.2-0.6*t)/{})^2)", width)),
                0.,
                0.};
     const auto reference = [&](const unsigned int degree, const double cells, const double tolerance) {

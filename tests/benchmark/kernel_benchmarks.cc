@@ -144,26 +144,18 @@ namespace crawler::test
     void
     add_generators()
     {
-      const std::string generator = "Active stress/Generator", wave = "Active stress/Optimal wave/";
-      const std::vector<std::pair<std::string, Settings>> list = {
-        {"travelling_wave", {{generator, "travelling wave"}}},
-        {"smoothed_square",
-         {{generator, "travelling wave"}, {"Active stress/Travelling wave/Profile", "smoothed square"}}},
-        {"standing_wave", {{generator, "standing wave"}}},
-        {"pulse", {{generator, "pulse"}}},
-        {"optimal_wave", {{generator, "optimal wave"}}},
-        {"shaped_wave",
-         {{wave + "Choose wave by", "wave speed"},
-          {wave + "Shape", "expression"},
-          {wave + "Shape formula", "exp(-(x/0.1)^2)"}}},
-        {"formula_of_shaped_wave",
-         {{generator, "expression"},
-          {"Active stress/Expression/Active stress",
-           "0.4*(0.0886*(erf(10*(s+t)) - erf(10*t) - s*(erf(10*(1+t)) - erf(10*t))) - exp(-100*(s+t)^2) + "
-           "exp(-100*s^2))"}}}};
-      for (const auto &[name, settings] : list)
-        add("kernel/" + name + "/values", stress_values, [settings = settings]() {
-          return std::move(parameters_with(settings).create_scene().active_stress);
+      for (const auto &[name, settings] :
+           {std::pair("travelling_wave", "travelling wave"),
+            {"smoothed_square", "travelling wave; Profile = smoothed square"},
+            {"standing_wave", "standing wave"},
+            {"pulse", "pulse"},
+            {"optimal_wave", "optimal wave"},
+            {"shaped_wave", "c = 1; optimal wave; Shape = expression; Shape formula = exp(-(x/0.1)^2)"},
+            {"formula_of_shaped_wave",
+             "expression; Active stress = 0.4*(0.0886*(erf(10*(s+t)) - erf(10*t) - s*(erf(10*(1+t)) - erf(10*t))) - "
+             "exp(-100*(s+t)^2) + exp(-100*s^2))"}})
+        add(std::string("kernel/") + name + "/values", stress_values, [settings = settings]() {
+          return std::move(parameters_with(set(settings)).create_scene().active_stress);
         });
     }
 

@@ -49,8 +49,7 @@ namespace crawler::test
   {
     const Settings small    = wave(-1., 0.05);
     const Settings fraction = wave(-1.3, 0.05);
-    const Settings strain   = {{"Active stress/Generator", "prescribed strain"},
-                               {"Active stress/Prescribed strain/Given by", "wave"}};
+    const Settings strain   = set("prescribed strain; Given by = wave");
     benchmark::RegisterBenchmark("level/perturbation", level, small, "perturbation", 1e-2);
     benchmark::RegisterBenchmark("level/perturbation/a=-1.3", level, fraction, "perturbation", 1e-2);
     benchmark::RegisterBenchmark("level/estimate", estimate, small);

@@ -210,9 +210,7 @@ namespace crawler::test
     Parameters
     parameters_of(const Case &body, const double accuracy)
     {
-      auto settings = body.settings;
-      settings.emplace_back("Accuracy", text(accuracy));
-      return parameters_with(settings);
+      return parameters_with(with(body.settings, "Accuracy = {}", accuracy));
     }
 
     /// What `Accuracy` delivers: choice, run with the energy balance, bounds of the errors; "ratio" is its time over
@@ -250,13 +248,11 @@ namespace crawler::test
     run_robot(benchmark::State &state, const unsigned int n_segments, const double accuracy)
     {
       const auto parameters =
-        parameters_with({{"Accuracy", text(accuracy)},
-                         {"Active stress/Generator", "segments"},
-                         {"Active stress/Segments/Number of segments", std::to_string(n_segments)},
-                         {"Active stress/Segments/Amplitude", "0.3"},
-                         {"Active stress/Segments/Frequency", "1"},
-                         {"Active stress/Segments/Phase lag", text(1. / n_segments)},
-                         {"Active stress/Segments/Duty cycle", "0.5"}});
+        parameters_with(set("Accuracy = {}; segments; Number of segments = {}; Amplitude = 0.3; Frequency = 1; "
+                            "Phase lag = {}; Duty cycle = 0.5",
+                            accuracy,
+                            n_segments,
+                            1. / n_segments));
       const Scene scene = parameters.create_scene();
       Answer answer;
       for (auto _ : state)
@@ -270,15 +266,12 @@ namespace crawler::test
     std::map<std::string, Settings>
     general_bodies()
     {
-      Settings feedback = {
-        {"Active stress/Generator", "strain feedback"},
-        {"Active stress/Strain feedback/Active stress", "0.3*sin(2*pi*(s+t))*s*(1-s)*4-0.1*(w-1)+0.05*w_t"}};
       return {{"plain", {}},
               {"profiles", {{"Body/Elastic modulus profile", "1+0.3*s"}, {"Body/Friction profile", "1.2-0.3*s"}}},
               {"friction_law", {{"Ground/Friction law", "expression"}, {"Ground/Expression", "0.3+0.7/w^1.5"}}},
               {"direction", {{"Ground/Backward ratio", "3"}, {"Ground/Switching velocity", "0.5"}}},
               {"ground", {{"Ground/Profile", "1+0.2*tanh(x)"}}},
-              {"feedback", std::move(feedback)}};
+              {"feedback", set("strain feedback; Active stress = 0.3*sin(2*pi*(s+t))*s*(1-s)*4-0.1*(w-1)+0.05*w_t")}};
     }
 
     Setting
@@ -293,8 +286,7 @@ namespace crawler::test
     void
     run_general(benchmark::State &state, const Settings &laws)
     {
-      Settings settings = wave(-1., 0.3);
-      settings.insert(settings.end(), laws.begin(), laws.end());
+      const Settings settings = with(wave(-1., 0.3), laws);
       const Case body{"general", settings, 1., 1., 0, {}};
       OneBody own(body, setting_of_general_bodies(parameters_with(settings)));
       SimulationResult result;
@@ -308,9 +300,7 @@ namespace crawler::test
     void
     run_general_batch(benchmark::State &state, const Settings &laws)
     {
-      Settings settings = wave(-1., 0.3);
-      settings.insert(settings.end(), laws.begin(), laws.end());
-      const Parameters parameters = parameters_with(settings);
+      const Parameters parameters = parameters_with(with(wave(-1., 0.3), laws));
       const auto scenes           = BatchScenes::similar(parameters, 256);
       const Setting setting       = setting_of_general_bodies(parameters);
       BatchScenes::Results results;

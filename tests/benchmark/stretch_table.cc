@@ -52,11 +52,11 @@ namespace
   double
   compute(const Case &c, const double accuracy, const std::string &formulation, const double limit, Task &task)
   {
-    test::Settings settings = test::wave(c.a, c.chi, 1., 1., c.k);
-    settings.emplace_back("Accuracy", test::text(accuracy));
-    if (!formulation.empty())
-      settings.emplace_back("Discretization/Formulation", formulation);
-    double seconds = HUGE_VAL;
+    const test::Settings settings = test::with(test::wave(c.a, c.chi, 1., 1., c.k),
+                                               "Accuracy = {}; Discretization/Formulation = {}",
+                                               accuracy,
+                                               formulation.empty() ? "automatic" : formulation);
+    double seconds                = HUGE_VAL;
     for (int i = 0; i < 2; ++i)
     {
       task              = Task();

@@ -22,21 +22,13 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, Paused, call  # noqa: E402
+from program import Checks, Paused, call, prm  # noqa: E402
 
 CRAWLER, PRM = sys.argv[1], pathlib.Path(sys.argv[2])
 EVERY = int(sys.argv[3]) if len(sys.argv) > 3 else 1
-QUICK = """set Model = kinematic
-subsection Active stress
-  set Generator = prescribed strain
-  subsection Prescribed strain
-    set Given by = wave
-  end
-end
-subsection Sweep
-  set Axes = Active stress/Prescribed strain/Amplitude : linspace(0.05, 0.3, 16)
-end
-"""
+QUICK = prm("Model=kinematic", "Active stress/Generator=prescribed strain",
+            "Active stress/Prescribed strain/Given by=wave",
+            "Sweep/Axes=Active stress/Prescribed strain/Amplitude : linspace(0.05, 0.3, 16)")
 checks = Checks()
 expect = checks.expect
 

@@ -23,32 +23,14 @@ except ImportError as error:
     sys.exit(f"{error}; the Debian packages python3-vtk9 and python3-h5py are expected (and /usr/bin/python3)")
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, on_ranks  # noqa: E402
+from program import Checks, call, on_ranks, prm  # noqa: E402
 
 # The points of the VTU files are then every fourth of the 201 points of the kymograph, and frames are every 16th row.
 LENGTH, END_TIME, FRAMES, CELLS, DEGREE = 2.0, 1.5, 8, 10, 5
-SCENE = f"""
-subsection Body
-  set Length = {LENGTH}
-end
-subsection Active stress
-  subsection Optimal wave
-    set Choose wave by = wave speed
-  end
-end
-subsection Discretization
-  set Degree = {DEGREE}
-  set Number of cells = {CELLS}
-  set Share cells = yes
-end
-subsection Time
-  set End time = {END_TIME}
-  set Tolerance = 1e-8
-end
-subsection Output
-  set Number of snapshots = {FRAMES}
-end
-"""
+SCENE = prm(f"Body/Length={LENGTH}", "Active stress/Optimal wave/Choose wave by=wave speed",
+            f"Discretization/Degree={DEGREE}", f"Discretization/Number of cells={CELLS}",
+            "Discretization/Share cells=yes", f"Time/End time={END_TIME}", "Time/Tolerance=1e-8",
+            f"Output/Number of snapshots={FRAMES}")
 FIELDS = {"displacement": 1, "position": 1, "stretch": 1, "velocity": 1, "active_stress": 1, "elastic_stress": 1,
           "friction_force": 1}
 XDMF = ("Output/Snapshot format=xdmf",)

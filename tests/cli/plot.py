@@ -24,27 +24,14 @@ import matplotlib.image
 import matplotlib.pyplot
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import NO_PICTURES, Checks, call  # noqa: E402
+from program import NO_PICTURES, Checks, call, prm  # noqa: E402
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-STUDY = """
-set Accuracy = 1e-3
-subsection Time
-  set End time = 0.5
-end
-subsection Sweep
-  set Axes = Body/Anchoring exponent : 2, 3; Body/Elastic modulus : 1, 2, 4
-end
-subsection Tradeoff
-  set Formulations = position
-  set Meshes       = uniform
-  set Engines      = fused
-  set Degrees      = 4
-  set Tolerances   = 1e-3, 1e-6
-  set Repetitions  = 1
-end
-"""
+STUDY = prm("Accuracy=1e-3", "Time/End time=0.5",
+            "Sweep/Axes=Body/Anchoring exponent : 2, 3; Body/Elastic modulus : 1, 2, 4",
+            "Tradeoff/Formulations=position", "Tradeoff/Meshes=uniform", "Tradeoff/Engines=fused", "Tradeoff/Degrees=4",
+            "Tradeoff/Tolerances=1e-3, 1e-6", "Tradeoff/Repetitions=1")
 CALIBRATION = "accuracy,true_error,reported_error,wanted_error,reference_bar\n" + "".join(
     f"{accuracy},{0.1 * accuracy * size},{0.3 * accuracy * size * spread},{accuracy * size},{1e-9 * accuracy}\n"
     for accuracy in (1e-3, 1e-6) for size in (0.1, 1) for spread in (0.5, 1, 2))

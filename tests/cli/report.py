@@ -17,48 +17,18 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from browser import Browser  # noqa: E402
-from program import NO_PICTURES, Checks, call, sets  # noqa: E402
+from program import NO_PICTURES, Checks, call, prm, sets  # noqa: E402
 from tables import csv_rows, json_of  # noqa: E402
 
 NASTY = "</script><script>window.broken = 1</script><img src=x onerror='window.broken = 1'>"
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
-WAVE = f"""# {NASTY}
-set Accuracy = 1e-3
-subsection Body
-  set Length = 1.00
-end
-subsection Active stress
-  subsection Optimal wave
-    set Choose wave by = wave speed
-  end
-end
-"""
-FORMULAS = """
-set Accuracy = 1e-3
-subsection Active stress
-  set Generator = expression
-end
-"""
-STRAIN = """
-set Model = kinematic
-set Accuracy = 1e-4
-subsection Active stress
-  set Generator = prescribed strain
-  subsection Prescribed strain
-    set Given by = modes
-  end
-  subsection Modes
-    set Harmonics    = 1
-    set Coefficients = 0, 0.2, 0
-  end
-end
-subsection Optimize
-  set Objective       = merit
-  set Variables       = Active stress/Modes/Coefficients[*] : -1 to 1
-  set Smallest strain = -0.3
-  set Largest strain  = 0.3
-end
-"""
+WAVE = f"# {NASTY}\n" + prm("Accuracy=1e-3", "Body/Length=1.00", "Active stress/Optimal wave/Choose wave by=wave speed")
+FORMULAS = prm("Accuracy=1e-3", "Active stress/Generator=expression")
+STRAIN = prm("Model=kinematic", "Accuracy=1e-4", "Active stress/Generator=prescribed strain",
+             "Active stress/Prescribed strain/Given by=modes", "Active stress/Modes/Harmonics=1",
+             "Active stress/Modes/Coefficients=0, 0.2, 0", "Optimize/Objective=merit",
+             "Optimize/Variables=Active stress/Modes/Coefficients[*] : -1 to 1", "Optimize/Smallest strain=-0.3",
+             "Optimize/Largest strain=0.3")
 FOLDERS = ("run", "sweep", "checked", "tradeoff", "optimisation", "fit", "comparison")
 PYTHON = pathlib.Path(__file__).resolve().parents[2] / "contrib/python"
 STUDIES = pathlib.Path(__file__).resolve().parents[2] / "prm/studies"
@@ -432,6 +402,4 @@ def main():
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("usage: report.py PATH_TO_CRAWLER")
     main()

@@ -13,21 +13,11 @@ import tempfile
 import h5py
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, sets  # noqa: E402
+from program import Checks, call, prm, sets  # noqa: E402
 from tables import h5_columns, json_of  # noqa: E402
 
 CRAWLER = pathlib.Path(sys.argv[1]).resolve()
-BASE = """
-set Accuracy = 1e-4
-subsection Active stress
-  subsection Optimal wave
-    set Choose wave by = wave speed
-  end
-end
-subsection Output
-  set Number of snapshots = 5
-end
-"""
+BASE = prm("Accuracy=1e-4", "Active stress/Optimal wave/Choose wave by=wave speed", "Output/Number of snapshots=5")
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
 STUDIES = {
     "run": [],

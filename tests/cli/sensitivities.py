@@ -14,48 +14,17 @@ import matplotlib.image
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, sets  # noqa: E402
+from program import Checks, call, prm, sets  # noqa: E402
 from tables import csv_rows, json_of  # noqa: E402
 
 PLOT = pathlib.Path(__file__).resolve().parents[2] / "contrib/python/crawler/plot" / "sensitivity.py"
-WAVE = """
-set Accuracy = 1e-6
-subsection Active stress
-  subsection Optimal wave
-    set Perturbation parameter = 0.3
-    set Choose wave by = wave speed
-  end
-end
-subsection Output
-  set Number of snapshots = 0
-end
-"""
-ROBOT = """
-subsection Active stress
-  set Generator = segments
-  subsection Segments
-    set Number of segments = 4
-    set Phase lag = 0.25
-    set Ramp duration = 0.5
-  end
-end
-subsection Output
-  set Number of snapshots = 0
-end
-"""
-STRAIN = """
-set Model = auto
-set Accuracy = 1e-6
-subsection Active stress
-  set Generator = prescribed strain
-  subsection Prescribed strain
-    set Given by = wave
-  end
-end
-subsection Output
-  set Number of snapshots = 0
-end
-"""
+WAVE = prm("Accuracy=1e-6", "Active stress/Optimal wave/Perturbation parameter=0.3",
+           "Active stress/Optimal wave/Choose wave by=wave speed", "Output/Number of snapshots=0")
+ROBOT = prm("Active stress/Generator=segments", "Active stress/Segments/Number of segments=4",
+            "Active stress/Segments/Phase lag=0.25", "Active stress/Segments/Ramp duration=0.5",
+            "Output/Number of snapshots=0")
+STRAIN = prm("Model=auto", "Accuracy=1e-6", "Active stress/Generator=prescribed strain",
+             "Active stress/Prescribed strain/Given by=wave", "Output/Number of snapshots=0")
 K, P, CHI = "Body/Elastic modulus", "Body/Anchoring exponent", "Active stress/Optimal wave/Perturbation parameter"
 checks = Checks()
 expect = checks.expect

@@ -19,18 +19,11 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, Paused, call, environment, on_ranks, ranks_that_stop, tests_of_part  # noqa: E402
+from program import Checks, Paused, call, environment, on_ranks, prm, ranks_that_stop, tests_of_part  # noqa: E402
 from tables import csv_rows, h5_columns, json_of, number, same_as_csv, same_columns  # noqa: E402
 
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
-BASE = """
-set Accuracy = 1e-4
-subsection Active stress
-  subsection Optimal wave
-    set Choose wave by = wave speed
-  end
-end
-"""
+BASE = prm("Accuracy=1e-4", "Active stress/Optimal wave/Choose wave by=wave speed")
 PROGRAM, MPIRUN = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
 checks = Checks()
 expect = checks.expect

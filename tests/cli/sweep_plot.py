@@ -23,23 +23,13 @@ import matplotlib.pyplot  # noqa: E402
 import numpy as np  # noqa: E402
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call  # noqa: E402
+from program import Checks, call, prm  # noqa: E402
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "contrib/python/crawler/plot" / "sweep.py"
 sys.path.insert(0, str(SCRIPT.parent))  # as if the script were started
 CHI, P, K = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent", "Body/Elastic modulus"
-BASE = """
-set Accuracy = {accuracy}
-subsection Active stress
-  subsection Optimal wave
-    set Choose wave by = wave speed
-  end
-end
-subsection Sweep
-  set Axes = {axes}
-  {more}
-end
-"""
+BASE = prm("Accuracy={accuracy}", "Active stress/Optimal wave/Choose wave by=wave speed",
+           "Sweep/Axes={axes}") + "subsection Sweep\n  {more}\nend\n"
 # Name: axes, other entries, accuracy.
 SWEEPS = {
     "line": (f"{CHI} : linspace(0.1, 0.3, 5)", "", 1e-2),

@@ -15,45 +15,19 @@ import matplotlib.image
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call  # noqa: E402
+from program import Checks, call, prm  # noqa: E402
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SAMPLES = [sys.executable, ROOT / "contrib/measured_samples.py"]
 LARVA = ["--unit-of-t", "s", "--shift-t", "first", "--period", "find", "--smooth-t", "0.15", "--smooth-s", "0.4"]
 TRACKS = ["--columns", "t=frame time", "--first-marker", "0.2", "--length", "4", "--smooth-t", "0.15", "--smooth-s", "0.8"]
-KINEMATIC = """set Model = kinematic
-subsection Body
-  set Length = 4
-  set Anchoring exponent = 2
-end
-subsection Active stress
-  set Generator = prescribed strain
-  subsection Prescribed strain
-    set Given by = table
-    set File = tracks.csv
-  end
-end
-subsection Time
-  set End time = 1.98
-end
-"""
+KINEMATIC = prm("Model=kinematic", "Body/Length=4", "Body/Anchoring exponent=2",
+                "Active stress/Generator=prescribed strain", "Active stress/Prescribed strain/Given by=table",
+                "Active stress/Prescribed strain/File=tracks.csv", "Time/End time=1.98")
 # Of the adjoint: a table without smoothing, linear between its samples.
-LINEAR = """set Accuracy = 1e-4
-subsection Body
-  set Anchoring exponent = 2
-end
-subsection Active stress
-  set Generator = table
-  subsection Table
-    set File = small.csv
-    set Interpolation = linear
-  end
-end
-subsection Time
-  set End time = 1
-end
-"""
+LINEAR = prm("Accuracy=1e-4", "Body/Anchoring exponent=2", "Active stress/Generator=table",
+             "Active stress/Table/File=small.csv", "Active stress/Table/Interpolation=linear", "Time/End time=1")
 # Arguments, exit code, what the one sentence has.
 REFUSED = [
     ([], 2, "IN, OUT missing"), (["larva_raw.csv", "out.csv", "--gap", "few"], 2, '"--gap" is "few", but a whole number is expected'),

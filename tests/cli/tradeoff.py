@@ -17,27 +17,13 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import NO_PICTURES, Checks, call, on_ranks, ranks_that_stop, sets  # noqa: E402
+from program import NO_PICTURES, Checks, call, on_ranks, prm, ranks_that_stop, sets  # noqa: E402
 from tables import csv_rows, h5_columns, json_of, number, same_as_csv  # noqa: E402
 
-BODY = """
-subsection Active stress
-  subsection Optimal wave
-    set Perturbation parameter = 0.4
-    set Choose wave by = wave speed
-  end
-end
-"""
-STUDY = """
-subsection Tradeoff
-  set Integrators     = radau 5, bdf
-  set Degrees         = 2, 6
-  set Cells           = 3, 8
-  set Mesh tolerances = 1e-3
-  set Tolerances      = logspace(-2, -8, 4)
-  set Repetitions     = 1
-end
-"""
+BODY = prm("Active stress/Optimal wave/Perturbation parameter=0.4",
+           "Active stress/Optimal wave/Choose wave by=wave speed")
+STUDY = prm("Tradeoff/Integrators=radau 5, bdf", "Tradeoff/Degrees=2, 6", "Tradeoff/Cells=3, 8",
+            "Tradeoff/Mesh tolerances=1e-3", "Tradeoff/Tolerances=logspace(-2, -8, 4)", "Tradeoff/Repetitions=1")
 KEY = ("model", "formulation", "mesh", "engine", "integrator", "degree", "cells", "mesh tolerance", "tolerance")
 DETERMINISTIC = ("status", "reason", "displacement", "error", "shown error", "below bar", "steps")
 REFERENCE = 9.0072529800e-2  # doc/theory.md

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// Required orders of the fused engine: 5 and 9 in time, 2q in space.
-#include "../support/exact_solution.h"
+// Required orders of the fused engine in time: 5 and 9; those in space are in space_test.cc.
 #include "../support/lane_runs.h"
 #include "../support/observed_order.h"
 #include "../support/test.h"
@@ -60,29 +59,5 @@ TEST(Fused, ErrorsFallWithTheToleranceOnTheWholeEquation)
     }
     const double observed = test::observed_order(integrator, steps, errors);
     EXPECT_GE(observed, order - 0.3) << integrator;
-  }
-}
-
-TEST(Fused, ReachesItsOrderInSpace)
-{
-  constexpr double end_time = 0.3;
-  // Meshes in the asymptotic range and errors above those of time and rounding.
-  const std::vector<std::vector<unsigned int>> meshes = {
-    {}, {32, 64, 128}, {8, 16, 32}, {6, 10, 16}, {6, 8, 10}, {3, 4, 5, 6}, {2, 3, 4}};
-  const test::ExactSolution exact;
-  for (unsigned int q = 1; q < meshes.size(); ++q)
-  {
-    std::vector<double> cells, errors;
-    for (const unsigned int n : meshes[q])
-    {
-      const LaneRun run(
-        exact.settings(end_time), "radau 9", {.degree = q, .n_cells = n, .tolerance = 1e-12, .initial_step = 1e-3});
-      const auto result = test::run_alone(run, {.energy_balance = false});
-      ASSERT_TRUE(result);
-      cells.push_back(n);
-      errors.push_back(std::abs(result->displacement - exact.displacement(end_time)));
-    }
-    const double observed = test::observed_order("degree " + std::to_string(q), cells, errors);
-    EXPECT_GE(observed, 2. * q - 0.3) << q;
   }
 }

@@ -23,15 +23,10 @@ namespace
   /// A run that can be stopped, and what it leaves then.
   struct StoppedRun
   {
-    explicit StoppedRun(const test::Settings &settings)
+    explicit StoppedRun(const std::string &settings)
     {
-      test::Settings all = {{"Active stress/Generator", "expression"},
-                            {"Active stress/Expression/Active stress", "0.1*sin(2*pi*(s+t))"},
-                            {"Discretization/Number of cells", "4"},
-                            {"Time/Tolerance", "1e-3"},
-                            {"Time/End time", "20"}};
-      all.insert(all.end(), settings.begin(), settings.end());
-      parameters = test::parameters_with(all);
+      parameters = test::parameters_with(
+        test::set("T = 20; cells = 4; tolerance = 1e-3; expression; Active stress = 0.1*sin(2*pi*(s+t)); " + settings));
       scene.emplace(parameters.create_scene());
       numerics = choose_numerics(MPI_COMM_SELF, parameters, *scene)->numerics;
       RunJournal journal(0., [&](const std::string &bytes) {
@@ -63,15 +58,12 @@ namespace
   {
     static const auto all = []() {
       std::vector<std::unique_ptr<const StoppedRun>> list;
-      for (const test::Settings &settings :
-           {test::Settings{},
-            test::Settings{{"Time/Engine", "petsc"}},
-            test::Settings{{"Time/Integrator", "bdf"}},
-            test::Settings{{"Discretization/Formulation", "stretch"}},
-            test::Settings{{"Discretization/Mesh", "adaptive"}, {"Discretization/Number of cells", "automatic"}},
-            test::Settings{{"Active stress/Generator", "strain feedback"},
-                           {"Active stress/Strain feedback/Active stress", "0.05*tanh(w_delayed-1+0.1*s)"},
-                           {"Active stress/Strain feedback/Delay", "0.3"}}})
+      for (const char *settings : {"",
+                                   "Time/Engine = petsc",
+                                   "integrator = bdf",
+                                   "Discretization/Formulation = stretch",
+                                   "Discretization/Mesh = adaptive; cells = automatic",
+                                   "strain feedback; Active stress = 0.05*tanh(w_delayed-1+0.1*s); Delay = 0.3"})
         list.push_back(std::make_unique<StoppedRun>(settings));
       return list;
     }();

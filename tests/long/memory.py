@@ -13,33 +13,17 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, Paused  # noqa: E402
+from program import Checks, Paused, prm  # noqa: E402
 
 CRAWLER, POINTS = sys.argv[1], int(sys.argv[2])
 PART = float(sys.argv[3]) if len(sys.argv) > 3 else 0.1
-WAVE = """set Accuracy = 1e-3
-subsection Active stress
-  set Generator = expression
-  subsection Expression
-    set Active stress = 0.15*sin(2*pi*(s+t))
-  end
-end
-subsection Sweep
-  set Axes = Body/Elastic modulus : linspace(1, 2, %d)
-end
-"""
+WAVE = prm("Accuracy=1e-3", "Active stress/Generator=expression",
+           "Active stress/Expression/Active stress=0.15*sin(2*pi*(s+t))",
+           "Sweep/Axes=Body/Elastic modulus : linspace(1, 2, %d)")
 SWEEPS = {
-    "no mesh": ("""set Model = kinematic
-subsection Active stress
-  set Generator = prescribed strain
-  subsection Prescribed strain
-    set Given by = wave
-  end
-end
-subsection Sweep
-  set Axes = Active stress/Prescribed strain/Amplitude : linspace(0.05, 0.3, %d)
-end
-""", 1., []),
+    "no mesh": (prm("Model=kinematic", "Active stress/Generator=prescribed strain",
+                    "Active stress/Prescribed strain/Given by=wave",
+                    "Sweep/Axes=Active stress/Prescribed strain/Amplitude : linspace(0.05, 0.3, %d)"), 1., []),
     "lanes": (WAVE, 1., []),
     "PETSc": (WAVE, PART, ["--set", "Time/Engine=petsc", "--set", "Error estimate=false"]),
 }

@@ -19,25 +19,17 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, environment  # noqa: E402
+from program import Checks, call, environment, prm  # noqa: E402
 
 PROGRAM, MPIEXEC = str(pathlib.Path(sys.argv[1]).resolve()), shutil.which(sys.argv[2])
 KILLS = int(sys.argv[3]) if len(sys.argv) > 3 else 3
 NODES, RANKS_OF_NODE = 4, 4
 NET = f"10.{os.getpid() % 200 + 20}.{os.getpid() // 200 % 250}"
 NAME = f"crawler{os.getpid()}"
-SCENE = """set Accuracy = 1e-7
-subsection Active stress
-  subsection Optimal wave
-    set Choose wave by = wave speed
-  end
-end
-subsection Sweep
-  set Axes = Body/Anchoring exponent : linspace(-1, 4, 42); Time/End time : 1, 30; \\
-             Active stress/Optimal wave/Perturbation parameter : 0.1, 0.2, 0.3, 0.45; Body/Elastic modulus : 1, 3; \\
-             Body/Friction profile : 1, 1+0.3*sin(6*s)
-end
-"""
+SCENE = prm("Accuracy=1e-7", "Active stress/Optimal wave/Choose wave by=wave speed",
+            "Sweep/Axes=Body/Anchoring exponent : linspace(-1, 4, 42); Time/End time : 1, 30; "
+            "Active stress/Optimal wave/Perturbation parameter : 0.1, 0.2, 0.3, 0.45; Body/Elastic modulus : 1, 3; "
+            "Body/Friction profile : 1, 1+0.3*sin(6*s)")
 checks = Checks()
 check = checks.expect
 

@@ -14,46 +14,22 @@ import tempfile
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, on_ranks, sets  # noqa: E402
+from program import Checks, call, on_ranks, prm, sets  # noqa: E402
 from tables import h5_columns  # noqa: E402
 
 BLOCK = 50  # points of a sweep
-SCENES = """
-set Model = nonlinear
-subsection Active stress
-  set Generator = optimal wave
-  subsection Optimal wave
-    set Choose wave by = wave speed
-  end
-end
-subsection Sweep
-  set Design           = random
-  set Number of points = NUMBER
-  set Seed             = SEED
-  set Axes             = Body/Elastic modulus : loguniform(3e-4, 5e-3); Body/Anchoring exponent : uniform(-2, 5); \\
-    Active stress/Optimal wave/Perturbation parameter : uniform(0.1, 0.45); \\
-    Active stress/Optimal wave/Wave speed : uniform(0.7, 1.3)
-  set Time limit per point = 20
-end
-"""
+SCENES = prm("Model=nonlinear", "Active stress/Generator=optimal wave",
+             "Active stress/Optimal wave/Choose wave by=wave speed", "Sweep/Design=random",
+             "Sweep/Number of points=NUMBER", "Sweep/Seed=SEED",
+             "Sweep/Axes=Body/Elastic modulus : loguniform(3e-4, 5e-3); Body/Anchoring exponent : uniform(-2, 5); "
+             "Active stress/Optimal wave/Perturbation parameter : uniform(0.1, 0.45); "
+             "Active stress/Optimal wave/Wave speed : uniform(0.7, 1.3)",
+             "Sweep/Time limit per point=20")
 
 
-OTHER_FORM = """
-set Model    = nonlinear
-set Accuracy = 2e-8
-subsection Body
-  set Elastic modulus     = 1e-3
-  set Anchoring exponent  = 4.5
-end
-subsection Active stress
-  set Generator = optimal wave
-  subsection Optimal wave
-    set Choose wave by         = wave speed
-    set Wave speed             = 1.3
-    set Perturbation parameter = 0.25
-  end
-end
-"""
+OTHER_FORM = prm("Model=nonlinear", "Accuracy=2e-8", "Body/Elastic modulus=1e-3", "Body/Anchoring exponent=4.5",
+                 "Active stress/Generator=optimal wave", "Active stress/Optimal wave/Choose wave by=wave speed",
+                 "Active stress/Optimal wave/Wave speed=1.3", "Active stress/Optimal wave/Perturbation parameter=0.25")
 
 
 def check_files(program, folder, checks):

@@ -20,27 +20,14 @@ import tempfile
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, PATIENCE, call, environment, on_ranks  # noqa: E402
+from program import PATIENCE, Checks, call, environment, on_ranks, prm  # noqa: E402
 from tables import csv_rows, h5_columns, json_of, same_columns  # noqa: E402
 
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
-BODY = """
-set Accuracy = 1e-4
-subsection Active stress
-  subsection Optimal wave
-    set Perturbation parameter = 0.4
-    set Choose wave by = wave speed
-  end
-end
-subsection Tradeoff
-  set Integrators     = radau 5, bdf
-  set Degrees         = 2, 6
-  set Cells           = 3, 8
-  set Mesh tolerances = 1e-3
-  set Tolerances      = logspace(-2, -8, 4)
-  set Repetitions     = 1
-end
-"""
+BODY = prm("Accuracy=1e-4", "Active stress/Optimal wave/Perturbation parameter=0.4",
+           "Active stress/Optimal wave/Choose wave by=wave speed", "Tradeoff/Integrators=radau 5, bdf",
+           "Tradeoff/Degrees=2, 6", "Tradeoff/Cells=3, 8", "Tradeoff/Mesh tolerances=1e-3",
+           "Tradeoff/Tolerances=logspace(-2, -8, 4)", "Tradeoff/Repetitions=1")
 CHECKED = ("--set", "Sweep/Cross-check=true")
 PROGRAM, MPIRUN = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
 PRM = pathlib.Path(__file__).resolve().parents[2] / "prm" / "studies"

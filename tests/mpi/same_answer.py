@@ -10,7 +10,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, on_ranks  # noqa: E402
+from program import Checks, call, on_ranks, sets  # noqa: E402
 
 TOLERANCE = 1e-10  # relative
 SAME = ("displacement", "stress_power", "dissipation", "elastic_energy", "paper_energy", "positive_power")
@@ -38,9 +38,7 @@ def run(program, mpirun, folder, ranks, scene):
     """Runs the scene; returns exit code, summary (None if there is none) and the lines of the program's messages."""
     file, output = pathlib.Path(folder, "scene.prm"), pathlib.Path(folder, "output")
     file.write_text("set Model = nonlinear\n")
-    command = [*on_ranks(mpirun, ranks), program, "run", file, "--quiet", "--overwrite", "--output", output]
-    for name, value in scene.items():
-        command += ["--set", f"{name}={value}"]
+    command = [*on_ranks(mpirun, ranks), program, "run", file, "--quiet", "--overwrite", "--output", output, *sets(scene)]
     summary = output / "summary.json"
     summary.unlink(missing_ok=True)
     done = call(command)
@@ -69,8 +67,6 @@ def same_answer(name, scene, ranks, *where):
 
 
 def main():
-    if len(sys.argv) != 3:
-        sys.exit("usage: same_answer.py PATH_TO_CRAWLER MPIRUN")
     with tempfile.TemporaryDirectory() as folder:
         where = (sys.argv[1], sys.argv[2], folder)
         same_answer("Fig. S1, chi = 0.4", WAVE, (2, 3), *where)

@@ -6,58 +6,19 @@ import resource
 import shutil
 import subprocess
 
-from program import NO_PICTURES, Paused, call
+from program import NO_PICTURES, Paused, call, prm
 
 PAGE = 4096
-RUN = """set Accuracy = 1e-3
-subsection Active stress
-  set Generator = expression
-  subsection Expression
-    set Active stress = 0.15*sin(2*pi*(s+t))
-  end
-end
-subsection Time
-  set Engine = petsc
-end
-subsection Output
-  set Number of snapshots = 3
-  set Active stress table = 4, 4
-  set Sensitivities       = Body/Elastic modulus
-end
-"""
-QUICK = """set Model = kinematic
-subsection Active stress
-  set Generator = prescribed strain
-  subsection Prescribed strain
-    set Given by = wave
-  end
-end
-subsection Output
-  set Number of snapshots = 2
-end
-"""
-SWEEP = QUICK + """subsection Sweep
-  set Axes = Active stress/Prescribed strain/Amplitude : linspace(0.05, 0.3, 16)
-  set Keep fields = 1, 8
-end
-"""
-TRADEOFF = """subsection Active stress
-  subsection Optimal wave
-    set Perturbation parameter = 0.4
-    set Choose wave by = wave speed
-  end
-end
-subsection Tradeoff
-  set Integrators = radau 5
-  set Degrees     = 2
-  set Cells       = 3
-  set Tolerances  = 1e-2, 1e-3
-  set Repetitions = 1
-end
-subsection Time
-  set End time = 0.1
-end
-"""
+RUN = prm("Accuracy=1e-3", "Active stress/Generator=expression",
+          "Active stress/Expression/Active stress=0.15*sin(2*pi*(s+t))", "Time/Engine=petsc",
+          "Output/Number of snapshots=3", "Output/Active stress table=4, 4", "Output/Sensitivities=Body/Elastic modulus")
+QUICK = prm("Model=kinematic", "Active stress/Generator=prescribed strain",
+            "Active stress/Prescribed strain/Given by=wave", "Output/Number of snapshots=2")
+SWEEP = QUICK + prm("Sweep/Axes=Active stress/Prescribed strain/Amplitude : linspace(0.05, 0.3, 16)", "Sweep/Keep fields=1, 8")
+TRADEOFF = prm("Active stress/Optimal wave/Perturbation parameter=0.4",
+               "Active stress/Optimal wave/Choose wave by=wave speed", "Tradeoff/Integrators=radau 5",
+               "Tradeoff/Degrees=2", "Tradeoff/Cells=3", "Tradeoff/Tolerances=1e-2, 1e-3", "Tradeoff/Repetitions=1",
+               "Time/End time=0.1")
 SAMPLES = "s,t,m\n" + "".join(f"{s / 4},{t / 8},{(s - t) % 3}\n" for t in range(9) for s in range(5))
 TIMES = ("seconds", "cost", "memory", "speed", "time of")  # parts of names of columns that differ from run to run
 

@@ -17,7 +17,7 @@ namespace crawler::test
   inline Settings
   feedback(const std::string &formula)
   {
-    return {{"Active stress/Generator", "strain feedback"}, {"Active stress/Strain feedback/Active stress", formula}};
+    return set("strain feedback; Active stress = {}", formula);
   }
 
   /// Laws of bodies and grounds that both forms have.
@@ -34,11 +34,10 @@ namespace crawler::test
   inline Feature
   all_of(const std::vector<Feature> &features, const Settings &more)
   {
-    Feature all{"all", {}};
+    Settings all;
     for (const Feature &feature : features)
-      all.settings = with(all.settings, feature.settings);
-    all.settings = with(all.settings, more);
-    return all;
+      all = with(all, feature.settings);
+    return {"all", with(all, more)};
   }
 
   inline double

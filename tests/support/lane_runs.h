@@ -81,11 +81,7 @@ namespace crawler::test
   inline Settings
   expression(const double a, const std::string &formula, const double end_time = 1., const double k = 1.)
   {
-    return {{"Body/Anchoring exponent", text(1. - a)},
-            {"Body/Elastic modulus", text(k)},
-            {"Active stress/Generator", "expression"},
-            {"Active stress/Expression/Active stress", formula},
-            {"Time/End time", text(end_time)}};
+    return set("p = {}; k = {}; T = {}; expression; Active stress = {}", 1. - a, k, end_time, formula);
   }
 
   /// Numbers of a result except the seconds.
@@ -112,14 +108,8 @@ namespace crawler::test
                                   static_cast<double>(r.most_cells),
                                   r.largest_indicator};
     if (r.energy_balance)
-      for (const double value : {r.energy_balance->stress_work,
-                                 r.energy_balance->dissipation,
-                                 r.energy_balance->positive_work,
-                                 r.energy_balance->exchanged_work,
-                                 r.energy_balance->end_work,
-                                 r.energy_balance->elastic_energy,
-                                 r.energy_balance->transfer_loss})
-        result.push_back(value);
+      for (double EnergyBalance::*energy : EnergyBalance::energies())
+        result.push_back((*r.energy_balance).*energy);
     return result;
   }
 

@@ -66,6 +66,16 @@ def sets(settings):
     return [word for setting in settings for word in ("--set", setting)]
 
 
+def prm(*settings):
+    """Text of a parameter file that sets entries: texts like "Section/Entry=value"."""
+    lines = []
+    for setting in settings:
+        path, _, value = setting.partition("=")
+        *sections, name = path.split("/")
+        lines += [*("subsection " + section for section in sections), f"set {name} = {value}", *["end"] * len(sections)]
+    return "\n".join(lines) + "\n"
+
+
 def on_ranks(mpirun, n):
     """Words before a command that n ranks run; none for one rank."""
     return [mpirun, "--oversubscribe", "-n", n] if n > 1 else []

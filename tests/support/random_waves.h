@@ -38,9 +38,11 @@ namespace crawler::test
       // Strain is at most 2 chi/|c| times the sum of the amplitudes.
       const double amplitudes = std::sqrt(1. + b1 * b1) + std::sqrt(a2 * a2 + b2 * b2);
       wave.chi                = log_between(0.01, 0.9) * std::abs(wave.c) / (2. * amplitudes);
-      wave.settings           = test::wave(wave.a, wave.chi, wave.c, wave.T, wave.k);
-      wave.settings.emplace_back("Active stress/Optimal wave/Sine coefficients", "1, " + text(a2));
-      wave.settings.emplace_back("Active stress/Optimal wave/Cosine coefficients", text(b1) + ", " + text(b2));
+      wave.settings           = with(test::wave(wave.a, wave.chi, wave.c, wave.T, wave.k),
+                           "optimal wave; Sine coefficients = 1, {}; Cosine coefficients = {}, {}",
+                           a2,
+                           b1,
+                           b2);
       return wave;
     }
 
@@ -50,12 +52,9 @@ namespace crawler::test
 
   /// Displacement of the nonlinear model, to a relative 1e-6; nothing if the run does not finish.
   inline std::optional<double>
-  true_displacement(Settings settings)
+  true_displacement(const Settings &settings)
   {
-    settings.emplace_back("Accuracy", "1e-6");
-    const auto outcome = run_with(settings, {});
-    if (outcome.result.time.status != Status::finished)
-      return std::nullopt;
-    return outcome.result.displacement;
+    const SimulationResult result = run_with(with(settings, "Accuracy = 1e-6"), {}).result;
+    return result.time.status == Status::finished ? std::optional(result.displacement) : std::nullopt;
   }
 } // namespace crawler::test

@@ -9,55 +9,16 @@ import shutil
 import h5py
 import numpy as np
 
-from program import call, sets
+from program import call, prm, sets
 
-WAVE = """
-set Accuracy = 1e-7
-subsection Body
-  set Anchoring exponent = 2
-end
-subsection Active stress
-  set Generator = expression
-  subsection Expression
-    set Active stress = 0.15*sin(2*pi*(s+t))
-  end
-end
-subsection Output
-  set Number of snapshots = 10
-end
-"""
-SEGMENTS = """
-set Accuracy = 1e-4
-subsection Active stress
-  set Generator = segments
-  subsection Segments
-    set Number of segments = 8
-    set Amplitude          = 0.1
-    set Phase lag          = 0.125
-  end
-end
-subsection Output
-  set Number of snapshots = 10
-end
-"""
-FEEDBACK = """
-set Accuracy = 1e-4
-subsection Body
-  set Elastic modulus = 0.1
-  set Initial stretch = 1+0.01*exp(-((s-0.425)/0.05)^2)
-end
-subsection Active stress
-  set Generator = strain feedback
-  subsection Strain feedback
-    set Active stress = A*tanh(g*(w_%s-1)/A)
-    set Constants     = A=0.05, g=0.5
-    %s
-  end
-end
-subsection Output
-  set Number of snapshots = 5
-end
-"""
+WAVE = prm("Accuracy=1e-7", "Body/Anchoring exponent=2", "Active stress/Generator=expression",
+           "Active stress/Expression/Active stress=0.15*sin(2*pi*(s+t))", "Output/Number of snapshots=10")
+SEGMENTS = prm("Accuracy=1e-4", "Active stress/Generator=segments", "Active stress/Segments/Number of segments=8",
+               "Active stress/Segments/Amplitude=0.1", "Active stress/Segments/Phase lag=0.125",
+               "Output/Number of snapshots=10")
+REFLEX = "Active stress/Strain feedback/"
+FEEDBACK = ["Accuracy=1e-4", "Body/Elastic modulus=0.1", "Body/Initial stretch=1+0.01*exp(-((s-0.425)/0.05)^2)",
+            "Active stress/Generator=strain feedback", REFLEX + "Constants=A=0.05, g=0.5", "Output/Number of snapshots=5"]
 FINE = ["Discretization/Number of cells=40", "Time/Tolerance=1e-8", "Time/Integrator=radau 9"]
 COARSE = ["Discretization/Number of cells=12", *FINE[1:]]
 # Scenes of a run, with entries, the end time among them, for a long and for a short run.
@@ -74,9 +35,9 @@ SCENES = {
                      ["Discretization/Formulation=stretch", "Time/End time=10", "Accuracy=1e-4"]),
     "adaptive": (WAVE, ["Discretization/Mesh=adaptive", "Time/End time=200", "Accuracy=1e-5"],
                  ["Discretization/Mesh=adaptive", "Time/End time=10", "Accuracy=1e-4"]),
-    "feedback": (FEEDBACK % ("near", "set Distance = -0.25\n    set Sensor length = 0.2"), ["Time/End time=3"],
-                 ["Time/End time=1", "Accuracy=1e-3"]),
-    "delay": (FEEDBACK % ("delayed", "set Delay = 0.3"),
+    "feedback": (prm(*FEEDBACK, REFLEX + "Active stress=A*tanh(g*(w_near-1)/A)", REFLEX + "Distance=-0.25",
+                     REFLEX + "Sensor length=0.2"), ["Time/End time=3"], ["Time/End time=1", "Accuracy=1e-3"]),
+    "delay": (prm(*FEEDBACK, REFLEX + "Active stress=A*tanh(g*(w_delayed-1)/A)", REFLEX + "Delay=0.3"),
               ["Discretization/Number of cells=8", "Accuracy=1e-3", "Time/End time=1"],
               ["Discretization/Number of cells=4", "Accuracy=1e-3", "Time/End time=1"]),
     "xdmf": (WAVE, [*FINE, "Output/Snapshot format=xdmf", "Time/End time=600"],

@@ -32,7 +32,7 @@ namespace crawler::test
   /**
    * Settings from a text like "p = 2; k = 0.5; T = 3; pulse; Width = 0.1". Letters are those of doc/theory.md, with the
    * parameter chi and the speed c of the optimal wave; the name of a generator alone chooses it, and what follows
-   * without a section is its own.
+   * without a section, or belongs to a term of a sum, is its own.
    */
   inline Settings
   set(const std::string &text)
@@ -43,6 +43,10 @@ namespace crawler::test
                                                                {"gamma", "Body/Friction coefficient"},
                                                                {"L", "Body/Length"},
                                                                {"T", "Time/End time"},
+                                                               {"degree", "Discretization/Degree"},
+                                                               {"cells", "Discretization/Number of cells"},
+                                                               {"integrator", "Time/Integrator"},
+                                                               {"tolerance", "Time/Tolerance"},
                                                                {"chi", wave + "Perturbation parameter"},
                                                                {"c", wave + "Wave speed"},
                                                                {"Accuracy", "Accuracy"},
@@ -64,12 +68,28 @@ namespace crawler::test
       if (name == "c")
         settings.emplace_back(wave + "Choose wave by", "wave speed");
       const auto letter = letters.find(name);
-      settings.emplace_back(letter != letters.end()               ? letter->second
-                            : name.find('/') != std::string::npos ? name
-                                                                  : section + name,
+      settings.emplace_back(letter != letters.end()                                             ? letter->second
+                            : name.find('/') != std::string::npos && !name.starts_with("Term ") ? name
+                                                                                                : section + name,
                             item.substr(std::min(equals + 3, item.size())));
     }
     return settings;
+  }
+
+  /// The same with values in the place of {}.
+  template <typename First, typename... Rest>
+  Settings
+  set(fmt::format_string<First, Rest...> text, First &&first, Rest &&...rest)
+  {
+    return set(fmt::format(text, std::forward<First>(first), std::forward<Rest>(rest)...));
+  }
+
+  /// Settings with those of such a text, which override them.
+  template <typename... Values>
+  Settings
+  with(Settings settings, fmt::format_string<Values...> text, Values &&...values)
+  {
+    return with(std::move(settings), set(fmt::format(text, std::forward<Values>(values)...)));
   }
 
   /// Text of a value in a parameter file.
@@ -135,11 +155,6 @@ namespace crawler::test
   inline Settings
   wave(const double a, const double chi, const double speed = 1., const double end_time = 1., const double k = 1.)
   {
-    return {{"Body/Anchoring exponent", text(1. - a)},
-            {"Body/Elastic modulus", text(k)},
-            {"Active stress/Optimal wave/Perturbation parameter", text(chi)},
-            {"Active stress/Optimal wave/Choose wave by", "wave speed"},
-            {"Active stress/Optimal wave/Wave speed", text(speed)},
-            {"Time/End time", text(end_time)}};
+    return set("p = {}; k = {}; chi = {}; c = {}; T = {}", 1. - a, k, chi, speed, end_time);
   }
 } // namespace crawler::test

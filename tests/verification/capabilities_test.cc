@@ -23,11 +23,9 @@ namespace
   const Settings wave = test::with(test::wave(-1., 0.3, 1., 20.), {{"Accuracy", "1e-3"}});
 
   Settings
-  wave_with_feedback(const std::string &formula)
+  wave_with_feedback(const std::string &more)
   {
-    return {{"Active stress/Generator", "strain feedback"},
-            {"Active stress/Strain feedback/Active stress", "0.2*sin(2*pi*(s+t))*s*(1-s)*4" + formula},
-            {"Time/End time", "4"}};
+    return test::set("T = 4; strain feedback; Active stress = 0.2*sin(2*pi*(s+t))*s*(1-s)*4{}", more);
   }
 
   const std::vector<Row> rows = {
@@ -42,8 +40,10 @@ namespace
     {"gamma(x)", {{"Ground/Profile", "1+0.1*tanh(x)"}}, "strides depend on the place"},
     {"initial stretch", {{"Body/Initial stretch", "1+0.1*sin(pi*s)^2"}}, "batches start from rest"},
     {"feedback by w, w_t", wave_with_feedback("-0.1*(w-1)+0.05*w_t"), "no period is declared"},
-    {"feedback by w_near", {wave_with_feedback("+0.1*(w_near-1)")}, "cells that are no neighbours are coupled"},
-    {"feedback by w_delayed", {wave_with_feedback("+0.1*(w_delayed-1)")}, "the past is a part of the state"},
+    {"feedback by w_near",
+     wave_with_feedback("+0.1*(w_near-1); Distance = 0.2"),
+     "cells that are no neighbours are coupled"},
+    {"feedback by w_delayed", wave_with_feedback("+0.1*(w_delayed-1); Delay = 0.2"), "the past is a part of the state"},
     {"stretch form",
      {{"Discretization/Formulation", "stretch"}, {"Accuracy", "1e-2"}},
      "batches are in the position form"},
@@ -65,12 +65,7 @@ namespace
   std::string
   line(const Row &row)
   {
-    Settings settings = test::with(wave, row.settings);
-    if (row.name == "feedback by w_near")
-      settings.emplace_back("Active stress/Strain feedback/Distance", "0.2");
-    if (row.name == "feedback by w_delayed")
-      settings.emplace_back("Active stress/Strain feedback/Delay", "0.2");
-    const Parameters parameters    = test::parameters_with(settings);
+    const Parameters parameters    = test::parameters_with(test::with(wave, row.settings));
     const Scene scene              = parameters.create_scene();
     Simulation::Options options    = {.energy_balance = true,
                                       .cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false),

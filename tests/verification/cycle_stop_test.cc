@@ -49,10 +49,9 @@ namespace
 
   /// The settings with Accuracy 1e-9.
   test::Settings
-  accurate(test::Settings settings)
+  accurate(const test::Settings &settings)
   {
-    settings.emplace_back("Accuracy", "1e-9");
-    return settings;
+    return test::with(settings, "Accuracy = 1e-9");
   }
 
   /// Is the difference within the bound, but for the errors in time of both runs?
@@ -68,14 +67,10 @@ namespace
 
 TEST(CycleStop, Fig2NeedsThreeOfItsTwentyCycles)
 {
-  const auto computed = [](const double accuracy) {
-    auto settings = test::wave(-1., 0.4, 1., 20.);
-    settings.emplace_back("Accuracy", test::text(accuracy));
-    return compute(test::parameters_with(settings));
-  };
   for (const double accuracy : {1e-3, 1e-6, 1e-9})
   {
-    const auto result = computed(accuracy);
+    const auto result =
+      compute(test::parameters_with(test::with(test::wave(-1., 0.4, 1., 20.), "Accuracy = {}", accuracy)));
     ASSERT_TRUE(result.cycles);
     EXPECT_EQ(result.cycles->period, 1.);
     EXPECT_LE(result.cycles->computed, 3u);
@@ -113,36 +108,20 @@ TEST(CycleStop, PartOfACycle)
 /// Where a ramp or a window delays the start, cycles begin behind it.
 TEST(CycleStop, BehindAStart)
 {
-  const std::string generator = "Active stress/Generator", sum = "Active stress/Sum/Term ",
-                    segments = "Active stress/Segments/";
-  for (const test::Settings &settings : {test::Settings{{generator, "travelling wave"},
-                                                        {"Active stress/Travelling wave/Amplitude", "0.3"},
-                                                        {"Active stress/Travelling wave/Ramp duration", "2.3"}},
-                                         {{generator, "segments"},
-                                          {segments + "Number of segments", "4"},
-                                          {segments + "Amplitude", "0.3"},
-                                          {segments + "Frequency", "1"},
-                                          {segments + "Rate limit", "1.5"},
-                                          {segments + "Ramp duration", "0.5"}},
-                                         {{generator, "sum"},
-                                          {sum + "1/Generator", "travelling wave"},
-                                          {sum + "1/Travelling wave/Amplitude", "0.25"},
-                                          {sum + "1/Travelling wave/Ramp duration", "0.25"},
-                                          {sum + "2/Combine", "multiply"},
-                                          {sum + "2/Generator", "expression"},
-                                          {sum + "2/Expression/Active stress", "0.5 + s/L"},
-                                          {sum + "3/Generator", "expression"},
-                                          {sum + "3/Window in t", "1.5, 2.5"},
-                                          {sum + "3/Edge width in t", "0.25"},
-                                          {sum + "3/Expression/Active stress", "0.2"}}})
+  for (const std::string stress :
+       {"travelling wave; Amplitude = 0.3; Ramp duration = 2.3",
+        "segments; Number of segments = 4; Amplitude = 0.3; Frequency = 1; Rate limit = 1.5; Ramp duration = 0.5",
+        "sum; Term 1/Generator = travelling wave; Term 1/Travelling wave/Amplitude = 0.25; "
+        "Term 1/Travelling wave/Ramp duration = 0.25; "
+        "Term 2/Combine = multiply; Term 2/Generator = expression; Term 2/Expression/Active stress = 0.5 + s/L; "
+        "Term 3/Generator = expression; Term 3/Window in t = 1.5, 2.5; Term 3/Edge width in t = 0.25; "
+        "Term 3/Expression/Active stress = 0.2"})
   {
-    auto all = settings;
-    all.insert(all.end(), {{"Body/Anchoring exponent", "2"}, {"Time/End time", "16"}});
-    const Pair pair = run_both(accurate(all), 1e-6);
+    const Pair pair = run_both(accurate(test::set("p = 2; T = 16; " + stress)), 1e-6);
     expect_honest(pair, 1e-6);
-    ASSERT_TRUE(pair.cycles.cycles) << settings.front().second;
+    ASSERT_TRUE(pair.cycles.cycles) << stress;
     EXPECT_EQ(pair.cycles.cycles->period, 1.);
-    EXPECT_GT(pair.cycles.cycles->extrapolated, 8u) << settings.front().second;
+    EXPECT_GT(pair.cycles.cycles->extrapolated, 8u) << stress;
   }
 }
 
@@ -157,18 +136,15 @@ TEST(CycleStop, PeriodOfAFormula)
 
 TEST(CycleStop, BdfAndAdaptiveMeshes)
 {
-  for (const auto &[entry, value] :
-       test::Settings{{"Time/Integrator", "bdf"}, {"Discretization/Mesh", "adaptive"}, {"Time/Engine", "petsc"}})
+  for (const char *own : {"Time/Integrator = bdf", "Discretization/Mesh = adaptive", "Time/Engine = petsc"})
   {
-    auto settings = test::wave(-1., 0.3, 1., 6.);
-    settings.insert(settings.end(), {{"Accuracy", "1e-5"}, {entry, value}});
-    const Pair pair = run_both(settings, 1e-4);
-    ASSERT_TRUE(pair.cycles.cycles) << value;
+    const Pair pair = run_both(test::with(test::wave(-1., 0.3, 1., 6.), "Accuracy = 1e-5; {}", own), 1e-4);
+    ASSERT_TRUE(pair.cycles.cycles) << own;
     EXPECT_NEAR(pair.cycles.displacement,
                 pair.full.displacement,
                 pair.cycles.cycles->bound + 2e-5 * std::abs(pair.full.displacement))
-      << value;
-    EXPECT_LT(pair.cycles.time.steps, pair.full.time.steps) << value;
+      << own;
+    EXPECT_LT(pair.cycles.time.steps, pair.full.time.steps) << own;
   }
 }
 
@@ -239,20 +215,15 @@ TEST(CycleStop, WhenItIsWished)
     const Scene scene     = parameters.create_scene();
     return cycle_wish(parameters, scene, has_pictures).has_value();
   };
-  auto settings = test::wave(-1., 0.1, 1., 20.);
-  EXPECT_TRUE(wish(settings, 0));
-  EXPECT_FALSE(wish(settings, 50)); // every output time is wanted
+  const test::Settings wave = test::wave(-1., 0.1, 1., 20.), on = test::with(wave, "Time/Cycle stop = on");
+  EXPECT_TRUE(wish(wave, 0));
+  EXPECT_FALSE(wish(wave, 50)); // every output time is wanted
   EXPECT_FALSE(wish(test::wave(-1., 0.1, 1., 2.5), 0));
-  settings.emplace_back("Time/Cycle stop", "off");
-  EXPECT_FALSE(wish(settings, 0));
-  settings.emplace_back("Time/Cycle stop", "on");
-  EXPECT_THROW(wish(settings, 50), InputError); // refused with the default of 50 snapshots
-  settings.emplace_back("Output/Number of snapshots", "0");
-  EXPECT_TRUE(wish(settings, 0));
-  settings = test::wave(-1., 0.1, 1., 20.);
-  settings.insert(settings.end(), {{"Time/Step control", "fixed"}, {"Time/Initial step", "0.01"}});
-  EXPECT_FALSE(wish(settings, 0));
-  EXPECT_FALSE(wish({{"Active stress/Generator", "none"}, {"Time/End time", "20"}}, 0));
+  EXPECT_FALSE(wish(test::with(wave, "Time/Cycle stop = off"), 0));
+  EXPECT_THROW(wish(on, 50), InputError); // refused with the default of 50 snapshots
+  EXPECT_TRUE(wish(test::with(on, "Output/Number of snapshots = 0"), 0));
+  EXPECT_FALSE(wish(test::with(wave, "Time/Step control = fixed; Time/Initial step = 0.01"), 0));
+  EXPECT_FALSE(wish(test::set("none; T = 20"), 0));
 }
 
 /// Many runs at once end when their cycles repeat, each at its own, as they do alone.
@@ -290,19 +261,14 @@ TEST(CycleStop, TheLastComputedStrideHasABoundForTheStridesAfterIt)
 {
   for (const char *p : {"1.05", "2", "3"})
   {
-    const auto parameters = test::parameters_with({{"Accuracy", "1e-3"},
-                                                   {"Body/Friction coefficient", "10"},
-                                                   {"Body/Anchoring exponent", p},
-                                                   {"Active stress/Generator", "standing wave"},
-                                                   {"Active stress/Standing wave/Amplitude", "0.4"},
-                                                   {"Active stress/Standing wave/Wave number", "0.5"},
-                                                   {"Time/End time", "60"}});
-    const Scene scene     = parameters.create_scene();
-    const auto result     = answer_in_memory(parameters,
+    const auto parameters = test::parameters_with(
+      test::set("Accuracy = 1e-3; gamma = 10; p = {}; T = 60; standing wave; Amplitude = 0.4; Wave number = 0.5", p));
+    const Scene scene = parameters.create_scene();
+    const auto result = answer_in_memory(parameters,
                                          scene,
                                          {.energy_balance = true,
-                                              .cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false),
-                                              .gait           = Simulation::GaitWish::any},
+                                          .cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false),
+                                          .gait           = Simulation::GaitWish::any},
                                          {})
                           .result;
     ASSERT_TRUE(result.cycles && result.gait) << p;

@@ -23,18 +23,16 @@ namespace
     test::Random random(5000 + number);
     const double a = random.uniform(-3., 3.), k = random.log_uniform(0.003, 10.),
                  chi = random.uniform(0.03, std::abs(a) > 2. ? 0.25 : 0.4), T = random.uniform(4., 30.);
-    test::Settings settings = test::wave(a, chi, a > 0. ? -1. : 1., T, k);
-    if (number % 3 == 1)
-    {
-      const double A = random.uniform(0.02, 0.3) * k, B = random.uniform(0., 0.3) * k, f = random.uniform(0.7, 2.);
-      settings.emplace_back("Active stress/Generator", "expression");
-      settings.emplace_back("Active stress/Expression/Active stress",
-                            "A*sin(2*pi*(s-f*t))*sin(pi*s)+B*sin(4*pi*f*t+s)*s*(1-s)");
-      settings.emplace_back("Active stress/Expression/Constants",
-                            fmt::format("A={}, B={}, f={}", test::text(A), test::text(B), test::text(f)));
-    }
-    settings.emplace_back("Accuracy", "1e-8");
-    return settings;
+    const test::Settings settings = test::with(test::wave(a, chi, a > 0. ? -1. : 1., T, k), "Accuracy = 1e-8");
+    if (number % 3 != 1)
+      return settings;
+    const double A = random.uniform(0.02, 0.3) * k, B = random.uniform(0., 0.3) * k, f = random.uniform(0.7, 2.);
+    return test::with(settings,
+                      "expression; Active stress = A*sin(2*pi*(s-f*t))*sin(pi*s)+B*sin(4*pi*f*t+s)*s*(1-s); "
+                      "Constants = A={}, B={}, f={}",
+                      A,
+                      B,
+                      f);
   }
 } // namespace
 

@@ -34,11 +34,7 @@ namespace
   test::Settings
   wave_of(const char *p, const char *k, const char *chi, const char *T = "1")
   {
-    return {{"Active stress/Optimal wave/Choose wave by", "wave speed"},
-            {"Active stress/Optimal wave/Perturbation parameter", chi},
-            {"Body/Anchoring exponent", p},
-            {"Body/Elastic modulus", k},
-            {"Time/End time", T}};
+    return test::set("c = 1; p = {}; k = {}; chi = {}; T = {}", p, k, chi, T);
   }
 } // namespace
 

@@ -18,21 +18,22 @@ namespace
   test::Settings
   pulse(const double speed, const double repetition, const double end_time, const std::string &accuracy)
   {
-    return test::with(test::set("p = 2; pulse; Amplitude = 0.4; Width = 0.1"),
-                      {{"Active stress/Pulse/Speed", test::text(speed)},
-                       {"Active stress/Pulse/Repetition period", test::text(repetition)},
-                       {"Time/End time", test::text(end_time)},
-                       {"Accuracy", accuracy}});
+    return test::set(
+      "p = 2; T = {}; Accuracy = {}; pulse; Amplitude = 0.4; Width = 0.1; Speed = {}; Repetition period = {}",
+      end_time,
+      accuracy,
+      speed,
+      repetition);
   }
 
   test::Settings
   event(const double time, const double width, const std::string &accuracy)
   {
-    return {{"Active stress/Generator", "expression"},
-            {"Active stress/Expression/Active stress",
-             "0.1*sin(2*pi*(s+t))*tanh(5*t)+0.6*sin(pi*s)*sin(2*pi*s)*exp(-((t-q)/w)^2)"},
-            {"Active stress/Expression/Constants", fmt::format("q={}, w={}", test::text(time), test::text(width))},
-            {"Accuracy", accuracy}};
+    return test::set("Accuracy = {}; expression; Constants = q={}, w={}; "
+                     "Active stress = 0.1*sin(2*pi*(s+t))*tanh(5*t)+0.6*sin(pi*s)*sin(2*pi*s)*exp(-((t-q)/w)^2)",
+                     accuracy,
+                     time,
+                     width);
   }
 
   /// With steps that no event can escape.
@@ -54,10 +55,8 @@ TEST(Events, JumpsOfFormulasAreAsGoodAsDeclaredOnes)
 {
   const test::Settings rest = test::set("p = 2; Time/End time = 1; Accuracy = 1e-6");
   const auto generator      = answer_to(test::with(
-    rest,
-    test::set("segments; Number of segments = 4; Amplitude = 0.2; Phase lag = 0.25; Direction = from tail to head")));
-  const auto formula        = answer_to(test::with(
-    rest, test::set("expression; Active stress/Expression/Active stress = 0.2*(mod(t-0.25*floor(4*s),1)<0.5)")));
+    rest, "segments; Number of segments = 4; Amplitude = 0.2; Phase lag = 0.25; Direction = from tail to head"));
+  const auto formula = answer_to(test::with(rest, "expression; Active stress = 0.2*(mod(t-0.25*floor(4*s),1)<0.5)"));
   ASSERT_EQ(formula.time.status, Status::finished);
   EXPECT_EQ(formula.mesh->n_cells, generator.mesh->n_cells);
   EXPECT_NEAR(formula.displacement, generator.displacement, 1e-12);
@@ -72,11 +71,8 @@ TEST(Events, PulsesAreCounted)
 {
   const double one = answer_to(pulse(20., 0., 1000., "1e-7")).displacement;
   for (const char *stop : {"automatic", "off"})
-  {
-    auto settings = pulse(20., 50., 1000., "1e-4");
-    settings.emplace_back("Time/Cycle stop", stop);
-    expect_within(answer_to(settings), 20. * one, 1e-4, stop);
-  }
+    expect_within(
+      answer_to(test::with(pulse(20., 50., 1000., "1e-4"), "Time/Cycle stop = {}", stop)), 20. * one, 1e-4, stop);
 }
 
 TEST(Events, EventsOfFormulasAreNotMissed)
@@ -129,10 +125,10 @@ TEST(Events, GaitsOfHundredsOfStrides)
 TEST(Events, OneInALongRest)
 {
   const auto settings = [](const std::string &time, const std::string &end_time) {
-    return test::with(
-      test::set("k = 0.93; p = 2.89; Accuracy = 1e-5; expression; "
-                "Active stress = 0.53*sin(3*s-(t-q)/w)*exp(-((t-q)/w)^2)"),
-      {{"Active stress/Expression/Constants", "w = 0.07403, q = " + time}, {"Time/End time", end_time}});
+    return test::set("k = 0.93; p = 2.89; Accuracy = 1e-5; T = {}; expression; "
+                     "Active stress = 0.53*sin(3*s-(t-q)/w)*exp(-((t-q)/w)^2); Constants = w = 0.07403, q = {}",
+                     end_time,
+                     time);
   };
   const SimulationResult rested = answer_to(settings("713.5928", "1000"));
   expect_within(rested, answer_to(settings("1.5", "50")).displacement, 1e-5, "after a long rest");
@@ -176,11 +172,8 @@ TEST(Events, OfGivenStrains)
       displacement += velocity * T / n_steps * (j == 0 || j == n_steps ? 0.5 : 1.);
     }
     for (const char *accuracy : {"1e-2", "1e-4", "1e-6"})
-      expect_within(answer_to({{"Model", "kinematic"},
-                               {"Active stress/Generator", "prescribed strain"},
-                               {"Active stress/Prescribed strain/Strain", strain},
-                               {"Time/End time", test::text(T)},
-                               {"Accuracy", accuracy}}),
+      expect_within(answer_to(test::set(
+                      "Model = kinematic; T = {}; Accuracy = {}; prescribed strain; Strain = {}", T, accuracy, strain)),
                     displacement,
                     std::stod(accuracy),
                     fmt::format("{}, {}", strain, accuracy));
@@ -201,8 +194,7 @@ TEST(Events, EndsThatInvertInALongRun)
 /// The stress has hardly reached the body: no error is wanted to be smaller than round-off of the length.
 TEST(Events, NothingHasHappenedYet)
 {
-  const SimulationResult result =
-    answer_to({{"Active stress/Generator", "pulse"}, {"Time/End time", "0.05"}, {"Accuracy", "1e-4"}});
+  const SimulationResult result = answer_to(test::set("pulse; T = 0.05; Accuracy = 1e-4"));
   EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
   EXPECT_LT(std::abs(result.displacement), 1e-15);
 }
@@ -210,14 +202,8 @@ TEST(Events, NothingHasHappenedYet)
 TEST(Events, TheTailOfAPulseHasHardlyCome)
 {
   // Bounds of its rate that do not become as small as the tail and the ramp made steps of 1e-13 of the duration.
-  const std::string pulse       = "Active stress/Pulse/";
-  const SimulationResult result = answer_to({{"Body/Elastic modulus", "1e7"},
-                                             {"Active stress/Generator", "pulse"},
-                                             {pulse + "Amplitude", "1e6"},
-                                             {pulse + "Width", "0.5"},
-                                             {pulse + "Speed", "1"},
-                                             {pulse + "Ramp duration", "0.3"},
-                                             {"Time/End time", "0.3"}});
+  const SimulationResult result =
+    answer_to(test::set("k = 1e7; T = 0.3; pulse; Amplitude = 1e6; Width = 0.5; Speed = 1; Ramp duration = 0.3"));
   EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
   EXPECT_LT(result.time.steps, 1000u);
   EXPECT_LT(std::abs(result.displacement), result.error->total);
@@ -228,11 +214,10 @@ TEST(Events, TheTailOfAPulseHasHardlyCome)
 TEST(Events, FirstStridesChooseForLongRuns)
 {
   const auto settings = [](const bool on_ground, const std::string &accuracy) {
-    test::Settings all = test::wave(-1., 0.3, 1., 60., on_ground ? 1. : 0.01);
-    all.emplace_back("Accuracy", accuracy);
-    if (on_ground)
-      all.emplace_back("Ground/Profile", "1+0.2*sin(x)");
-    return all;
+    return test::with(test::wave(-1., 0.3, 1., 60., on_ground ? 1. : 0.01),
+                      "Accuracy = {}; Ground/Profile = {}",
+                      accuracy,
+                      on_ground ? "1+0.2*sin(x)" : "1");
   };
   for (const bool on_ground : {false, true})
   {
@@ -253,10 +238,7 @@ TEST(Events, FormulasInLongRuns)
 {
   const std::string wave = "0.2*sin(2*pi*(s+t))";
   const auto long_run    = [](const std::string &formula, const double end_time, const std::string &accuracy) {
-    return answer_to({{"Active stress/Generator", "expression"},
-                      {"Active stress/Expression/Active stress", formula},
-                      {"Time/End time", test::text(end_time)},
-                      {"Accuracy", accuracy}});
+    return answer_to(test::set("T = {}; Accuracy = {}; expression; Active stress = {}", end_time, accuracy, formula));
   };
   const auto with_event = long_run(wave + "+0.5*sin(pi*s)*sin(2*pi*s)*exp(-((t-530.126)/0.01)^2)", 1000., "1e-5");
   expect_within(with_event, 17.788083, 1e-5, "an event in 1000 strides");
@@ -281,10 +263,11 @@ TEST(Events, FormulasInLongRuns)
 TEST(Events, EventsOfABodyAtRest)
 {
   const auto answer = [](const std::string &formula, const std::string &constants, const std::string &end_time) {
-    return answer_to(test::with(test::set("Accuracy = 1e-5; k = 0.59; p = 2.88; expression"),
-                                {{"Active stress/Expression/Active stress", formula + "*exp(-((t-t0)/w)^2)"},
-                                 {"Active stress/Expression/Constants", constants},
-                                 {"Time/End time", end_time}}));
+    return answer_to(test::set("Accuracy = 1e-5; k = 0.59; p = 2.88; T = {}; expression; "
+                               "Active stress = {}*exp(-((t-t0)/w)^2); Constants = {}",
+                               end_time,
+                               formula,
+                               constants));
   };
   const std::string turning   = "0.336*sin(3*s-(t-t0)/w)";
   const SimulationResult late = answer(turning, "t0 = 850.6329, w = 0.05414", "1000");

@@ -48,11 +48,12 @@ main(int argc, char **argv)
   int failures = 0, done = 0;
   for (const auto &row : rows)
   {
-    auto settings = test::wave(row["exponent"], row["chi"], row["speed"], row["end_time"], row["elastic_modulus"]);
-    settings.emplace_back("Active stress/Optimal wave/Sine coefficients", words(row["sine"]));
-    settings.emplace_back("Active stress/Optimal wave/Cosine coefficients", words(row["cosine"]));
-    settings.emplace_back("Accuracy", test::text(accuracy));
-    const auto outcome = test::run_with(settings);
+    const auto outcome = test::run_with(
+      test::with(test::wave(row["exponent"], row["chi"], row["speed"], row["end_time"], row["elastic_modulus"]),
+                 "Accuracy = {}; optimal wave; Sine coefficients = {}; Cosine coefficients = {}",
+                 accuracy,
+                 words(row["sine"]),
+                 words(row["cosine"])));
     const auto &result = outcome.result;
     ++done;
     std::string verdict;

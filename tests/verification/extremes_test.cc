@@ -33,11 +33,10 @@ TEST(Extremes, OneCell)
     for (unsigned int degree = 1; degree <= (formulation == "position" ? 8u : 1u); ++degree)
     {
       const auto result = test::run_with(with(test::wave(-1., 0.1),
-                                              {{"Discretization/Degree", std::to_string(degree)},
-                                               {"Discretization/Number of cells", "1"},
-                                               {"Discretization/Formulation", formulation},
-                                               {"Discretization/Mesh", "uniform"},
-                                               {"Time/Tolerance", "1e-10"}}))
+                                              "degree = {}; cells = 1; Discretization/Formulation = {}; "
+                                              "Discretization/Mesh = uniform; tolerance = 1e-10",
+                                              degree,
+                                              formulation))
                             .result;
       ASSERT_EQ(result.time.status, Status::finished) << formulation << degree;
       EXPECT_LT(result.net_friction, 1e-11) << formulation << degree;
@@ -55,13 +54,13 @@ TEST(Extremes, OneCell)
 TEST(Extremes, AMillionCells)
 {
   const auto displacement = [](const char *degree, const char *cells) {
-    const auto result = test::run_with(with(test::wave(-1., 0.4, 1., 0.05),
-                                            {{"Discretization/Degree", degree},
-                                             {"Discretization/Number of cells", cells},
-                                             {"Time/Step control", "fixed"},
-                                             {"Time/Initial step", "0.025"}}),
-                                       {.energy_balance = false})
-                          .result;
+    const auto result =
+      test::run_with(with(test::wave(-1., 0.4, 1., 0.05),
+                          "degree = {}; cells = {}; Time/Step control = fixed; Time/Initial step = 0.025",
+                          degree,
+                          cells),
+                     {.energy_balance = false})
+        .result;
     EXPECT_EQ(result.time.status, Status::finished);
     EXPECT_EQ(result.time.steps, 2u);
     return result.displacement;
@@ -152,11 +151,7 @@ TEST(Extremes, InversionAtAnEnd)
     EXPECT_TRUE(result.inversion->s == s || result.inversion->s == 1. - s);
   };
   for (const char *p : {"-3", "0.5", "1", "1.5", "2", "21"})
-    expect_inversion({{"Body/Anchoring exponent", p},
-                      {"Active stress/Generator", "expression"},
-                      {"Active stress/Expression/Active stress", "2*t"}},
-                     0.5,
-                     0.);
+    expect_inversion(test::set("p = {}; expression; Active stress = 2*t", p), 0.5, 0.);
   const double chi = 1.2;
   expect_inversion(test::wave(-1., chi), (std::numbers::pi + std::asin(1. / chi)) / (2. * std::numbers::pi), 0.);
 }

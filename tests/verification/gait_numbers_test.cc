@@ -9,23 +9,20 @@ using namespace crawler;
 namespace
 {
   SimulationResult
-  stride(test::Settings settings, const bool with_cycle_stop = false)
+  stride(const test::Settings &settings, const bool with_cycle_stop = false)
   {
-    settings.emplace_back("Accuracy", "1e-8");
     const Simulation::Options options{.energy_balance = true,
                                       .cycles = with_cycle_stop ? std::optional(CycleWish{1., 1e-8}) : std::nullopt,
                                       .gait   = Simulation::GaitWish::any};
-    return test::run_with(settings, options).result;
+    return test::run_with(test::with(settings, "Accuracy = 1e-8"), options).result;
   }
 
   /// The gait of a run at Accuracy 1e-4, if the generator declares its period.
   std::optional<Gait>
-  declared_gait(test::Settings settings)
+  declared_gait(const test::Settings &settings)
   {
-    settings.emplace_back("Accuracy", "1e-4");
-    Simulation::Options options;
-    options.gait = Simulation::GaitWish::declared;
-    return test::run_with(settings, options).result.gait;
+    return test::run_with(test::with(settings, "Accuracy = 1e-4"), {.gait = Simulation::GaitWish::declared})
+      .result.gait;
   }
 } // namespace
 
@@ -103,21 +100,19 @@ TEST(GaitNumbers, TheEnergiesOfAStrideAddUpWithThoseBefore)
 /// and between them there may be gaps.
 TEST(GaitNumbers, SegmentsHaveTheWaveThatTheyDeclare)
 {
-  const std::string section = "Active stress/Segments/";
   for (const unsigned int n : {8, 16, 32, 64})
     for (const double gap : {0., 0.3})
       for (const bool to_tail : {true, false})
       {
         const double lag = n == 16 ? 0.1 : 1. / n, duty = n == 8 ? 0.5 : 0.3;
-        const auto gait = declared_gait({{"Active stress/Generator", "segments"},
-                                         {section + "Number of segments", test::text(n)},
-                                         {section + "Gap", test::text(gap)},
-                                         {section + "Phase lag", test::text(lag)},
-                                         {section + "Duty cycle", test::text(duty)},
-                                         {section + "Direction", to_tail ? "from head to tail" : "from tail to head"},
-                                         {section + "Rate limit", "1.5"},
-                                         {section + "Ramp duration", "0.5"},
-                                         {"Time/End time", "3"}});
+        const auto gait =
+          declared_gait(test::set("T = 3; segments; Number of segments = {}; Gap = {}; Phase lag = {}; "
+                                  "Duty cycle = {}; Direction = {}; Rate limit = 1.5; Ramp duration = 0.5",
+                                  n,
+                                  gap,
+                                  lag,
+                                  duty,
+                                  to_tail ? "from head to tail" : "from tail to head"));
         ASSERT_TRUE(gait && gait->wave) << n;
         const double pitch = (1. + gap) / (n + (n - 1) * gap), speed = (to_tail ? -1. : 1.) * pitch / lag;
         EXPECT_NEAR(gait->wave->speed, speed, 0.03 * std::abs(speed)) << n << " segments, gap " << gap;
@@ -132,8 +127,7 @@ TEST(GaitNumbers, AWaveThatIsTooFastForTheSamplesIsAbsent)
 {
   const auto pulse = [](const double speed, const double end_time) {
     return declared_gait(
-      test::with(test::set("pulse; Shape = compact; Width = 0.3; Repetition period = 2"),
-                 {{"Active stress/Pulse/Speed", test::text(speed)}, {"Time/End time", test::text(end_time)}}));
+      test::set("T = {}; pulse; Shape = compact; Width = 0.3; Repetition period = 2; Speed = {}", end_time, speed));
   };
   const auto slow = pulse(1.5, 4.);
   ASSERT_TRUE(slow && slow->wave_speed());

@@ -25,17 +25,17 @@ namespace
   Settings
   expression(const std::string &formula)
   {
-    return {{"Active stress/Generator", "expression"}, {"Active stress/Expression/Active stress", formula}};
+    return test::set("expression; Active stress = {}", formula);
   }
 
   Settings
   feedback(const std::string &formula, const double distance = 0., const double delay = 0., const double sensor = 0.)
   {
-    return {{"Active stress/Generator", "strain feedback"},
-            {"Active stress/Strain feedback/Active stress", formula},
-            {"Active stress/Strain feedback/Distance", text(distance)},
-            {"Active stress/Strain feedback/Delay", text(delay)},
-            {"Active stress/Strain feedback/Sensor length", text(sensor)}};
+    return test::set("strain feedback; Active stress = {}; Distance = {}; Delay = {}; Sensor length = {}",
+                     formula,
+                     distance,
+                     delay,
+                     sensor);
   }
 
   SimulationResult
@@ -74,14 +74,11 @@ namespace
 
   /// Of high order in space, in the position form; or the stretch form with many cells.
   Settings
-  numerics(const bool stretch, const std::string &degree = "4", const std::string &n_cells = "8")
+  numerics(const bool stretch)
   {
     if (stretch)
-      return stretch_form + Settings{{"Discretization/Number of cells", "1000"}, {"Time/Tolerance", "1e-13"}};
-    return {{"Discretization/Degree", degree},
-            {"Discretization/Number of cells", n_cells},
-            {"Time/Integrator", "radau 9"},
-            {"Time/Tolerance", "1e-13"}};
+      return stretch_form + test::set("cells = 1000; tolerance = 1e-13");
+    return test::set("degree = 4; cells = 8; integrator = radau 9; tolerance = 1e-13");
   }
 } // namespace
 
@@ -102,11 +99,9 @@ TEST(GeneralScenes, LawsAgreeWithThePowerLaw)
   {
     const Settings wave = expression(wave_formula) + Settings{{"Body/Anchoring exponent", text(1. - a)}};
     const double power  = displacement(wave);
-    expect_near(displacement(wave + Settings{{"Ground/Friction law", "expression"},
-                                             {"Ground/Expression", "w^a"},
-                                             {"Ground/Constants", "a=" + text(a)}}),
-                power,
-                1e-10);
+    const Settings law =
+      test::set("Ground/Friction law = expression; Ground/Expression = w^a; Ground/Constants = a={}", a);
+    expect_near(displacement(wave + law), power, 1e-10);
   }
   const Settings wave = expression(wave_formula);
   expect_near(displacement(wave + Settings{{"Ground/Friction law", "Newtonian"}}),
@@ -142,14 +137,14 @@ TEST(GeneralScenes, StrainModesDecay)
       for (const bool stretch : {false, true})
       {
         const double q = mode * pi, rate = k * q * q / (gamma + viscosity * q * q);
-        Settings settings = {{"Body/Elastic modulus", text(k)},
-                             {"Body/Friction coefficient", text(gamma)},
-                             {"Body/Initial stretch", "1+" + text(small) + "*sin(" + std::to_string(mode) + "*pi*s)"},
-                             {"Time/End time", text(T / (mode * mode))}};
-        settings =
-          settings + numerics(stretch) +
-          (viscosity > 0. ? feedback(text(viscosity) + "*w_t") : Settings{{"Active stress/Generator", "none"}});
-        expect_near(energy_left(settings), std::exp(-2. * rate * T / (mode * mode)), 1e-4);
+        const Settings body    = test::set("k = {}; gamma = {}; Body/Initial stretch = 1+{}*sin({}*pi*s); T = {}; none",
+                                        k,
+                                        gamma,
+                                        small,
+                                        mode,
+                                        T / (mode * mode)),
+                       viscous = viscosity > 0. ? feedback(text(viscosity) + "*w_t") : Settings();
+        expect_near(energy_left(body + viscous + numerics(stretch)), std::exp(-2. * rate * T / (mode * mode)), 1e-4);
       }
 }
 
@@ -166,11 +161,12 @@ TEST(GeneralScenes, DelayedModesDecay)
   for (const double T : {0.3, 1.})
     for (const std::string integrator : {"bdf", "radau 9"})
     {
-      const Settings settings =
-        test::with(test::set("Body/Initial stretch = 1+1e-6*sin(pi*s); Discretization/Degree = 4; "
-                             "Discretization/Number of cells = 8; Time/Tolerance = 1e-13"),
-                   {{"Body/Elastic modulus", text(k)}, {"Time/Integrator", integrator}, {"Time/End time", text(T)}});
-      const double e = T <= delay ? first(T) : second(T - delay);
+      const Settings settings = test::set("k = {}; Body/Initial stretch = 1+1e-6*sin(pi*s); T = {}; "
+                                          "degree = 4; cells = 8; tolerance = 1e-13; integrator = {}",
+                                          k,
+                                          T,
+                                          integrator);
+      const double e          = T <= delay ? first(T) : second(T - delay);
       expect_near(energy_left(settings + feedback(text(kappa) + "*(w_delayed-1)", 0., delay)), e * e, 1e-4);
     }
 }
@@ -204,9 +200,7 @@ TEST(GeneralScenes, ModesOfASensorAsLongAsTheBody)
   {
     const double T = 0.2, expected = std::exp(2. * mode.rate * T);
     const double left = energy_left(feedback(text(mode.K) + "*(w_near-1)", 0., 0., 1.) + numerics(/*stretch=*/false) +
-                                    Settings{{"Body/Elastic modulus", text(k)},
-                                             {"Body/Initial stretch", "1+1e-5*" + mode.mode},
-                                             {"Time/End time", text(T)}});
+                                    test::set("k = {}; Body/Initial stretch = 1+1e-5*{}; T = {}", k, mode.mode, T));
     expect_near(left, expected, 5e-4);
   }
 }
@@ -218,10 +212,9 @@ TEST(GeneralScenes, AModeGrowsByItself)
   constexpr double rate = 4.8993, half_period = 0.43825, start = 1.6;
   const auto energy = [&](const double T) {
     return energy_left(feedback("0.05*tanh(10*(w_near-1))", -0.25, 0., 0.2) +
-                       test::with(test::set("k = 0.1; Body/Initial stretch = 1+1e-7*exp(-((s-0.425)/0.05)^2); "
-                                            "Discretization/Degree = 6; Discretization/Number of cells = 16; "
-                                            "Time/Integrator = radau 9; Time/Tolerance = 1e-10"),
-                                  {{"Time/End time", text(T)}}));
+                       test::set("k = 0.1; Body/Initial stretch = 1+1e-7*exp(-((s-0.425)/0.05)^2); T = {}; "
+                                 "degree = 6; cells = 16; integrator = radau 9; tolerance = 1e-10",
+                                 T));
   };
   expect_near(energy(start + half_period) / energy(start), std::exp(2. * rate * half_period), 1e-3);
 }
@@ -240,13 +233,9 @@ TEST(GeneralScenes, SensorsSeeTheMean)
       {
         const std::string left = "min(max(s+" + text(distance) + "-b/2,0),1-b)";
         const std::string mean = "(1+E*sin(t)*(cos(pi*" + left + ")-cos(pi*(" + left + "+b)))/(pi*b))";
-        const auto result =
-          run(feedback("-E/pi^2*cos(t)*sin(pi*s)-E*sin(t)*sin(pi*s)+1.5*(w_near-" + mean + ")", distance, 0., sensor) +
-              own +
-              Settings{{"Active stress/Strain feedback/Constants", "E=" + text(E) + ", b=" + text(sensor)},
-                       {"Body/Anchoring exponent", "1"},
-                       {"Time/Tolerance", "1e-8"},
-                       {"Time/End time", text(T)}});
+        const auto result      = run(
+          feedback("-E/pi^2*cos(t)*sin(pi*s)-E*sin(t)*sin(pi*s)+1.5*(w_near-" + mean + ")", distance, 0., sensor) +
+          own + test::set("p = 1; T = {}; tolerance = 1e-8; strain feedback; Constants = E={}, b={}", T, E, sensor));
         expect_near(result.energy_balance->elastic_energy, 0.25 * E * E * std::sin(T) * std::sin(T), 1e-5);
         expect_near(result.max_stretch.value, 1. + E * std::sin(T), 1e-4);
       }
@@ -266,9 +255,7 @@ TEST(GeneralScenes, GroundThatBecomesSticky)
   // m = int_0^s c v ds - k e
   const Settings scene = expression("exp(b*" + h_of_t + ")*(" + w_t + "*(s*exp(" + p + "*s)/" + p + "-" + power + "/" +
                                     p + "^2)+" + h_t + "*" + power + "/" + p + ")-(" + w + "-1)") +
-                         Settings{{"Active stress/Expression/Constants", "b=" + text(beta) + ", E=" + text(E)},
-                                  {"Body/Anchoring exponent", "1"},
-                                  {"Ground/Profile", "exp(1.2*x)"}};
+                         test::set("p = 1; Ground/Profile = exp(1.2*x); expression; Constants = b={}, E={}", beta, E);
   const double at_end = 1. + E * std::sin(1.) * std::sin(1.), expected = 0.5 * (at_end - 1.) + h(at_end);
   expect_near(displacement(scene), expected, 2e-6);
   EXPECT_LT(expected, 0.); // the sticky end holds less of the body back... and pulls it
@@ -280,9 +267,8 @@ TEST(GeneralScenes, DirectionOfTheGround)
   const Settings standing = expression("0.4*sin(2*pi*t)^2*s*(1-s)*4") + Settings{{"Body/Anchoring exponent", "1"}};
   EXPECT_NEAR(displacement(standing + petsc), 0., 1e-12);
   const auto with_ratio = [&](const double ratio, const double gamma) {
-    return displacement(standing + Settings{{"Ground/Backward ratio", text(ratio)},
-                                            {"Ground/Switching velocity", "0.2"},
-                                            {"Body/Friction coefficient", text(gamma)}});
+    return displacement(
+      standing + test::set("gamma = {}; Ground/Backward ratio = {}; Ground/Switching velocity = 0.2", gamma, ratio));
   };
   const double forward = with_ratio(4., 1.);
   EXPECT_GT(forward, 1e-3);

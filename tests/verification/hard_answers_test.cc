@@ -18,22 +18,15 @@ using test::expect_within;
 TEST(HardAnswers, ACoarseMeshDoesNotInvertABody)
 {
   const auto answer = [](const unsigned int n_cells, const double chi, const double end_time) {
-    auto settings = test::wave(3.38, chi, -1., end_time, 0.0134);
-    settings.insert(settings.end(),
-                    {{"Discretization/Number of cells", std::to_string(n_cells)},
-                     {"Discretization/Degree", "3"},
-                     {"Time/Integrator", "radau 9"}});
-    return answer_to(settings);
+    return answer_to(test::with(
+      test::wave(3.38, chi, -1., end_time, 0.0134), "cells = {}; degree = 3; integrator = radau 9", n_cells));
   };
   const SimulationResult coarse = answer(3, 0.302, 0.346);
   EXPECT_EQ(coarse.time.reason, "under_resolved") << coarse.time.message;
   EXPECT_FALSE(coarse.inversion);
   EXPECT_EQ(answer(24, 0.302, 0.346).time.status, Status::finished);
   // One that does is believed.
-  EXPECT_EQ(
-    answer_to(test::set("p = 0; chi = 0.6; c = -1; Discretization/Number of cells = 12; Discretization/Degree = 6"))
-      .time.status,
-    Status::inverted);
+  EXPECT_EQ(answer_to(test::set("p = 0; chi = 0.6; c = -1; cells = 12; degree = 6")).time.status, Status::inverted);
 }
 
 /// On coarse meshes of steep friction the stretch jumps between cells, and is wrong at the ends of the body, alike on
@@ -75,14 +68,15 @@ TEST(HardAnswers, WorksOfSteepFrictionAreUnknown)
   int n_unknown = 0;
   for (const auto &[length, time, force] : units)
   {
-    const test::Settings settings =
-      test::with(test::set("p = -18; Accuracy = 1.6766914086537847e-4; travelling wave; Wave number = 1.5"),
-                 {{"Body/Length", test::text(length)},
-                  {"Body/Elastic modulus", test::text(0.05057650377199341 * force)},
-                  {"Body/Friction coefficient", test::text(force * time / (length * length))},
-                  {"Active stress/Travelling wave/Amplitude", test::text(0.042983258181491596 * force)},
-                  {"Active stress/Travelling wave/Frequency", test::text(1. / time)},
-                  {"Time/End time", test::text(time)}});
+    const test::Settings settings = test::set("p = -18; L = {}; k = {}; gamma = {}; T = {}; "
+                                              "Accuracy = 1.6766914086537847e-4; travelling wave; Wave number = 1.5; "
+                                              "Amplitude = {}; Frequency = {}",
+                                              length,
+                                              0.05057650377199341 * force,
+                                              force * time / (length * length),
+                                              time,
+                                              0.042983258181491596 * force,
+                                              1. / time);
     const SimulationResult result = answer_to(settings);
     ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
     ASSERT_NE(result.energy_balance.has_value(), result.residual_of_unknown_works.has_value());
@@ -112,8 +106,7 @@ TEST(HardAnswers, DisplacementsAreWithinTheirBounds)
     double accuracy; ///< that the bound must keep, if this is not 0
   } const scenes[] = {
     {"fronts: the errors of high degrees fall slowly with the cells, alike in a run and a finer one (true by the "
-     "stretch "
-     "form at Accuracy 2e-5)",
+     "stretch form at Accuracy 2e-5)",
      "p = 10; chi = 0.81; c = 1; Discretization/Formulation = position; Accuracy = 3e-3",
      0.34721147,
      0.},
@@ -185,9 +178,9 @@ TEST(HardAnswers, TimesOfSlowInversions)
   for (const char *accuracy : {"1e-2", "1e-3", "4e-5", "1e-6"})
   {
     const SimulationResult result =
-      answer_to(test::with(test::set("k = 1.4089567553162061; p = 1.1564781665068784; travelling wave; "
-                                     "Amplitude = 1.4916126528567062; Wave number = 1; Frequency = 1"),
-                           {{"Accuracy", accuracy}}));
+      answer_to(test::set("k = 1.4089567553162061; p = 1.1564781665068784; Accuracy = {}; travelling wave; "
+                          "Amplitude = 1.4916126528567062; Wave number = 1; Frequency = 1",
+                          accuracy));
     ASSERT_EQ(result.time.status, Status::inverted) << accuracy;
     ASSERT_TRUE(result.inversion_error);
     EXPECT_NEAR(result.inversion->t, 0.046553, *result.inversion_error) << accuracy;
@@ -204,10 +197,11 @@ TEST(HardAnswers, EndsOfSteepFrictionInvert)
   {
     const double k = 1.065687391169341, amplitude = 1.3692980755928033;
     const SimulationResult result =
-      answer_to(test::with(test::set("p = 3.7742919342516785; travelling wave; Wave number = 1; Frequency = 1"),
-                           {{"Body/Elastic modulus", test::text(k)},
-                            {"Active stress/Travelling wave/Amplitude", test::text(amplitude)},
-                            {"Accuracy", accuracy}}));
+      answer_to(test::set("p = 3.7742919342516785; k = {}; Accuracy = {}; "
+                          "travelling wave; Amplitude = {}; Wave number = 1; Frequency = 1",
+                          k,
+                          accuracy,
+                          amplitude));
     ASSERT_EQ(result.time.reason, "inverted_at_end") << accuracy << ": " << result.time.message;
     EXPECT_NEAR(result.inversion->t, std::asin(k / amplitude) / (2. * M_PI), 1e-9);
     EXPECT_LE(result.time.time, result.inversion->t);
@@ -221,13 +215,8 @@ TEST(HardAnswers, NumericsOfTheUser)
   for (unsigned int cells = 2; cells <= 6; ++cells)
     for (const char *tolerance : {"1e-3", "3e-4", "1e-4", "3e-5", "1e-5"})
     {
-      auto settings = test::wave(-1., 0.3);
-      settings.insert(settings.end(),
-                      {{"Discretization/Number of cells", std::to_string(cells)},
-                       {"Discretization/Degree", "4"},
-                       {"Time/Tolerance", tolerance},
-                       {"Time/Integrator", "radau 5"}});
-      const SimulationResult result = answer_to(settings);
+      const SimulationResult result = answer_to(test::with(
+        test::wave(-1., 0.3), "cells = {}; degree = 4; tolerance = {}; integrator = radau 5", cells, tolerance));
       ASSERT_EQ(result.time.status, Status::finished);
       ++n;
       n_missed += std::abs(result.displacement - 4.764510e-2) > result.error->total + 1e-8;
@@ -249,11 +238,9 @@ TEST(HardAnswers, FrictionBalancesAfterAnInitialStretch)
 /// At a = 14 friction underflows where the stretch is lost: that is an inversion, not a friction law that fails.
 TEST(HardAnswers, LostStretchOfASteepPowerLawIsAnInversion)
 {
-  test::Settings settings = test::wave(14., 0.1, 1., 1., 1e-5);
-  settings.emplace_back("Accuracy", "1e-4");
-  const SimulationResult plain = answer_to(settings);
-  settings.emplace_back("Body/Elastic modulus profile", "1+1e-9*s");
-  const SimulationResult general = answer_to(settings);
+  const test::Settings settings  = test::with(test::wave(14., 0.1, 1., 1., 1e-5), "Accuracy = 1e-4");
+  const SimulationResult plain   = answer_to(settings),
+                         general = answer_to(test::with(settings, "Body/Elastic modulus profile = 1+1e-9*s"));
   ASSERT_TRUE(plain.inversion && general.inversion) << general.time.reason << ": " << general.time.message;
   EXPECT_NEAR(general.inversion->t, plain.inversion->t, 2e-2 * plain.inversion->t);
 }
@@ -318,8 +305,10 @@ TEST(HardAnswers, ProfileByASpline)
   std::ofstream(file)
     << "s,value\n0,1.06\n0.21,1.03\n0.42,0.96\n0.63,1.06\n0.84,0.9\n1.05,1.05\n1.26,0.94\n1.47,1.02\n";
   const auto at = [&](const char *accuracy) {
-    return answer_to(test::with(test::set("L = 1.46; gamma = 0.3; k = 0.0087; c = 1; chi = 0.06; T = 2.5"),
-                                {{"Accuracy", accuracy}, {"Body/Elastic modulus profile", file}}));
+    return answer_to(test::set("L = 1.46; gamma = 0.3; k = 0.0087; c = 1; chi = 0.06; T = 2.5; Accuracy = {}; "
+                               "Body/Elastic modulus profile = {}",
+                               accuracy,
+                               file));
   };
   const SimulationResult exact = at("1e-10");
   ASSERT_EQ(exact.time.status, Status::finished) << exact.time.message;
@@ -331,7 +320,6 @@ TEST(HardAnswers, ProfileByASpline)
 /// the tolerance, a smaller tolerance alone shows no error.
 TEST(HardAnswers, StepsThatOnlyTheirLimitMakes)
 {
-  test::Settings settings = test::random_scene(336).settings;
-  settings.emplace_back("Accuracy", "1e-6");
-  expect_within(answer_to(settings), 0.013195775551215, 1e-6, "a wave");
+  expect_within(
+    answer_to(test::with(test::random_scene(336).settings, "Accuracy = 1e-6")), 0.013195775551215, 1e-6, "a wave");
 }

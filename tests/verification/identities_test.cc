@@ -9,8 +9,7 @@ using test::with;
 namespace
 {
   /// Explicit numerics: no pilot runs, and the same mesh for both of a pair.
-  const test::Settings numerics =
-    test::set("Discretization/Degree = 4; Discretization/Number of cells = 10; Time/Tolerance = 1e-9");
+  const test::Settings numerics = test::set("degree = 4; cells = 10; tolerance = 1e-9");
 } // namespace
 
 /// int g v ds = 0 and stress power = dissipation + change of the elastic energy, from p = -20 to 21.
@@ -32,11 +31,7 @@ TEST(Identities, NewtonianFrictionNeverMoves)
 {
   for (const char *m : {"0.3*sin(2*pi*(s+t))", "0.2*s*t", "0.3*exp(-20*(s-t)^2)"})
   {
-    const auto result = test::run_with(with({{"Body/Anchoring exponent", "1"},
-                                             {"Active stress/Generator", "expression"},
-                                             {"Active stress/Expression/Active stress", m}},
-                                            numerics))
-                          .result;
+    const auto result = test::run_with(with(numerics, "p = 1; expression; Active stress = {}", m)).result;
     ASSERT_EQ(result.time.status, Status::finished);
     EXPECT_LT(std::abs(result.displacement), 1e-14) << m;
   }
@@ -84,9 +79,7 @@ TEST(Identities, LedgerOfStiffBodies)
 TEST(Identities, MirroredStressMirrorsTheDisplacement)
 {
   const auto run = [](const std::string &m) {
-    return test::run_with(
-             with({{"Active stress/Generator", "expression"}, {"Active stress/Expression/Active stress", m}}, numerics))
-      .result.displacement;
+    return test::run_with(with(numerics, "expression; Active stress = {}", m)).result.displacement;
   };
   const double forward = run("0.3*sin(2*pi*(s+t))*s"), mirrored = run("0.3*sin(2*pi*(1-s+t))*(1-s)");
   EXPECT_GT(std::abs(forward), 1e-4);
@@ -96,10 +89,8 @@ TEST(Identities, MirroredStressMirrorsTheDisplacement)
 /// A step to the end time whose state the mesh refuses is done again: the last state is that of the end.
 TEST(Identities, AdaptiveRunsReachTheEnd)
 {
-  auto settings = test::wave(-1., 0.6, 0.7, 1., 0.00316227766017);
-  settings.emplace_back("Accuracy", "1e-4");
-  settings.emplace_back("Time/Integrator", "radau 5");
-  const auto outcome = test::run_with(settings);
+  const auto outcome =
+    test::run_with(with(test::wave(-1., 0.6, 0.7, 1., 0.00316227766017), "Accuracy = 1e-4; integrator = radau 5"));
   EXPECT_EQ(outcome.result.time.status, Status::finished);
   EXPECT_NEAR(outcome.result.displacement, 0.2936926, 3e-4 * 0.2936926);
 }

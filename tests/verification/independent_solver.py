@@ -56,18 +56,17 @@ def reference(exponent, length, modulus, friction, end_time, stress):
 def parameter_file(exponent, length, modulus, friction, end_time, stress):
     """The same scene for the program."""
     if isinstance(stress, str):
-        generator = f"set Generator = expression\nsubsection Expression\nset Active stress = {stress}\nend\n"
+        generator = ["Generator=expression", f"Expression/Active stress={stress}"]
     else:
         chi, speed, sine, cosine = stress
-        generator = (f"set Generator = optimal wave\nsubsection Optimal wave\nset Perturbation parameter = {chi}\n"
-                     f"set Choose wave by = wave speed\nset Wave speed = {speed}\n"
-                     f"set Sine coefficients = {', '.join(map(str, sine))}\n"
-                     f"set Cosine coefficients = {', '.join(map(str, cosine))}\nend\n")
-    return (f"set Accuracy = {ACCURACY}\n"
-            f"subsection Body\nset Length = {length}\nset Elastic modulus = {modulus}\n"
-            f"set Friction coefficient = {friction}\nset Anchoring exponent = {1 - exponent}\nend\n"
-            f"subsection Active stress\n{generator}end\nsubsection Time\nset End time = {end_time}\nend\n"
-            "subsection Output\nset Number of snapshots = 0\nset Statistics = false\nend\n")
+        generator = ["Generator=optimal wave", f"Optimal wave/Perturbation parameter={chi}",
+                     "Optimal wave/Choose wave by=wave speed", f"Optimal wave/Wave speed={speed}",
+                     f"Optimal wave/Sine coefficients={', '.join(map(str, sine))}",
+                     f"Optimal wave/Cosine coefficients={', '.join(map(str, cosine))}"]
+    return started.prm(f"Accuracy={ACCURACY}", f"Body/Length={length}", f"Body/Elastic modulus={modulus}",
+                       f"Body/Friction coefficient={friction}", f"Body/Anchoring exponent={1 - exponent}",
+                       *("Active stress/" + entry for entry in generator), f"Time/End time={end_time}",
+                       "Output/Number of snapshots=0", "Output/Statistics=false")
 
 
 def crawler(program, *scene):

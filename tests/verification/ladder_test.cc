@@ -18,8 +18,7 @@ namespace
   SimulationResult
   on_level(const test::Settings &settings, const Model model, const double accuracy)
   {
-    const Parameters parameters = test::parameters_with(settings);
-    const Scene scene           = parameters.create_scene();
+    const Scene scene = test::parameters_with(settings).create_scene();
     return ReducedModel(scene, model).compute(accuracy, true);
   }
 
@@ -27,8 +26,7 @@ namespace
   choice(const test::Settings &settings)
   {
     const Parameters parameters = test::parameters_with(settings);
-    const Scene scene           = parameters.create_scene();
-    return choose_model(parameters, scene);
+    return choose_model(parameters, parameters.create_scene());
   }
 
   std::string
@@ -74,11 +72,10 @@ TEST(Ladder, EachLevelAgainstTheOneAbove)
 {
   for (const double a : {-1., 1., -3., 2.})
   {
-    auto settings     = test::wave(a, 0.15, a > 0. ? -1. : 1.);
-    const auto series = on_level(settings, Model::perturbation, 1e-1),
-               motion = on_level(settings, Model::kinematic, 1e-1);
-    settings.emplace_back("Accuracy", "1e-8");
-    const double full = test::run_with(settings).result.displacement;
+    const auto settings = test::wave(a, 0.15, a > 0. ? -1. : 1.);
+    const auto series   = on_level(settings, Model::perturbation, 1e-1),
+               motion   = on_level(settings, Model::kinematic, 1e-1);
+    const double full   = test::run_with(with(settings, "Accuracy = 1e-8")).result.displacement;
     EXPECT_LE(std::abs(series.displacement - motion.displacement),
               series.error->total + motion.error->total + 1e-15 * full);
     EXPECT_LE(std::abs(series.displacement - full), series.error->total);
@@ -92,7 +89,7 @@ TEST(Ladder, EachLevelAgainstTheOneAbove)
 TEST(Ladder, AutomaticChoice)
 {
   const auto model = [](const test::Settings &settings, const double accuracy) {
-    return choice(with(settings, {{"Model", "auto"}, {"Accuracy", test::text(accuracy)}})).model;
+    return choice(with(settings, "Model = auto; Accuracy = {}", accuracy)).model;
   };
   EXPECT_EQ(model(test::wave(-1., 0.05), 1e-2), Model::perturbation);
   EXPECT_EQ(model(test::wave(-1., 0.05), 1e-6), Model::nonlinear);

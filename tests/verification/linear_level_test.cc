@@ -15,16 +15,10 @@ namespace
   using std::numbers::pi;
 
   Parameters
-  linear(const std::string &formula, const double end_time = 1., const double k = 1., test::Settings more = {})
+  linear(const std::string &formula, const double end_time = 1., const double k = 1., const test::Settings &more = {})
   {
-    test::Settings settings = {{"Model", "linear"},
-                               {"Body/Anchoring exponent", "1"},
-                               {"Body/Elastic modulus", test::text(k)},
-                               {"Active stress/Generator", "expression"},
-                               {"Active stress/Expression/Active stress", formula},
-                               {"Time/End time", test::text(end_time)}};
-    settings.insert(settings.end(), more.begin(), more.end());
-    return test::parameters_with(settings);
+    return test::parameters_with(test::with(
+      test::set("Model = linear; p = 1; k = {}; T = {}; expression; Active stress = {}", k, end_time, formula), more));
   }
 
   SimulationResult

@@ -91,10 +91,7 @@ namespace
   Settings
   robot(const double end_time)
   {
-    return {{"Active stress/Generator", "segments"},
-            {"Active stress/Segments/Gap", "0.1"},
-            {"Active stress/Segments/Ramp duration", "0"},
-            {"Time/End time", test::text(end_time)}};
+    return test::set("T = {}; segments; Gap = 0.1; Ramp duration = 0", end_time);
   }
 } // namespace
 
@@ -124,12 +121,11 @@ TEST(Pictures, AreAsAccurateAsWanted)
     double last = HUGE_VAL;
     for (const char *accuracy : {"1e-4", "1e-6", "1e-8"})
     {
-      Settings settings = scene;
-      settings.emplace_back("Accuracy", accuracy);
-      const Compared coarse = run(settings);
-      Numerics fine         = coarse.choice.numerics;
-      fine.tolerance        = 1e-4 * fine.tolerance;
-      const Compared exact  = run(settings, fine);
+      const Settings settings = test::with(scene, "Accuracy = {}", accuracy);
+      const Compared coarse   = run(settings);
+      Numerics fine           = coarse.choice.numerics;
+      fine.tolerance          = 1e-4 * fine.tolerance;
+      const Compared exact    = run(settings, fine);
       const auto some = coarse.pictures(), all = exact.pictures();
       ASSERT_EQ(some.size(), all.size());
       double u = 0., v = 0., largest_v = 0., dissipation = 0., residual = 0.;
@@ -172,9 +168,7 @@ TEST(Pictures, ShowBothSidesOfAJump)
 /// The body is seen until it inverts, however long the step in which it does.
 TEST(Pictures, AreThereUntilTheBodyInverts)
 {
-  Settings settings = test::wave(1., 0.9);
-  settings.emplace_back("Output/Number of snapshots", "200");
-  const Compared lost = run(settings);
+  const Compared lost = run(test::with(test::wave(1., 0.9), "Output/Number of snapshots = 200"));
   ASSERT_EQ(lost.result.time.status, Status::inverted);
   ASSERT_TRUE(lost.result.inversion);
   const Seen last = lost.pictures().back(); // a copy: the pictures are a temporary
@@ -186,9 +180,7 @@ TEST(Pictures, AreThereUntilTheBodyInverts)
 /// What has no collocation polynomial ends its steps at snapshots.
 TEST(Pictures, OfOtherIntegratorsAreEndsOfSteps)
 {
-  Settings settings = test::wave(-1., 0.2);
-  settings.emplace_back("Time/Integrator", "bdf");
-  for (const Seen &one : run(settings).pictures())
+  for (const Seen &one : run(test::with(test::wave(-1., 0.2), "integrator = bdf")).pictures())
     EXPECT_TRUE(one.is_step_end);
 }
 

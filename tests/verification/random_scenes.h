@@ -77,16 +77,9 @@ namespace crawler::test
     RandomScene scene;
     const double a = r.chance(0.3) ? static_cast<double>(r.whole(0, 7)) - 4. : r.uniform(-4., 3.);
     const double L = r.log_uniform(0.1, 10.), gamma = r.log_uniform(0.1, 10.), nu = r.log_uniform(0.1, 10.);
-    const double k = r.log_uniform(0.02, 100.) * gamma * L * L * nu;
-    const double T = r.log_uniform(0.3, 4.) / nu;
-    scene.settings = {{"Body/Length", text(L)},
-                      {"Body/Friction coefficient", text(gamma)},
-                      {"Body/Elastic modulus", text(k)},
-                      {"Body/Anchoring exponent", text(1. - a)},
-                      {"Time/End time", text(T)}};
-    const auto set = [&scene](const std::string &entry, const std::string &value) {
-      scene.settings.emplace_back("Active stress/" + entry, value);
-    };
+    const double k    = r.log_uniform(0.02, 100.) * gamma * L * L * nu;
+    const double T    = r.log_uniform(0.3, 4.) / nu;
+    scene.settings    = set("L = {}; gamma = {}; k = {}; p = {}; T = {}", L, gamma, k, 1. - a, T);
     const double kind = r.uniform(0., 1.);
     if (kind < 0.4)
     {
@@ -103,11 +96,12 @@ namespace crawler::test
         cosines += (i > 0 ? ", " : "") + text(cosine * nu * L);
       }
       const double chi = r.uniform(0.03, 0.85) / sum;
-      set("Optimal wave/Perturbation parameter", text(r.chance(0.8) ? chi : -chi));
-      set("Optimal wave/Sine coefficients", sines);
-      set("Optimal wave/Cosine coefficients", cosines);
-      set("Optimal wave/Choose wave by", "wave speed");
-      set("Optimal wave/Wave speed", text(c));
+      scene.settings   = with(scene.settings,
+                            "chi = {}; c = {}; optimal wave; Sine coefficients = {}; Cosine coefficients = {}",
+                            r.chance(0.8) ? chi : -chi,
+                            c,
+                            sines,
+                            cosines);
       return scene;
     }
     const double A = r.uniform(0.03, 0.5) * k;
@@ -151,9 +145,7 @@ namespace crawler::test
       const unsigned int n = r.whole(1, 2);
       formula              = fmt::format("A*sin(2*pi*({}*s/L+nu*t)+{})", n, text(r.uniform(0., 6.3)));
     }
-    set("Generator", "expression");
-    set("Expression/Active stress", formula);
-    set("Expression/Constants", fmt::format("A={}, nu={}", text(A), text(nu)));
+    scene.settings = with(scene.settings, "expression; Active stress = {}; Constants = A={}, nu={}", formula, A, nu);
     return scene;
   }
 
@@ -216,14 +208,16 @@ namespace crawler::test
         formula = fmt::format("(s<{} ? {} : {})", text(scene.in_space[i]), values[i], formula);
       formula = "A*" + formula;
     }
-    scene.settings = {{"Body/Length", text(L)},
-                      {"Body/Friction coefficient", text(gamma)},
-                      {"Body/Elastic modulus", text(k)},
-                      {"Body/Anchoring exponent", text(1. - a)},
-                      {"Time/End time", text(T)},
-                      {"Active stress/Generator", "expression"},
-                      {"Active stress/Expression/Active stress", formula},
-                      {"Active stress/Expression/Constants", fmt::format("A={}, nu={}", text(A), text(nu))}};
+    scene.settings =
+      set("L = {}; gamma = {}; k = {}; p = {}; T = {}; expression; Active stress = {}; Constants = A={}, nu={}",
+          L,
+          gamma,
+          k,
+          1. - a,
+          T,
+          formula,
+          A,
+          nu);
     return scene;
   }
 
@@ -244,16 +238,8 @@ namespace crawler::test
     Random r(1000 + number);
     RandomScene scene;
     double k = r.log_uniform(0.3, 30.), T = 1.;
-    const double p = r.uniform(-2., 4.);
-    const auto set = [&scene](const std::string &entry, const double value) {
-      scene.settings.emplace_back(entry, text(value));
-    };
-    const auto wave = [&](const double chi, const double c) {
-      set("Active stress/Optimal wave/Perturbation parameter", chi * std::abs(c));
-      scene.settings.emplace_back("Active stress/Optimal wave/Choose wave by", "wave speed");
-      set("Active stress/Optimal wave/Wave speed", c);
-    };
-    const std::string generator = "Active stress/Generator";
+    const double p  = r.uniform(-2., 4.);
+    const auto wave = [](const double chi, const double c) { return set("chi = {}; c = {}", chi * std::abs(c), c); };
     switch (number % 5)
     {
       case 0:
@@ -262,31 +248,29 @@ namespace crawler::test
         const double width = r.uniform(0.08, 0.3), speed = r.log_uniform(0.5, 100.);
         const bool repeats = r.chance(0.5);
         // Until it has passed, and then some time.
-        T = r.log_uniform(1., 100.) * (1. + 12. * width) / speed;
-        scene.settings.emplace_back(generator, "pulse");
-        set("Active stress/Pulse/Amplitude", r.uniform(0.05, 0.4) * k * (r.chance(0.7) ? 1. : -1.));
-        set("Active stress/Pulse/Width", width);
-        set("Active stress/Pulse/Speed", speed);
-        set("Active stress/Pulse/Repetition period", repeats ? T / r.uniform(1.5, 6.) : 0.);
-        if (repeats && speed * T / 6. < width)
-          scene.settings.back().second = "0";
-        scene.step = 0.5 * width / speed;
+        T                      = r.log_uniform(1., 100.) * (1. + 12. * width) / speed;
+        const double amplitude = r.uniform(0.05, 0.4) * k * (r.chance(0.7) ? 1. : -1.),
+                     period    = repeats ? T / r.uniform(1.5, 6.) : 0.;
+        scene.settings         = set("pulse; Amplitude = {}; Width = {}; Speed = {}; Repetition period = {}",
+                             amplitude,
+                             width,
+                             speed,
+                             repeats && speed * T / 6. < width ? 0. : period);
+        scene.step             = 0.5 * width / speed;
         break;
       }
       case 1:
       {
         scene.kind         = "event";
         const double width = r.log_uniform(3e-5, 3e-3), time = r.uniform(0.01, 0.99);
-        scene.settings.emplace_back(generator, "expression");
-        scene.settings.emplace_back("Active stress/Expression/Active stress",
-                                    "A*sin(2*pi*(s+t))*tanh(5*t)+B*sin(pi*s)*sin(2*pi*s)*exp(-((t-q)/w)^2)");
-        scene.settings.emplace_back("Active stress/Expression/Constants",
-                                    fmt::format("A={}, B={}, q={}, w={}",
-                                                text(r.uniform(0.02, 0.2) * k),
-                                                text(r.uniform(-0.6, 0.6) * k),
-                                                text(time),
-                                                text(width)));
-        scene.step = width;
+        const double B = r.uniform(-0.6, 0.6) * k, A = r.uniform(0.02, 0.2) * k; // in the order of the draws
+        scene.settings = set("expression; Constants = A={}, B={}, q={}, w={}; "
+                             "Active stress = A*sin(2*pi*(s+t))*tanh(5*t)+B*sin(pi*s)*sin(2*pi*s)*exp(-((t-q)/w)^2)",
+                             A,
+                             B,
+                             time,
+                             width);
+        scene.step     = width;
         break;
       }
       case 2:
@@ -295,7 +279,7 @@ namespace crawler::test
         k              = r.log_uniform(5., 1000.);
         const double c = r.log_uniform(0.2, 1.2) * (r.chance(0.5) ? 1. : -1.);
         T              = r.log_uniform(20., 400.) / std::abs(c);
-        wave(r.uniform(0.02, 0.4), c);
+        scene.settings = wave(r.uniform(0.02, 0.4), c);
         break;
       }
       case 3:
@@ -303,36 +287,30 @@ namespace crawler::test
         scene.kind       = "soft";
         k                = r.log_uniform(2e-5, 1e-3);
         const double chi = r.uniform(0.05, 0.35), size = r.log_uniform(0.5, 2.);
-        wave(chi, r.chance(0.5) ? size : -size);
+        scene.settings = wave(chi, r.chance(0.5) ? size : -size);
         break;
       }
       default:
       {
-        scene.kind           = "switching";
-        const unsigned int n = r.whole(3, 16);
-        T                    = r.uniform(1., 3.);
-        const bool smooth    = r.chance(0.5);
-        scene.settings.emplace_back(generator, "segments");
-        const std::string segments = "Active stress/Segments/";
-        set(segments + "Number of segments", n);
-        set(segments + "Amplitude", r.uniform(0.05, 0.3) * k);
-        set(segments + "Phase lag", r.uniform(0.3, 2.) / n);
-        set(segments + "Duty cycle", r.uniform(0.3, 0.6));
-        set(segments + "Ramp duration", r.uniform(0.2, 0.8));
-        if (r.chance(0.5))
-          set(segments + "Gap", r.uniform(0.05, 0.3) / n);
-        if (smooth)
-        {
-          scene.settings.emplace_back(segments + "Switching", "smooth");
-          set(segments + "Front width", r.uniform(0.05, 0.25));
-        }
-        else
-          set(segments + "Rate limit", r.uniform(1., 5.) * k);
+        scene.kind             = "switching";
+        const unsigned int n   = r.whole(3, 16);
+        T                      = r.uniform(1., 3.);
+        const bool smooth      = r.chance(0.5);
+        const double amplitude = r.uniform(0.05, 0.3) * k, lag = r.uniform(0.3, 2.) / n, duty = r.uniform(0.3, 0.6),
+                     ramp = r.uniform(0.2, 0.8), gap = r.chance(0.5) ? r.uniform(0.05, 0.3) / n : 0.;
+        scene.settings = set("segments; Number of segments = {}; Amplitude = {}; Phase lag = {}; Duty cycle = {}; "
+                             "Ramp duration = {}; Gap = {}; {}",
+                             n,
+                             amplitude,
+                             lag,
+                             duty,
+                             ramp,
+                             gap,
+                             smooth ? fmt::format("Switching = smooth; Front width = {}", r.uniform(0.05, 0.25))
+                                    : fmt::format("Rate limit = {}", r.uniform(1., 5.) * k));
       }
     }
-    set("Body/Anchoring exponent", p);
-    set("Body/Elastic modulus", k);
-    set("Time/End time", T);
+    scene.settings = with(scene.settings, "p = {}; k = {}; T = {}", p, k, T);
     return scene;
   }
 } // namespace crawler::test

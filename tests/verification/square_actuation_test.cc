@@ -17,27 +17,21 @@ namespace
   Settings
   segments(const unsigned int n, const std::string &gap, const double end_time)
   {
-    return {{"Active stress/Generator", "segments"},
-            {"Active stress/Segments/Number of segments", std::to_string(n)},
-            {"Active stress/Segments/Gap", gap},
-            {"Active stress/Segments/Phase lag", "0.125"},
-            {"Time/End time", test::text(end_time)}};
+    return test::set("T = {}; segments; Number of segments = {}; Gap = {}; Phase lag = 0.125", end_time, n, gap);
   }
 
   Settings
   standing_wave(const double end_time)
   {
-    return test::with(
-      test::set("standing wave; Amplitude = 0.3; Wave number = 0.5; Duty cycle = 0.3; Profile = square; "
-                "Window start = 0.2; Window end = 0.7"),
-      {{"Time/End time", test::text(end_time)}});
+    return test::set("T = {}; standing wave; Amplitude = 0.3; Wave number = 0.5; Duty cycle = 0.3; Profile = square; "
+                     "Window start = 0.2; Window end = 0.7",
+                     end_time);
   }
 
   Settings
   travelling_wave(const std::string &profile, const double end_time)
   {
-    return test::with(test::set("travelling wave; Amplitude = 0.3; Wave number = 1.5"),
-                      {{"Active stress/Travelling wave/Profile", profile}, {"Time/End time", test::text(end_time)}});
+    return test::set("T = {}; travelling wave; Amplitude = 0.3; Wave number = 1.5; Profile = {}", end_time, profile);
   }
 
   bool
@@ -83,11 +77,9 @@ TEST(SquareActuation, MovingJumpsAreSeen)
   EXPECT_FALSE(jumps_move(travelling_wave("sine", 1.)));
   EXPECT_FALSE(jumps_move(standing_wave(1.)));
   EXPECT_FALSE(jumps_move(segments(8, "0.3", 1.)));
-  const std::string stress = "Active stress/Expression/Active stress";
-  const Settings any       = {{"Active stress/Generator", "expression"}};
-  EXPECT_TRUE(jumps_move(test::with(any, {{stress, "s < t ? 0.3 : 0.1"}})));
-  EXPECT_FALSE(jumps_move(test::with(any, {{stress, "(s < 0.37 ? 0.3 : 0.1)*cos(2*pi*t)"}})));
-  EXPECT_FALSE(jumps_move(test::with(any, {{stress, "0.3*tanh(1e4*(s - t))"}})));
+  EXPECT_TRUE(jumps_move(test::set("expression; Active stress = s < t ? 0.3 : 0.1")));
+  EXPECT_FALSE(jumps_move(test::set("expression; Active stress = (s < 0.37 ? 0.3 : 0.1)*cos(2*pi*t)")));
+  EXPECT_FALSE(jumps_move(test::set("expression; Active stress = 0.3*tanh(1e4*(s - t))")));
 }
 
 namespace

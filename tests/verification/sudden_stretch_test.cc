@@ -31,11 +31,12 @@ namespace
   test::Settings
   robot(const unsigned int n_segments, const std::string &p, const std::string &accuracy)
   {
-    return test::with(test::set("T = 1; segments; Amplitude = 0.3; Duty cycle = 0.5"),
-                      {{"Body/Anchoring exponent", p},
-                       {"Active stress/Segments/Number of segments", std::to_string(n_segments)},
-                       {"Active stress/Segments/Phase lag", test::text(1. / n_segments)},
-                       {"Accuracy", accuracy}});
+    return test::set("p = {}; T = 1; segments; Amplitude = 0.3; Duty cycle = 0.5; Number of segments = {}; "
+                     "Phase lag = {}; Accuracy = {}",
+                     p,
+                     n_segments,
+                     1. / n_segments,
+                     accuracy);
   }
 
   /// The heat equation v_t = (k/gamma) v_ss for a stress that is constant between its breaks in space and time, by a
@@ -138,8 +139,7 @@ namespace
 TEST(SuddenStretch, ConstantStress)
 {
   for (const char *accuracy : {"1e-3", "1e-5", "1e-7"})
-    expect_stretch(
-      test::with(test::set("p = 1; T = 2; expression; Active stress = 0.3"), {{"Accuracy", accuracy}}), 0.7, 1., 2e-3);
+    expect_stretch(test::set("p = 1; T = 2; expression; Active stress = 0.3; Accuracy = {}", accuracy), 0.7, 1., 2e-3);
 }
 
 TEST(SuddenStretch, RobotsWithoutAnchoring)
@@ -148,11 +148,7 @@ TEST(SuddenStretch, RobotsWithoutAnchoring)
   {
     const ExactStretch exact(test::parameters_with(robot(n, "1", "1e-2")).create_scene());
     for (const char *accuracy : {"1e-2", "1e-4"})
-    {
-      auto settings = robot(n, "1", accuracy);
-      settings.insert(settings.begin(), {"Model", "nonlinear"});
-      expect_stretch(settings, exact.smallest, exact.largest, 0.2 * std::stod(accuracy) + 1e-3);
-    }
+      expect_stretch(robot(n, "1", accuracy), exact.smallest, exact.largest, 0.2 * std::stod(accuracy) + 1e-3);
   }
 }
 
@@ -182,8 +178,8 @@ TEST(SuddenStretch, EnergiesOfTheLinearLevel)
   const double work = m * m * (1. - mean), elastic = 0.5 * m * m * (1. - 2. * mean + mean_square);
   for (const char *accuracy : {"1e-2", "1e-4", "1e-5", "1e-8"})
   {
-    const SimulationResult result = answer_to(test::with(
-      test::set("Model = linear; p = 1; T = 0.05; expression; Active stress = 0.3"), {{"Accuracy", accuracy}}));
+    const SimulationResult result =
+      answer_to(test::set("Model = linear; p = 1; T = 0.05; Accuracy = {}; expression; Active stress = 0.3", accuracy));
     ASSERT_EQ(result.time.status, Status::finished) << accuracy << ": " << result.time.message;
     const EnergyBalance &energies = result.energy_balance.value();
     const double tolerance        = std::stod(accuracy) * work;
@@ -199,9 +195,8 @@ TEST(SuddenStretch, DeformationsOfABodyAtRestNeedFewSteps)
 {
   for (const char *const stress : {"0.016*exp(-((s-0.58-1.7*t)/0.3)^2)", "0.03*exp(-20*t)", "0.06*sin(6*s+13*t*t)"})
   {
-    const test::Settings settings =
-      test::with(test::set("p = 1; k = 0.08; T = 3; expression"), {{"Active stress/Expression/Active stress", stress}});
-    const SimulationResult exact = answer_to(test::with(settings, {{"Model", "linear"}, {"Accuracy", "1e-9"}}));
+    const test::Settings settings = test::set("p = 1; k = 0.08; T = 3; expression; Active stress = {}", stress);
+    const SimulationResult exact  = answer_to(test::with(settings, {{"Model", "linear"}, {"Accuracy", "1e-9"}}));
     for (const char *const accuracy : {"1e-5", "1e-7"})
     {
       const SimulationResult result = answer_to(test::with(settings, {{"Accuracy", accuracy}}));

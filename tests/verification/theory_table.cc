@@ -44,9 +44,10 @@ main(int argc, char **argv)
   for (const auto &row : rows)
     for (const double accuracy : accuracies)
     {
-      auto settings = test::wave(row["exponent"], row["chi"], row["speed"], row["end_time"], row["elastic_modulus"]);
-      settings.emplace_back("Accuracy", test::text(accuracy));
-      const Computed outcome = test::computed(settings);
+      const Computed outcome = test::computed(
+        test::with(test::wave(row["exponent"], row["chi"], row["speed"], row["end_time"], row["elastic_modulus"]),
+                   "Accuracy = {}",
+                   accuracy));
       const auto &result     = outcome.result;
       const auto &values     = row["values"];
       const double reference = values["displacement"];

@@ -146,15 +146,13 @@ TEST(Failures, OfTheSecondRunLeaveTheAnswer)
 /// pass it, or the integrator would be asked for a state of the step before (PETSc's error 63).
 TEST(Failures, MeshesThatChangeLoseNoSample)
 {
-  auto settings = test::wave(17., 0.37, 1., 2e4);
-  settings =
-    test::with(settings,
-               test::set("Discretization/Mesh = adaptive; Discretization/Mesh tolerance = 1e-5; Time/Tolerance = "
-                         "1e-5; Time/Maximum number of steps = 3000"));
-  const Parameters parameters = test::parameters_with(settings);
-  const Scene scene           = parameters.create_scene();
-  Numerics numerics           = {.degree = 4, .n_cells = 8, .tolerance = 1e-5, .initial_step = 1e-2};
-  numerics.mesh.tolerance     = 1e-5;
+  const Parameters parameters = test::parameters_with(
+    test::with(test::wave(17., 0.37, 1., 2e4),
+               "Discretization/Mesh = adaptive; Discretization/Mesh tolerance = 1e-5; tolerance = 1e-5; "
+               "Time/Maximum number of steps = 3000"));
+  const Scene scene       = parameters.create_scene();
+  Numerics numerics       = {.degree = 4, .n_cells = 8, .tolerance = 1e-5, .initial_step = 1e-2};
+  numerics.mesh.tolerance = 1e-5;
   Simulation simulation(MPI_COMM_SELF, scene, parameters.time, numerics);
   const auto result = simulation.run({}, {.energy_balance = true, .cycles = CycleWish{1., 1e-9}});
   EXPECT_EQ(result.time.reason, "step_limit") << result.time.message;

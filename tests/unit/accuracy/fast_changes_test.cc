@@ -13,10 +13,7 @@ namespace
   Scene
   formula(const std::string &text, const double end_time = 1.)
   {
-    return test::parameters_with({{"Active stress/Generator", "expression"},
-                                  {"Active stress/Expression/Active stress", text},
-                                  {"Time/End time", test::text(end_time)}})
-      .create_scene();
+    return test::parameters_with(test::set("T = {}; expression; Active stress = {}", end_time, text)).create_scene();
   }
 
   FastChanges
@@ -107,21 +104,18 @@ TEST(FastChanges, OfHiddenJumpsAreAsShortAsTheyCanBe)
 /// A single pulse that runs over the body in a ten thousandth of the time.
 TEST(FastChanges, GeneratorsSayWhenTheyAct)
 {
-  const auto scene_with = [](test::Settings settings) {
-    settings.emplace_back("Time/End time", "1000");
-    return test::parameters_with(settings).create_scene();
+  const auto scene_with = [](const std::string &stress) {
+    return test::parameters_with(test::set("T = 1000; " + stress)).create_scene();
   };
-  const Scene pulse = scene_with(test::set("pulse; Amplitude = 0.4; Speed = 20"));
+  const Scene pulse = scene_with("pulse; Amplitude = 0.4; Speed = 20");
   const auto limits = stress_scales(pulse).step_limits;
   EXPECT_NEAR(longest_step(limits, 0.05), 0.1 / 20. / 0.858, 1e-3);
   EXPECT_GT(longest_step(limits, 1.), 100.);
-  const Scene robot = scene_with(test::set("segments; Switching = smooth; Front width = 1e-4; Frequency = 0.01"));
+  const Scene robot = scene_with("segments; Switching = smooth; Front width = 1e-4; Frequency = 0.01");
   EXPECT_LT(longest_step(stress_scales(robot).step_limits, 0.), 0.02);
   const Scene sum =
-    scene_with(test::set("sum; Active stress/Sum/Term 1/Generator = travelling wave; "
-                         "Active stress/Sum/Term 1/Travelling wave/Frequency = 0.01; "
-                         "Active stress/Sum/Term 2/Generator = pulse; Active stress/Sum/Term 2/Pulse/Speed = 20; "
-                         "Active stress/Sum/Term 2/Pulse/Start position = -9000"));
+    scene_with("sum; Term 1/Generator = travelling wave; Term 1/Travelling wave/Frequency = 0.01; "
+               "Term 2/Generator = pulse; Term 2/Pulse/Speed = 20; Term 2/Pulse/Start position = -9000");
   EXPECT_LT(longest_step(stress_scales(sum).step_limits, 450.01), 0.02);
 }
 

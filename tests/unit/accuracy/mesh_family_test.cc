@@ -43,9 +43,7 @@ TEST(MeshFamily, IsOfSecondOrder)
   for (const double n : cells)
   {
     const auto result =
-      test::run_with(test::with(test::with(test::wave(-1., 0.4), stretch),
-                                {{"Discretization/Number of cells", test::text(n)}, {"Time/Tolerance", "1e-9"}}))
-        .result;
+      test::run_with(test::with(test::with(test::wave(-1., 0.4), stretch), "cells = {}; tolerance = 1e-9", n)).result;
     ASSERT_EQ(result.time.status, Status::finished);
     EXPECT_EQ(result.mesh->n_cells, n);
     displacements.push_back(result.displacement);
@@ -67,8 +65,7 @@ TEST(MeshFamily, ErrorsAreTrueAndSmallEnough)
   {
     SCOPED_TRACE(accuracy);
     const auto result =
-      test::run_with(test::with(test::with(test::wave(-1., 0.4), stretch), {{"Accuracy", test::text(accuracy)}}))
-        .result;
+      test::run_with(test::with(test::with(test::wave(-1., 0.4), stretch), "Accuracy = {}", accuracy)).result;
     expect_true(result, 0.0900725298, 1e-10, accuracy);
   }
 }
@@ -201,9 +198,7 @@ TEST(MeshFamily, IsChosenWhereTheStretchIsSmallOrTheBodySoft)
   // What the user has chosen, and what only the other form has.
   EXPECT_EQ(form(test::with(test::wave(-1., 0.6), {{"Discretization/Formulation", "position"}})),
             Formulation::position);
-  EXPECT_EQ(
-    form(test::with(test::wave(-1., 0.6), test::set("Discretization/Number of cells = 16; Time/Tolerance = 1e-3"))),
-    Formulation::position);
+  EXPECT_EQ(form(test::with(test::wave(-1., 0.6), "cells = 16; tolerance = 1e-3")), Formulation::position);
   EXPECT_EQ(form(test::with(test::wave(-1., 0.2, 1., 1., 1e-4), {{"Discretization/Degree", "4"}})),
             Formulation::position);
 }

@@ -23,7 +23,7 @@ namespace
   test::Settings
   strain(const std::string &formula)
   {
-    return {{"Active stress/Generator", "prescribed strain"}, {"Active stress/Prescribed strain/Strain", formula}};
+    return test::set("prescribed strain; Strain = {}", formula);
   }
 
   /// What is wrong with these settings.
@@ -182,7 +182,5 @@ TEST(PrescribedStrain, SaysWhatIsWrong)
     test::expect_words(complaint(strain(formula)), {words});
   EXPECT_EQ(complaint(strain("0.3*(sin(2*pi*(s+t)) - sin(2*pi*s))")), "nothing");
   // The nonlinear model starts from rest; the kinematic one does not.
-  auto settings = strain("0.3*sin(2*pi*(s+t))");
-  settings.emplace_back("Model", "kinematic");
-  EXPECT_EQ(complaint(settings), "nothing");
+  EXPECT_EQ(complaint(test::with(strain("0.3*sin(2*pi*(s+t))"), "Model = kinematic")), "nothing");
 }

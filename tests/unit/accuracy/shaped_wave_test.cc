@@ -21,25 +21,16 @@ namespace
 
   /// L = 2, gamma = 0.7, k = 3, chi = 0.3.
   Settings
-  shaped(const Settings &entries, const double speed, const double end_time)
+  shaped(const std::string &entries, const double speed, const double end_time)
   {
-    Settings settings = {{"Body/Length", "2"},
-                         {"Body/Elastic modulus", "3"},
-                         {"Body/Friction coefficient", "0.7"},
-                         {"Body/Anchoring exponent", "3"},
-                         {"Time/End time", test::text(end_time)},
-                         {"Active stress/Optimal wave/Perturbation parameter", "0.3"},
-                         {"Active stress/Optimal wave/Choose wave by", "wave speed"},
-                         {"Active stress/Optimal wave/Wave speed", test::text(speed)}};
-    for (const auto &[entry, value] : entries)
-      settings.emplace_back("Active stress/Optimal wave/" + entry, value);
-    return settings;
+    return test::set(
+      "L = 2; k = 3; gamma = 0.7; p = 3; chi = 0.3; T = {}; c = {}; optimal wave; {}", end_time, speed, entries);
   }
 
   Settings
   by_formula(const std::string &formula, const double speed = 1.3, const double end_time = 5.)
   {
-    return shaped({{"Shape", "expression"}, {"Shape formula", formula}}, speed, end_time);
+    return shaped("Shape = expression; Shape formula = " + formula, speed, end_time);
   }
 
   const ShapedWave &
@@ -68,7 +59,7 @@ TEST(ShapedWave, SineIsTheFourierSeries)
   for (const double speed : {1.3, -0.9})
   {
     const auto fourier =
-      stress_with(shaped({{"Sine coefficients", "1, 0, -0.2"}, {"Cosine coefficients", "0.5, 0.1, 0"}}, speed, 5.));
+      stress_with(shaped("Sine coefficients = 1, 0, -0.2; Cosine coefficients = 0.5, 0.1, 0", speed, 5.));
     const auto general =
       stress_with(by_formula("sin(pi*x) - 0.2*sin(3*pi*x) + 0.5*cos(pi*x) + 0.1*cos(2*pi*x)", speed));
     const auto points = test::places(2., 64);
@@ -98,9 +89,8 @@ TEST(ShapedWave, GaussianHasItsIntegral)
   const auto V        = [&](const double x) { return std::exp(-(x - x_0) * (x - x_0) / (w * w)); };
   const auto integral = [&](const double from, const double to) // of V
   { return 0.5 * w * std::sqrt(pi) * (std::erf((to - x_0) / w) - std::erf((from - x_0) / w)); };
-  auto settings = by_formula("exp(-((x + shift)/width)^2)", c, 3.);
-  settings.emplace_back("Active stress/Optimal wave/Shape constants", "shift=0.4, width=0.15");
-  const auto stress = stress_with(settings);
+  const auto stress =
+    stress_with(by_formula("exp(-((x + shift)/width)^2); Shape constants = shift=0.4, width=0.15", c, 3.));
   const auto points = test::places(L, 64);
   for (const double t : {0., 0.3, 0.9, 1.6, 3.})
   {
@@ -127,8 +117,8 @@ TEST(ShapedWave, TableIsASpline)
   for (const double x : {-0.1, 0.3, 1., 1.1, 2.5, 4., 4.6})
     text += test::text(x) + ", " + test::text(cubic(x)) + "\r\n";
   test::write_text(name, text);
-  const Settings from_table = {{"Shape", "table"}, {"Shape file", name}};
-  const auto points         = test::places(2.);
+  const std::string from_table = "Shape = table; Shape file = " + name;
+  const auto points            = test::places(2.);
   {
     const auto by_table = stress_with(shaped(from_table, 1.3, 2.)),
                formula  = stress_with(by_formula("0.1*x^3 - 0.5*x^2 + 0.2", 1.3, 2.));
@@ -197,9 +187,8 @@ TEST(ShapedWave, RefusesWhatMakesNoSense)
 {
   using test::expect_complaint;
   const std::string section = "Active stress/Optimal wave/";
-  auto by_energy            = by_formula("sin(pi*x)");
-  by_energy.emplace_back(section + "Choose wave by", "energy");
-  expect_complaint(by_energy, {section + "Choose wave by: ", "Shape = expression", "wave speed is expected"});
+  expect_complaint(by_formula("sin(pi*x); Choose wave by = energy"),
+                   {section + "Choose wave by: ", "Shape = expression", "wave speed is expected"});
   expect_complaint(by_formula("sin(pi*x)", 0.), {section + "Wave speed: ", "not 0 is expected"});
   expect_complaint(by_formula("sin(pi*x)", 1e5), {section + "Wave speed: ", "2.5e+05 body lengths", "at most 10000"});
   expect_complaint(by_formula("sin(pi*x"), {section + "Shape formula: ", "error in the formula"});
@@ -208,14 +197,12 @@ TEST(ShapedWave, RefusesWhatMakesNoSense)
   expect_complaint(by_formula("sin(x + t)"), {section + "Shape formula: ", "depends on t", "a formula of x"});
   expect_complaint(by_formula("1/x"), {section + "Shape formula: ", "a finite number is expected from 0 to 8.5"});
   expect_complaint(by_formula("x > 1.1 ? 1 : 0"), {section + "Shape formula: ", "jumps at x = 1.1;", "continuous"});
-  auto constants = by_formula("sin(q*x)");
-  constants.emplace_back(section + "Shape constants", "q 3");
-  expect_complaint(constants, {section + "Shape constants: ", "found \"q 3\""});
-  expect_complaint(shaped({{"Shape", "spline"}}, 1., 1.), {section + "Shape: ", "expected"});
+  expect_complaint(by_formula("sin(q*x); Shape constants = q 3"), {section + "Shape constants: ", "found \"q 3\""});
+  expect_complaint(shaped("Shape = spline", 1., 1.), {section + "Shape: ", "expected"});
 
   const test::TemporaryFolder folder;
   const std::string name  = (folder.path / "shape.csv").string();
-  const Settings settings = shaped({{"Shape", "table"}, {"Shape file", name}}, -1., 3.); // needs -3 to 2
+  const Settings settings = shaped("Shape = table; Shape file = " + name, -1., 3.); // needs -3 to 2
   expect_complaint(settings, {section + "Shape file: ", "cannot read"});
   const std::vector<std::pair<std::string, std::string>> tables = {
     {"s,f\n0,1\n", "header x,f is expected"},
@@ -236,9 +223,7 @@ TEST(ShapedWave, RefusesWhatMakesNoSense)
 /// The series is for Fourier coefficients; Model = auto goes on without it.
 TEST(ShapedWave, HasNoPerturbationSeries)
 {
-  Settings settings = by_formula("exp(sin(pi*x))");
-  settings.emplace_back("Model", "perturbation");
-  Parameters parameters = test::parameters_with(settings);
+  Parameters parameters = test::parameters_with(test::with(by_formula("exp(sin(pi*x))"), "Model = perturbation"));
   test::expect_words(test::complaint_of([&]() { choose_model(parameters, parameters.create_scene()); }),
                      {"the Shape of the optimal wave is expression"});
   parameters.model = Model::automatic;

@@ -17,10 +17,8 @@ namespace
   Settings
   feedback(const std::string &formula, const std::string &distance = "0.37", const std::string &sensor = "0")
   {
-    return test::with(test::feedback(formula),
-                      {{"Active stress/Strain feedback/Distance", distance},
-                       {"Active stress/Strain feedback/Sensor length", sensor},
-                       {"Active stress/Strain feedback/Delay", "0.1"}});
+    return test::set(
+      "strain feedback; Active stress = {}; Distance = {}; Sensor length = {}; Delay = 0.1", formula, distance, sensor);
   }
 
   /// Each new term alone, and all together.

@@ -109,9 +109,8 @@ TEST_P(LaneStepperTest, GivesWhatPetscGives)
 TEST(LaneStepper, GeneralBodiesAreThoseOfPetsc)
 {
   constexpr double tolerance = 1e-7;
-  const auto feedback        = [](const std::string &formula) -> test::Settings {
-    return {{"Active stress/Generator", "strain feedback"},
-            {"Active stress/Strain feedback/Active stress", std::string(::formula) + formula}};
+  const auto feedback        = [](const std::string &more) {
+    return test::set("strain feedback; Active stress = {}{}", formula, more);
   };
   const test::Settings modulus   = {{"Body/Elastic modulus profile", "1+0.3*s"}},
                        profile   = {{"Body/Friction profile", "1.2-0.3*s"}},

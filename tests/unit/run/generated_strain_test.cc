@@ -16,11 +16,7 @@ namespace
   Settings
   strain_by(const std::string &generator, const Settings &own)
   {
-    Settings settings = {{"Active stress/Generator", "prescribed strain"},
-                         {"Active stress/Prescribed strain/Given by", generator},
-                         {"Body/Anchoring exponent", "2"}};
-    settings.insert(settings.end(), own.begin(), own.end());
-    return settings;
+    return test::with(test::set("p = 2; prescribed strain; Given by = {}", generator), own);
   }
 
   double
@@ -61,11 +57,9 @@ TEST(GeneratedStrain, IsTheSameStrainFromAnyGenerator)
 /// so does its active stress as a table, to the accuracy asked for.
 TEST(GeneratedStrain, ItsActiveStressAsATableDrivesTheFullModel)
 {
-  Settings settings = strain_by("travelling wave", wave);
-  settings          = test::with(
-    settings,
-    test::set(
-      "Active stress/Travelling wave/Ramp duration = 0.5; Accuracy = 1e-6; L = 2; k = 3; gamma = 0.5; T = 1.5"));
+  const Settings settings = test::with(
+    strain_by("travelling wave", wave),
+    "Active stress/Travelling wave/Ramp duration = 0.5; Accuracy = 1e-6; L = 2; k = 3; gamma = 0.5; T = 1.5");
   const double kinematic = kinematic_displacement(settings);
   EXPECT_GT(std::abs(kinematic), 0.01);
   const auto full = test::run_with(settings).result;
@@ -76,17 +70,15 @@ TEST(GeneratedStrain, ItsActiveStressAsATableDrivesTheFullModel)
   const auto file   = folder.path / "active_stress.csv";
   const Scene scene = test::parameters_with(settings).create_scene();
   EXPECT_EQ(write_active_stress_table(file, *scene.active_stress, 2., 1.5, 129, 513), "");
-  settings.insert(settings.end(), {{"Active stress/Generator", "table"}, {"Active stress/Table/File", file.string()}});
-  const auto by_table = test::run_with(settings).result;
+  const auto by_table = test::run_with(test::with(settings, "table; File = {}", file.string())).result;
   EXPECT_EQ(by_table.time.status, Status::finished);
   EXPECT_NEAR(by_table.displacement, kinematic, 2e-6 * std::abs(kinematic));
 }
 
 TEST(GeneratedStrain, RefusesGeneratorsWithoutRateAndJumps)
 {
-  auto square = wave;
-  square.emplace_back("Active stress/Travelling wave/Profile", "square");
-  expect_complaint(strain_by("travelling wave", square), "whose rate of change is not known");
+  expect_complaint(strain_by("travelling wave", test::with(wave, "Active stress/Travelling wave/Profile = square")),
+                   "whose rate of change is not known");
   const std::string term = "Active stress/Sum/Term 1/";
   const Settings cut     = {{term + "Expression/Active stress", "0.1*sin(t)*cos(s)"}, {term + "Window in t", "0.3, 2"}};
   expect_complaint(strain_by("sum", cut), "Given by is sum, whose values jump at t = 0.3; a strain without jumps");

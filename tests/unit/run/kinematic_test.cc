@@ -14,17 +14,14 @@ namespace
   SimulationResult
   compute(const test::Settings &settings, const Model model = Model::kinematic, const double accuracy = 1e-9)
   {
-    const Parameters parameters = test::parameters_with(settings);
-    const Scene scene           = parameters.create_scene();
+    const Scene scene = test::parameters_with(settings).create_scene();
     return ReducedModel(scene, model).compute(accuracy, true);
   }
 
   test::Settings
   strain(const double a, const std::string &formula)
   {
-    return {{"Body/Anchoring exponent", test::text(1. - a)},
-            {"Active stress/Generator", "prescribed strain"},
-            {"Active stress/Prescribed strain/Strain", formula}};
+    return test::set("p = {}; prescribed strain; Strain = {}", 1. - a, formula);
   }
 } // namespace
 
@@ -65,9 +62,7 @@ TEST(Kinematic, OptimisedGaits)
 TEST(Kinematic, WorksWhereNothingMoves)
 {
   const auto two_levels = [](const double a) {
-    return compute({{"Body/Anchoring exponent", test::text(1. - a)}, {"Active stress/Generator", "two-level wave"}},
-                   Model::kinematic,
-                   1e-6);
+    return compute(test::set("p = {}; two-level wave", 1. - a), Model::kinematic, 1e-6);
   };
   const auto still = two_levels(0.), near = two_levels(1e-5);
   ASSERT_EQ(still.time.status, Status::finished);
@@ -101,12 +96,8 @@ TEST(Kinematic, KinksInTime)
 /// The answer does not depend on the units: L = 2, gamma = 3, k = 5, T = 4.
 TEST(Kinematic, Units)
 {
-  auto scaled = strain(-1., "0.3*sin(2*pi*(s/2+t/4))");
-  scaled.insert(
-    scaled.end(),
-    {{"Body/Length", "2"}, {"Body/Friction coefficient", "3"}, {"Body/Elastic modulus", "5"}, {"Time/End time", "4"}});
   const double exact = 1. - std::sqrt(1. - 0.09);
-  const auto result  = compute(scaled);
+  const auto result  = compute(test::with(strain(-1., "0.3*sin(2*pi*(s/2+t/4))"), "L = 2; gamma = 3; k = 5; T = 4"));
   EXPECT_NEAR(result.displacement, 2. * exact, 1e-10);
   EXPECT_NEAR(result.energy_balance->dissipation, 3. * 2. * 2. * 2. / 4. * exact, 1e-10); // gamma L^3/T
   EXPECT_NEAR(result.min_stretch.value, 0.7, 1e-8);
@@ -119,9 +110,8 @@ TEST(Kinematic, IsTheSeriesForAEqualToOne)
 {
   for (const double c : {-1., 0.7, 1.6})
   {
-    auto settings = test::wave(1., 0.2, c, 0.9);
-    settings.emplace_back("Active stress/Optimal wave/Sine coefficients", "1, 0.3");
-    settings.emplace_back("Active stress/Optimal wave/Cosine coefficients", "0.2, -0.1");
+    const auto settings = test::with(test::wave(1., 0.2, c, 0.9),
+                                     "optimal wave; Sine coefficients = 1, 0.3; Cosine coefficients = 0.2, -0.1");
     const auto series = compute(settings, Model::perturbation, 1e-1), motion = compute(settings);
     EXPECT_NEAR(motion.displacement, series.displacement, 1e-12 + 1e-10 * std::abs(series.displacement));
   }
@@ -141,12 +131,9 @@ TEST(Kinematic, TendsToTheSeries)
 TEST(Kinematic, StiffBody)
 {
   const auto gap = [](const std::string &k) {
-    test::Settings settings  = {{"Active stress/Generator", "expression"},
-                                {"Active stress/Expression/Active stress", k + "*0.2*(sin(2*pi*(s+t)) - sin(2*pi*s))"},
-                                {"Body/Elastic modulus", k}};
-    const double approximate = compute(settings).displacement;
-    settings.emplace_back("Accuracy", "1e-7");
-    return std::abs(approximate - test::run_with(settings).result.displacement);
+    const test::Settings settings =
+      test::set("k = {0}; Accuracy = 1e-7; expression; Active stress = {0}*0.2*(sin(2*pi*(s+t)) - sin(2*pi*s))", k);
+    return std::abs(compute(settings).displacement - test::run_with(settings).result.displacement);
   };
   EXPECT_NEAR(gap("100") / gap("200"), 2., 0.2);
 }

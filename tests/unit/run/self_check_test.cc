@@ -62,9 +62,9 @@ TEST(GaitEfficiency, CountsFromRestOrByDissipation)
 /// Of any friction law by its values; of a law that has its extreme inside of the stretches too.
 TEST(GaitEfficiency, IsThatOfTheFrictionLaw)
 {
-  const auto efficiency = [](test::Settings settings) {
-    settings.emplace_back("Active stress/Generator", "travelling wave");
-    return gait_efficiency(test::parameters_with(settings).create_scene(), made_up(0.03));
+  const auto efficiency = [](const test::Settings &settings) {
+    return gait_efficiency(test::parameters_with(test::with(settings, "travelling wave")).create_scene(),
+                           made_up(0.03));
   };
   const auto by_formula = [&](const std::string &formula) {
     return efficiency({{"Ground/Friction law", "expression"}, {"Ground/Expression", formula}});

@@ -11,9 +11,7 @@ namespace
   Scene
   formula(const std::string &text)
   {
-    return test::parameters_with(
-             {{"Active stress/Generator", "expression"}, {"Active stress/Expression/Active stress", text}})
-      .create_scene();
+    return test::parameters_with(test::set("expression; Active stress = {}", text)).create_scene();
   }
 } // namespace
 

@@ -15,14 +15,9 @@ namespace
   const std::string section = "Active stress/Two-level wave/";
 
   Settings
-  two_level_wave(const double a, const Settings &own, const Settings &others = {})
+  two_level_wave(const double a, const std::string &own, const Settings &others = {})
   {
-    Settings settings = {{"Active stress/Generator", "two-level wave"},
-                         {"Body/Anchoring exponent", test::text(1. - a)}};
-    for (const auto &[entry, value] : own)
-      settings.emplace_back(section + entry, value);
-    settings.insert(settings.end(), others.begin(), others.end());
-    return settings;
+    return test::with(test::set("p = {}; two-level wave; {}", 1. - a, own), others);
   }
 
   SimulationResult
@@ -40,7 +35,10 @@ namespace
   }
 
   void
-  expect_complaint(const Settings &own, const std::string &entry, const std::string &part, const Settings &others = {})
+  expect_complaint(const std::string &own,
+                   const std::string &entry,
+                   const std::string &part,
+                   const Settings &others = {})
   {
     test::expect_complaint(two_level_wave(-1., own, others), {section + entry + ": ", part});
   }
@@ -48,8 +46,8 @@ namespace
 
 TEST(TwoLevelWave, HasItsTwoStrains)
 {
-  const Settings own = {{"Smallest strain", "-0.2"}, {"Largest strain", "0.5"}, {"Share", "0.3"}};
-  const Scene scene  = test::parameters_with(two_level_wave(-1., own, {{"Body/Length", "2"}})).create_scene();
+  const std::string own = "Smallest strain = -0.2; Largest strain = 0.5; Share = 0.3";
+  const Scene scene     = test::parameters_with(two_level_wave(-1., own, {{"Body/Length", "2"}})).create_scene();
   std::vector<double> e(6);
   const auto strain = scene.active_stress->prescribed_strain()->at({0., 0.06, 0.54, 0.6, 0.66, 1.94});
   strain->strain(/*t=*/0., e); // the fronts are about s = 0 and s = 0.3 L, 0.05 L wide
@@ -65,12 +63,12 @@ TEST(TwoLevelWave, TheBestShareIsThatOfTheTheory)
 {
   for (const double a : {-1., 2.})
   {
-    const auto best = numbers(two_level_wave(a, {{"Front width", "1e-3"}}));
+    const auto best = numbers(two_level_wave(a, "Front width = 1e-3"));
     EXPECT_NEAR(best.share, 1. / (1. + std::pow(1.3 / 0.7, 0.5 * a)), 1e-14);
     EXPECT_NEAR(best.bound, a < 0. ? 0.303515 : 0.659341, 5e-7);
     EXPECT_NEAR(best.merit, best.bound, 1e-3 * best.bound);
     for (const double other : {0.9 * best.share, 1.1 * best.share})
-      EXPECT_LT(numbers(two_level_wave(a, {{"Front width", "1e-3"}, {"Share", test::text(other)}})).merit, best.merit)
+      EXPECT_LT(numbers(two_level_wave(a, "Front width = 1e-3; Share = " + test::text(other))).merit, best.merit)
         << other;
   }
 }
@@ -83,7 +81,7 @@ TEST(TwoLevelWave, NearlyReachesTheBound)
        {std::tuple(-1., 0.05, false), {-1., 0.1, true}, {2., 0.05, true}, {2., 0.1, false}})
   {
     const Settings settings = two_level_wave(
-      a, {{"Front width", test::text(front)}, {"Direction", to_head ? "from tail to head" : "from head to tail"}});
+      a, fmt::format("Front width = {}; Direction = {}", front, to_head ? "from tail to head" : "from head to tail"));
     const auto result = kinematic(settings);
     const auto own    = numbers(settings);
     ASSERT_TRUE(result.gait_efficiency);
@@ -98,50 +96,42 @@ TEST(TwoLevelWave, NearlyReachesTheBound)
 TEST(TwoLevelWave, OnOtherGrounds)
 {
   const Settings newtonian = {{"Ground/Friction law", "Newtonian"}}, power = {{"Body/Anchoring exponent", "0"}};
-  EXPECT_NEAR(numbers(two_level_wave(1., {}, newtonian)).share, numbers(two_level_wave(1., {}, power)).share, 1e-14);
-  EXPECT_NEAR(numbers(two_level_wave(1., {}, newtonian)).merit, numbers(two_level_wave(1., {}, power)).merit, 1e-14);
-  const auto on_expression = [](Settings own) {
-    own.emplace_back("Front width", "0.02");
+  EXPECT_NEAR(numbers(two_level_wave(1., "", newtonian)).share, numbers(two_level_wave(1., "", power)).share, 1e-14);
+  EXPECT_NEAR(numbers(two_level_wave(1., "", newtonian)).merit, numbers(two_level_wave(1., "", power)).merit, 1e-14);
+  const auto on_expression = [](const std::string &own) {
     return two_level_wave(-1.,
-                          own,
-                          {{"Ground/Friction law", "expression"},
-                           {"Ground/Expression", "0.7/(0.2+w^2)"},
-                           {"Body/Friction coefficient", "2"}});
+                          "Front width = 0.02; " + own,
+                          test::set("gamma = 2; Ground/Friction law = expression; Ground/Expression = 0.7/(0.2+w^2)"));
   };
-  const auto result = kinematic(on_expression({}), 1e-6);
-  const auto own    = numbers(on_expression({}));
+  const auto result = kinematic(on_expression(""), 1e-6);
+  const auto own    = numbers(on_expression(""));
   EXPECT_GT(*result.gait_efficiency, 0.98);
   EXPECT_LT(*result.gait_efficiency, 1.);
   EXPECT_NEAR(*result.gait_efficiency, own.merit / own.bound, 1e-6);
   for (const double other : {0.9 * own.share, 1.1 * own.share})
-    EXPECT_LT(numbers(on_expression({{"Share", test::text(other)}})).merit, own.merit) << other;
+    EXPECT_LT(numbers(on_expression("Share = " + test::text(other))).merit, own.merit) << other;
 }
 
 TEST(TwoLevelWave, DoesTheWorkThatIsGiven)
 {
-  const Settings body = {{"Body/Length", "3"},
-                         {"Body/Friction coefficient", "0.4"},
-                         {"Body/Elastic modulus", "7"},
-                         {"Time/End time", "1.7"}};
+  const Settings body = test::set("L = 3; gamma = 0.4; k = 7; T = 1.7");
   for (const auto &[n, phase] : {std::pair("1", "0.7"), {"2", "0"}})
   {
     const auto result = kinematic(
-      two_level_wave(-1., {{"Given by", "work"}, {"Work", "0.25"}, {"Wave number", n}, {"Phase", phase}}, body));
+      two_level_wave(-1., fmt::format("Given by = work; Work = 0.25; Wave number = {}; Phase = {}", n, phase), body));
     EXPECT_NEAR(result.energy_balance->stress_work, 0.25, 1e-6 * 0.25) << n;
   }
-  const auto by_speed =
-    numbers(two_level_wave(-1., {{"Given by", "wave speed"}, {"Wave speed", "0.6"}, {"Wave number", "2"}}, body));
+  const auto by_speed = numbers(two_level_wave(-1., "Given by = wave speed; Wave speed = 0.6; Wave number = 2", body));
   EXPECT_DOUBLE_EQ(by_speed.frequency, 0.4);
 }
 
 TEST(TwoLevelWave, SaysWhatDoesNotFit)
 {
-  expect_complaint({{"Largest strain", "-0.3"}}, "Largest strain", "one above the smallest, -0.3, is expected");
-  expect_complaint({{"Share", "0.02"}}, "Front width", "at most 0.02 is expected");
-  expect_complaint({{"Frequency", "1e12"}}, "Frequency", "periods");
-  expect_complaint({{"Given by", "wave speed"}, {"Wave speed", "1e12"}}, "Wave speed", "periods");
-  const Settings work = {{"Given by", "work"}};
-  expect_complaint(test::with(work, {{"Wave number", "1.5"}}), "Given by", "a whole one is expected");
-  expect_complaint(test::with(work, {{"Ramp duration", "0.5"}}), "Given by", "Ramp duration = 0 is expected");
-  expect_complaint(work, "Given by", "no profile is expected", {{"Body/Elastic modulus profile", "1+s"}});
+  expect_complaint("Largest strain = -0.3", "Largest strain", "one above the smallest, -0.3, is expected");
+  expect_complaint("Share = 0.02", "Front width", "at most 0.02 is expected");
+  expect_complaint("Frequency = 1e12", "Frequency", "periods");
+  expect_complaint("Given by = wave speed; Wave speed = 1e12", "Wave speed", "periods");
+  expect_complaint("Given by = work; Wave number = 1.5", "Given by", "a whole one is expected");
+  expect_complaint("Given by = work; Ramp duration = 0.5", "Given by", "Ramp duration = 0 is expected");
+  expect_complaint("Given by = work", "Given by", "no profile is expected", {{"Body/Elastic modulus profile", "1+s"}});
 }

@@ -156,8 +156,7 @@ TEST(GeneralInput, IsCheckedInOneSentence)
                  "Time/Cycle stop",
                  "Ground/Profile");
   const auto feedback = [](const std::string &formula) {
-    return test::Settings{{"Active stress/Generator", "strain feedback"},
-                          {"Active stress/Strain feedback/Active stress", formula}};
+    return test::set("strain feedback; Active stress = {}", formula);
   };
   const std::string section = "Active stress/Strain feedback/";
   expect_message(feedback("w_neer"), section + "Active stress", "nearest name is \"w_near\"");
@@ -171,19 +170,14 @@ TEST(GeneralInput, IsCheckedInOneSentence)
   expect_message(feedback("-0.1*w_t"), generator, "with respect to w_t is -0.1, but 0 or a positive number");
   for (const char *well_posed : {"-0.99*(w-1)", "-2*(w-1)+0.1*w_t", "-2*max(0,w-1)", "-2*(w-1)*t", "-0.1*w_t*abs(w_t)"})
     EXPECT_EQ(test::complaint(feedback(well_posed)), "nothing") << well_posed;
-  auto uneven = feedback("-0.5*(w-1)");
-  uneven.push_back({"Body/Elastic modulus profile", "1-0.6*s"});
-  expect_message(uneven, generator, "with respect to w is -0.5, but -k, -0.4");
-  auto stretched = feedback("-0.6*(w-1)^2");
-  EXPECT_EQ(test::complaint(stretched), "nothing");
-  stretched.push_back({"Body/Initial stretch", "2"});
-  expect_message(stretched, generator, "with respect to w is -1.2, but -k, -1");
-  const auto sensor = [&](const std::string &length) {
-    auto settings = feedback("w_near");
-    settings.push_back({section + "Sensor length", length});
-    return settings;
-  };
-  expect_message(sensor("1.5"), section + "Sensor length", "from 1e-6 L to L");
-  expect_message(sensor("1e-9"), section + "Sensor length", "from 1e-6 L to L");
-  EXPECT_EQ(test::complaint(sensor("0.3")), "nothing");
+  expect_message(test::with(feedback("-0.5*(w-1)"), "Body/Elastic modulus profile = 1-0.6*s"),
+                 generator,
+                 "with respect to w is -0.5, but -k, -0.4");
+  EXPECT_EQ(test::complaint(feedback("-0.6*(w-1)^2")), "nothing");
+  expect_message(test::with(feedback("-0.6*(w-1)^2"), "Body/Initial stretch = 2"),
+                 generator,
+                 "with respect to w is -1.2, but -k, -1");
+  expect_message(feedback("w_near; Sensor length = 1.5"), section + "Sensor length", "from 1e-6 L to L");
+  expect_message(feedback("w_near; Sensor length = 1e-9"), section + "Sensor length", "from 1e-6 L to L");
+  EXPECT_EQ(test::complaint(feedback("w_near; Sensor length = 0.3")), "nothing");
 }

@@ -11,11 +11,9 @@ namespace
   std::optional<ActiveStress::Repetition>
   repetition_of(const std::string &formula, const double end_time)
   {
-    const Scene scene = test::parameters_with({{"Active stress/Generator", "expression"},
-                                               {"Active stress/Expression/Active stress", formula},
-                                               {"Time/End time", test::text(end_time)}})
-                          .create_scene();
-    return scene.active_stress->repetition();
+    return test::parameters_with(test::set("T = {}; expression; Active stress = {}", end_time, formula))
+      .create_scene()
+      .active_stress->repetition();
   }
 
   /// Of what repeats from the beginning on.
@@ -29,11 +27,10 @@ namespace
   std::optional<double>
   period_of_wave(const std::string &sine, const std::string &cosine, const double speed, const double chi = 0.1)
   {
-    auto settings = test::wave(-1., chi, speed, 3.);
-    settings.insert(settings.end(),
-                    {{"Body/Length", "2"},
-                     {"Active stress/Optimal wave/Sine coefficients", sine},
-                     {"Active stress/Optimal wave/Cosine coefficients", cosine}});
+    const auto settings = test::with(test::wave(-1., chi, speed, 3.),
+                                     "L = 2; optimal wave; Sine coefficients = {}; Cosine coefficients = {}",
+                                     sine,
+                                     cosine);
     return test::parameters_with(settings).create_scene().active_stress->period();
   }
 } // namespace
@@ -42,12 +39,7 @@ namespace
 TEST(Period, BehindAStart)
 {
   const auto repeats_behind = [](const std::string &start) {
-    return test::parameters_with(
-             {{"Active stress/Generator", "expression"},
-              {"Active stress/Expression/Active stress", "sin(2*pi*(s-t/0.8))*sin(pi*s)*(" + start + ")"},
-              {"Time/End time", "40"}})
-      .create_scene()
-      .active_stress->repetition();
+    return repetition_of("sin(2*pi*(s-t/0.8))*sin(pi*s)*(" + start + ")", 40.);
   };
   for (const auto &[start, least, most] :
        std::initializer_list<std::tuple<const char *, double, double>>{{"1-exp(-6*t)", 23.0 / 6., 10.},

@@ -15,13 +15,13 @@ namespace
   in_user_units(const double length, const double time, const double friction)
   {
     const double end_time = 0.7 * time, force = friction * length * length / end_time;
-    return {{"Body/Length", test::text(length)},
-            {"Body/Elastic modulus", test::text(stiffness * force)},
-            {"Body/Friction coefficient", test::text(friction)},
-            {"Active stress/Generator", "expression"},
-            {"Active stress/Expression/Constants", "F=" + test::text(force)},
-            {"Active stress/Expression/Active stress", "0.2*F*sin(pi*s/L)*sin(2*pi*(s/L+t/T))"},
-            {"Time/End time", test::text(end_time)}};
+    return test::set("L = {}; k = {}; gamma = {}; T = {}; expression; "
+                     "Active stress = 0.2*F*sin(pi*s/L)*sin(2*pi*(s/L+t/T)); Constants = F={}",
+                     length,
+                     stiffness * force,
+                     friction,
+                     end_time,
+                     force);
   }
 
   struct UserUnits

@@ -10,7 +10,6 @@
 
 using namespace crawler;
 using crawler::test::parameters_with;
-using crawler::test::Settings;
 
 namespace
 {
@@ -239,17 +238,11 @@ TEST(Sum, CombinesFeedback)
 /// Through the parameter file: as many terms as it has, and the values of the formula.
 TEST(Sum, RunsAsItsFormula)
 {
-  const Settings of_sum       = {{"Active stress/Generator", "sum"},
-                                 {sum + "Term 2/Combine", "multiply"},
-                                 {sum + "Term 2/Generator", "expression"},
-                                 {sum + "Term 2/Expression/Active stress", "1-exp(-t/tau)"},
-                                 {sum + "Term 2/Expression/Constants", "tau=0.2"},
-                                 {sum + "Term 1/Generator", "travelling wave"},
-                                 {sum + "Term 1/Travelling wave/Amplitude", "0.2"},
-                                 {sum + "Term 3/Generator", "expression"},
-                                 {sum + "Term 3/Factor", "0.1"},
-                                 {sum + "Term 3/Expression/Active stress", "sin(pi*s)"}};
-  const Parameters parameters = parameters_with(of_sum);
+  const Parameters parameters = parameters_with(
+    test::set("sum; Term 2/Combine = multiply; Term 2/Generator = expression; "
+              "Term 2/Expression/Active stress = 1-exp(-t/tau); Term 2/Expression/Constants = tau=0.2; "
+              "Term 1/Generator = travelling wave; Term 1/Travelling wave/Amplitude = 0.2; "
+              "Term 3/Generator = expression; Term 3/Factor = 0.1; Term 3/Expression/Active stress = sin(pi*s)"));
   EXPECT_EQ(parameters.active_stress.sum.terms.size(), 3u);
   EXPECT_EQ(parameters_with({}).active_stress.sum.terms.size(), 0u);
   const Scene scene = parameters.create_scene();

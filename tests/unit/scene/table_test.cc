@@ -81,11 +81,7 @@ TEST(Table, OfTheOptimalWaveMovesTheBodyAsTheWaveDoes)
   const OptimalWave wave({.perturbation_parameter = 0.4, .choose_wave_by = "wave speed"}, body, 1.);
   const Samples samples(65, 129, [&](const double s, const double t) { return values(wave, {s}, t)[0]; });
   const auto displacement = [&](const std::string &file) {
-    return test::run_with({{"Body/Anchoring exponent", "2"},
-                           {"Active stress/Generator", "table"},
-                           {"Active stress/Table/File", file},
-                           {"Accuracy", "1e-7"}})
-      .result.displacement;
+    return test::run_with(test::set("p = 2; Accuracy = 1e-7; table; File = {}", file)).result.displacement;
   };
   constexpr double reference = 9.0072529800e-2;
   const double by_csv        = displacement(samples.csv);

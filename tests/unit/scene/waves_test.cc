@@ -18,8 +18,7 @@ namespace
   Settings
   generator(const std::string &entries, const double length, const double end_time)
   {
-    return test::with(test::set(entries),
-                      {{"Body/Length", test::text(length)}, {"Time/End time", test::text(end_time)}});
+    return test::with(test::set(entries), "L = {}; T = {}", length, end_time);
   }
   Settings
   travelling(const std::string &entries, const double length = 1., const double end_time = 5.)
@@ -40,11 +39,8 @@ namespace
   void
   expect_formula(const Settings &settings, const std::string &formula, const double length = 1.)
   {
-    const auto stress = stress_with(settings);
-    Settings written  = settings;
-    written.emplace_back("Active stress/Generator", "expression");
-    written.emplace_back("Active stress/Expression/Active stress", formula);
-    const auto expected = stress_with(written);
+    const auto stress   = stress_with(settings);
+    const auto expected = stress_with(test::with(settings, "expression; Active stress = {}", formula));
     const auto points   = test::places(length, 53);
     for (const double t : {0., 0.013, 0.3, 0.71, 1.9, 4.77})
       EXPECT_LT(test::largest_difference(values(*stress, points, t), values(*expected, points, t)), 2e-14)

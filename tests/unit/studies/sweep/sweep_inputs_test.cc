@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../../support/program.h"
 #include "../../../support/test.h"
 
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/studies/sweep/sweep_inputs.h>
-
-#include <unistd.h>
 
 namespace
 {
@@ -16,16 +15,12 @@ namespace
   {
   protected:
     Inputs()
-      : before_(std::filesystem::current_path())
-      , folder_(std::filesystem::temp_directory_path() / ("sweep_inputs_test_" + std::to_string(::getpid())))
     {
-      std::filesystem::create_directories(folder_);
-      std::filesystem::current_path(folder_);
+      std::filesystem::current_path(folder_.path);
     }
     ~Inputs() override
     {
       std::filesystem::current_path(before_);
-      std::filesystem::remove_all(folder_);
     }
 
     static SweepInputs
@@ -42,7 +37,8 @@ namespace
     }
 
   private:
-    const std::filesystem::path before_, folder_;
+    const std::filesystem::path before_ = std::filesystem::current_path();
+    const test::TemporaryFolder folder_;
   };
 
   TEST_F(Inputs, ScenesAreKeptAsWhatTheySetAndComparedEntryByEntry)
