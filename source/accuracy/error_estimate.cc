@@ -222,10 +222,11 @@ namespace crawler
           (finer_mesh != nullptr && finer_mesh->time.status != Status::finished))
         return;
       const bool predicted = is_predicted(choice, scene);
-      const double part    = !predicted                            ? 0.
-                             : choice.numerics.mesh.tolerance > 0. ? predicted_part_if_adaptive
-                             : choice.numerics.grading.levels > 0  ? predicted_part_if_graded
-                                                                   : predicted_part;
+      const bool is_graded = choice.numerics.grading.levels > 0, is_adaptive = choice.numerics.mesh.tolerance > 0.;
+      const double part = !predicted                                      ? 0.
+                          : is_adaptive || (is_graded && choice.is_rough) ? predicted_part_if_irregular
+                          : is_graded                                     ? predicted_part_if_graded
+                                                                          : predicted_part;
       const double factor =
         predicted && !choice.is_steep && !scene.keeps_its_centre() ? measured_factor : factor_without_rule;
       if (finer_mesh != nullptr)

@@ -198,9 +198,9 @@ namespace crawler::accuracy_rule
   namespace finer_run
   {
     inline constexpr double measured_factor = 1.5, factor_without_rule = 2.;
-    /// Parts of the wanted error in the bound: adaptive meshes have more of their errors in common than others, and for
-    /// graded ones each part was measured beforehand.
-    inline constexpr double predicted_part = 0.2, predicted_part_if_adaptive = 0.5, predicted_part_if_graded = 0.15;
+    /// Parts of the wanted error in the bound: adaptive meshes have more of their errors in common than others, and so
+    /// have graded ones if kinks move through their cells; otherwise each part was measured beforehand.
+    inline constexpr double predicted_part = 0.2, predicted_part_if_irregular = 0.5, predicted_part_if_graded = 0.15;
     /// Cells and tolerances of the finer run, relative to the run's.
     inline constexpr double more_cells = 1.1, finer_tolerance = 0.2, finer_mesh_tolerance = 0.1;
     /// Cells where the active stress is not smooth, so that errors fall with the cells by a small power.
