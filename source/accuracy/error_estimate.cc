@@ -64,7 +64,7 @@ namespace crawler
         n.parts *= 2; // one family of meshes
       else
       {
-        const double factor = much_finer ? more_cells_without_rule : choice.is_rough ? more_cells_if_rough : more_cells;
+        const double factor = much_finer || choice.is_rough ? more_cells_without_rule : more_cells;
         n.n_cells           = finer_n_cells(factor, n.n_cells, scene.breaks_in_space().size(), n.grading);
       }
       change_steps(n,

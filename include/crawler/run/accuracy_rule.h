@@ -203,11 +203,10 @@ namespace crawler::accuracy_rule
     inline constexpr double predicted_part = 0.2, predicted_part_if_irregular = 0.5, predicted_part_if_graded = 0.15;
     /// Cells and tolerances of the finer run, relative to the run's.
     inline constexpr double more_cells = 1.1, finer_tolerance = 0.2, finer_mesh_tolerance = 0.1;
-    /// Cells where the active stress is not smooth, so that errors fall with the cells by a small power.
-    inline constexpr double more_cells_if_rough = 1.5;
     /// Tolerance for runs not by radau 9, which is more accurate for the same tolerance than all others.
     inline constexpr double finer_tolerance_than_others = 4.;
-    /// Cells and tolerance where the user chose the numerics: mesh and steps may both be the problem.
+    /// Cells and tolerance where the user chose the numerics: mesh and steps may both be the problem. As many cells
+    /// where the active stress is not smooth, so that errors fall with the cells by a small power.
     inline constexpr double more_cells_without_rule = 2., finer_tolerance_without_rule = 0.1;
     inline constexpr const char *best_integrator = "radau 9";
     /// Exponent of the tolerance to which its steps are proportional; its smallest first step over the duration.
