@@ -12,10 +12,9 @@ import pathlib
 import signal
 import struct
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import NO_PICTURES, Checks, call, on_ranks, sets, tests_of_part  # noqa: E402
+from program import NO_PICTURES, Checks, call, on_ranks, sets  # noqa: E402
 from tables import csv_rows, h5_columns, json_of  # noqa: E402
 
 CRAWLER, PRM, MPIRUN = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), sys.argv[3]
@@ -405,14 +404,7 @@ def test_bad_input(place):
     expect(not (place / "bad").exists(), "bad input leaves a folder")
 
 
-def main():
-    with tempfile.TemporaryDirectory() as name:
-        place = pathlib.Path(name)
-        for test in tests_of_part((test_merits, test_theorem, test_simulations, test_pulling_limits, test_many_crests, test_far_start, test_narrow_stress,
-                                   test_cases, test_neighbours, test_starts, test_gradients, test_uneven, test_obstacles, test_bad_input), (test_stops,)):
-            test(place)
-    checks.end()
-
-
 if __name__ == "__main__":
-    main()
+    checks.run((test_merits, test_theorem, test_simulations, test_pulling_limits, test_many_crests, test_far_start,
+                test_narrow_stress, test_cases, test_neighbours, test_starts, test_gradients, test_uneven, test_obstacles,
+                test_bad_input), (test_stops,))

@@ -20,11 +20,10 @@ import statistics
 import struct
 import subprocess
 import sys
-import tempfile
 import termios
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import PATIENCE, Checks, call, environment, on_ranks, tests_of_part  # noqa: E402
+from program import PATIENCE, Checks, call, environment, on_ranks  # noqa: E402
 
 PROGRAM, MPIEXEC = sys.argv[1:3]
 PRM = pathlib.Path(__file__).resolve().parents[2] / "prm"
@@ -194,12 +193,5 @@ def optimise(folder):
     check(not any("of 1 starts" in row for row in shown(screen)), "a single start is not counted")
 
 
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        for test in tests_of_part((run, quiet, optimise), (sweep,)):
-            test(pathlib.Path(folder))
-    checks.end()
-
-
 if __name__ == "__main__":
-    main()
+    checks.run((run, quiet, optimise), (sweep,))

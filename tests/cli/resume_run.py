@@ -12,12 +12,11 @@ import random
 import signal
 import subprocess
 import sys
-import tempfile
 
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, Paused, environment, tests_of_part  # noqa: E402
+from program import Checks, Paused, environment  # noqa: E402
 from run_scenes import SCENES, STATES, Scene  # noqa: E402
 
 CRAWLER, TWO_RANKS = sys.argv[1], [sys.argv[2], "--oversubscribe", "-n", "2"]
@@ -168,13 +167,5 @@ def two_ranks(place):
            f"SIGUSR1 to mpirun: exit code {process.returncode}, {errors[:500]!r}")
 
 
-def main():
-    with tempfile.TemporaryDirectory() as name:
-        place = pathlib.Path(name)
-        for test in tests_of_part((one_rank,), (two_ranks,)):
-            test(place)
-    checks.end()
-
-
 if __name__ == "__main__":
-    main()
+    checks.run((one_rank,), (two_ranks,))

@@ -13,13 +13,12 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 
 import h5py
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, Paused, call, environment, on_ranks, prm, ranks_that_stop, tests_of_part  # noqa: E402
+from program import Checks, Paused, call, environment, on_ranks, prm, ranks_that_stop  # noqa: E402
 from tables import csv_rows, h5_columns, json_of, number, same_as_csv, same_columns  # noqa: E402
 
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
@@ -565,17 +564,7 @@ def test_damaged_table(folder):
     refused(folder, "damaged", ('no group "results"',), "another HDF5 file")
 
 
-def main():
-    with tempfile.TemporaryDirectory() as name:
-        for test in tests_of_part((test_bad_input, test_damaged_table, test_places_of_files, test_rows_that_fail,
-                                   test_time_limits, test_changed_inputs, test_killed_at_files, test_two_at_once,
-                                   test_crashes, test_full_disk, test_cross_check, test_what_cannot_be_checked),
-                                  (test_grid, test_designs, test_signals, test_kills)):
-            folder = pathlib.Path(name, test.__name__)
-            folder.mkdir()
-            test(folder)
-    checks.end()
-
-
 if __name__ == "__main__":
-    main()
+    checks.run((test_bad_input, test_damaged_table, test_places_of_files, test_rows_that_fail, test_time_limits,
+                test_changed_inputs, test_killed_at_files, test_two_at_once, test_crashes, test_full_disk, test_cross_check,
+                test_what_cannot_be_checked), (test_grid, test_designs, test_signals, test_kills))

@@ -15,7 +15,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 
 import numpy as np
 
@@ -297,16 +296,7 @@ def test_more_bad_input(folder):
                and word in result.stderr and file.read_bytes() == content, f"a table of {len(content)} bytes: {result}")
 
 
-def main():
+if __name__ == "__main__":
     print(f"{N_KILLS} kills, seed {SEED}", flush=True)
     ctypes.CDLL(None).prctl(36, 1)  # PR_SET_CHILD_SUBREAPER: the ranks of a killed mpirun become children of this process
-    with tempfile.TemporaryDirectory() as name:
-        for test in (test_more_bad_input, test_many_ranks, test_out_of_memory, test_error_bars, test_kills):
-            folder = pathlib.Path(name, test.__name__)
-            folder.mkdir()
-            test(folder)
-    checks.end()
-
-
-if __name__ == "__main__":
-    main()
+    checks.run((test_more_bad_input, test_many_ranks, test_out_of_memory, test_error_bars, test_kills))

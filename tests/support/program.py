@@ -10,6 +10,7 @@ import pathlib
 import signal
 import subprocess
 import sys
+import tempfile
 
 PATIENCE = 600  # [s]
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1",
@@ -20,7 +21,7 @@ NO_PICTURES = {"PATH": f"{pathlib.Path(__file__).resolve().parent / 'no_pictures
 
 
 class Checks:
-    """Counts failures: `expect` notes them, `end` closes the script with the exit code."""
+    """Counts failures: `expect` notes them, `run` or `end` closes the script with the exit code."""
 
     def __init__(self):
         self.n, self.failures, self.skipped = 0, [], []
@@ -37,6 +38,18 @@ class Checks:
         """Notes a check that this machine cannot do, and why; the last line counts it."""
         self.skipped.append(what)
         print(f"SKIPPED {what}", flush=True)
+
+    def run(self, alone, several=()):
+        """Runs tests, each in a folder of its own, and ends. If the last argument of the script is "alone",
+        only those that start no ranks; if it is "several", only the others, for which ctest reserves processors.
+        """
+        part = sys.argv[-1]
+        with tempfile.TemporaryDirectory() as name:
+            for test in (*(alone if part != "several" else ()), *(several if part != "alone" else ())):
+                folder = pathlib.Path(name, test.__name__)
+                folder.mkdir()
+                test(folder)
+        self.end()
 
     def end(self):
         """Exits with code 0 only if something was checked, and all of it is right."""
@@ -79,14 +92,6 @@ def prm(*settings):
 def on_ranks(mpirun, n):
     """Words before a command that n ranks run; none for one rank."""
     return [mpirun, "--oversubscribe", "-n", n] if n > 1 else []
-
-
-def tests_of_part(alone, several):
-    """Selects the tests of this call of a script, whose last argument may be "alone": those that start no ranks; or
-    "several": those that do, for which ctest reserves processors. Without either: all.
-    """
-    part = sys.argv[-1]
-    return (*(alone if part != "several" else ()), *(several if part != "alone" else ()))
 
 
 def ranks_that_stop(mpirun, command, *places):
