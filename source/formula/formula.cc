@@ -126,7 +126,6 @@ namespace crawler
     }
   } // namespace
 
-
   /// Translates muParser's byte code, a program for a stack machine, into operations between numbered values.
   class FormulaReader
   {
@@ -334,7 +333,6 @@ namespace crawler
     std::vector<unsigned int> stack_;       ///< Values.
     std::vector<Condition> conditions_;
   };
-
 
   Formula::Formula(const std::string &text, const Constants &constants, const std::vector<std::string> &variables)
     : used_(variables.size(), false)

@@ -108,7 +108,6 @@ namespace crawler
     }
   } // namespace
 
-
   Declarations::Declarations(std::string only)
     : only_(std::move(only))
   {

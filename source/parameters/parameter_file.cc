@@ -109,7 +109,6 @@ namespace crawler
     }
   } // namespace
 
-
   ParameterFile
   ParameterFile::read(const std::string &file_name)
   {

@@ -5,7 +5,6 @@
 #include <crawler/base/clock.h>
 #include <crawler/run/simulation.h>
 
-
 namespace crawler
 {
   /// Examines an accepted step, and shows it to the observers if its state may be used.

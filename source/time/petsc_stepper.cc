@@ -37,7 +37,6 @@ namespace crawler
     }
   } // namespace
 
-
   struct PetscStepper::Implementation
   {
     PetscStepper &owner;

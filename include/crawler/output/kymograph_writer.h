@@ -55,8 +55,6 @@ namespace crawler
     shown(const FieldName &field) const;
 
   private:
-    /// The points that lie in this rank's cells.
-
     const std::vector<double> points_;
     std::unique_ptr<FieldSampler> sampler_; ///< for the mesh mesh_number_
     unsigned int mesh_number_ = 0;

@@ -81,7 +81,6 @@ namespace crawler
     }
   };
 
-
   Radau &
   radau_data(TS ts);
 

@@ -23,7 +23,6 @@ namespace crawler
     }
   } // namespace
 
-
   void
   ExpressionParameters::add_parameters(Declarations &declarations)
   {

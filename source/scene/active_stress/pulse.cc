@@ -34,7 +34,6 @@ namespace crawler
     }
   } // namespace
 
-
   void
   PulseParameters::add_parameters(Declarations &declarations)
   {

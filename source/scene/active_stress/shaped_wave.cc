@@ -117,7 +117,6 @@ namespace crawler
     }
   } // namespace
 
-
   ShapedWave::ShapedWave(const OptimalWaveParameters &parameters, const Body &body, const double end_time)
     : end_time_(end_time)
     , shape_name_(parameters.shape)

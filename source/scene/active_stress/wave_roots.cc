@@ -43,7 +43,6 @@ namespace crawler
     }
   } // namespace
 
-
   double
   WaveShape::delta_2() const
   {

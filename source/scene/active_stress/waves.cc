@@ -29,7 +29,6 @@ namespace crawler
     }
   } // namespace
 
-
   void
   TravellingWaveParameters::add_parameters(Declarations &declarations)
   {
@@ -174,7 +173,6 @@ namespace crawler
   {
     const std::string standing_section = "Active stress/Standing wave/";
   } // namespace
-
 
   void
   StandingWaveParameters::add_parameters(Declarations &declarations)

@@ -99,10 +99,9 @@ namespace crawler
 
   /**
    * Reads a strain on a grid over s and t, with cubic splines in both directions (tensor product), from the file @p
-   * name, CSV with the header s,t,strain or HDF5 with the dataset strain (base/grid_table.h). Throws InputError for @p
-   * entry if that cannot be read, if there are fewer than four values of s or t, or if the grid does not reach from 0
-   * to
-   * @p length and from 0 to @p end_time.
+   * name, CSV with the header s,t,strain or HDF5 with the dataset strain (base/grid_table.h). Throws InputError for
+   * @p entry if that cannot be read, if there are fewer than four values of s or t, or if the grid does not reach from
+   * 0 to @p length and from 0 to @p end_time.
    */
   std::unique_ptr<const StrainHistory>
   read_strain_table(const std::string &name, double length, double end_time, const std::string &entry);
