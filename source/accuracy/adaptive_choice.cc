@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/mesh_choices.h>
-#include <crawler/run/accuracy_rule.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace crawler
 {
+  namespace
+  {
+    constexpr unsigned int adaptive_degree = 4, max_adaptive_pilot_steps = 20000, max_adaptive_pilot_cells = 1200;
+  }
+
   void
   choose_adaptive_mesh(Pilots &pilots, NumericsChoice &choice)
   {
-    using namespace accuracy_rule::choice;
+    using namespace mesh_choice;
     const DiscretizationParameters &own = pilots.parameters.discretization;
     const double L                      = pilots.scene.body.length;
     Numerics &n                         = choice.numerics;

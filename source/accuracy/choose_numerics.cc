@@ -4,7 +4,6 @@
 #include <crawler/accuracy/mesh_choices.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/plain_numbers.h>
-#include <crawler/run/accuracy_rule.h>
 #include <crawler/scene/moving_jumps.h>
 #include <crawler/time/integrators.h>
 
@@ -18,8 +17,27 @@ namespace crawler
 {
   namespace
   {
-    using namespace accuracy_rule::choice;
-    using accuracy_rule::displacement_floor;
+    using namespace mesh_choice;
+
+    constexpr unsigned int automatic_degree = 6;
+    /// Factor on the number of steps times the tolerance: a bound of the error of the displacement in time.
+    constexpr double time_factor = 0.25;
+    /// Factors on that tolerance for radau 5 and 9 on uniform meshes of the position form, whose steps end better.
+    constexpr double radau_5_superconvergence = 50., radau_9_superconvergence = 2000.;
+    /// Smallest tolerances relative to the motion; below the second, kinks in the friction of stiff bodies stop a run.
+    constexpr double min_tolerance = 1e-15, min_tolerance_if_kinks = 1e-10;
+    /// Accuracy below which runs on uniform meshes are by radau 9, others by radau 5.
+    constexpr double radau_9_accuracy = 1.1e-4;
+    /// Numbers of breaks beyond which graded meshes become too large, or too many starts have nothing sudden.
+    constexpr std::size_t max_graded_places = 200, max_gentle_breaks = 200;
+    /// Largest tolerance with pictures, relative to the wanted error, since the displacement within a step of radau 5
+    /// or 9 has an error of up to half the tolerance; and its floor, as a part of the length.
+    constexpr double tolerance_of_pictures = 2., min_tolerance_of_pictures = 1e-13;
+    /// Runs long_run times as long as their first strides that do not end when cycles repeat have their numerics
+    /// chosen by those strides. Strides are slow to repeat below this stiffness, in natural units of a stride.
+    constexpr double first_strides = 3., long_run = 4., min_settling_stiffness = 0.02;
+    /// Relative error that very soft bodies may have on adaptive meshes, whatever Accuracy is.
+    constexpr double soft_error = 3e-3;
 
     /// Chooser of the numerics: of the kind of mesh (mesh_choices.h), then of the time steps.
     class Chooser
@@ -327,12 +345,11 @@ namespace crawler
   void
   prepare_for_pictures(NumericsChoice &choice, const RunParameters &parameters)
   {
-    const double largest = accuracy_rule::choice::tolerance_of_pictures * choice.wanted_error;
+    const double largest = tolerance_of_pictures * choice.wanted_error;
     if (parameters.time.tolerance || choice.is_of_several_runs() || !choice.numerics.integrator.starts_with("radau") ||
         !(largest < choice.numerics.tolerance))
       return;
-    choice.numerics.tolerance =
-      std::max(largest, accuracy_rule::choice::min_tolerance_of_pictures * parameters.body.length);
+    choice.numerics.tolerance = std::max(largest, min_tolerance_of_pictures * parameters.body.length);
     choice.explanation += fmt::format("; tolerance {:.2g} for pictures", choice.numerics.tolerance);
   }
 } // namespace crawler

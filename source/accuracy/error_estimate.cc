@@ -3,7 +3,6 @@
 #include <crawler/accuracy/finer_run_errors.h>
 #include <crawler/accuracy/graded_choice.h>
 #include <crawler/base/communication.h>
-#include <crawler/run/accuracy_rule.h>
 #include <crawler/run/batch.h>
 #include <crawler/run/gait_efficiency.h>
 #include <crawler/run/result_table.h>
@@ -22,7 +21,28 @@ namespace crawler
 {
   namespace
   {
-    using namespace accuracy_rule::finer_run;
+    // Constants measured by tests/verification/calibration.cc; doc/numerics.md, "Error bounds".
+    constexpr double measured_factor = 1.5, factor_without_rule = 2.;
+    /// Parts of the wanted error in the bound: adaptive meshes have more of their errors in common than others, and so
+    /// have graded ones if kinks move through their cells; otherwise each part was measured beforehand.
+    constexpr double predicted_part = 0.2, predicted_part_if_irregular = 0.5, predicted_part_if_graded = 0.15;
+    /// Cells and tolerances of the finer run, relative to the run's.
+    constexpr double more_cells = 1.1, finer_tolerance = 0.2, finer_mesh_tolerance = 0.1;
+    /// Tolerance for runs not by radau 9, which is more accurate for the same tolerance than all others.
+    constexpr double finer_tolerance_than_others = 4.;
+    /// Cells and tolerance where the user chose the numerics: mesh and steps may both be the problem. As many cells
+    /// where the active stress is not smooth, so that errors fall with the cells by a small power.
+    constexpr double more_cells_without_rule = 2., finer_tolerance_without_rule = 0.1;
+    constexpr const char *best_integrator = "radau 9";
+    /// Exponent of the tolerance to which its steps are proportional; its smallest first step over the duration.
+    constexpr double steps_over_tolerances = 1. / 6., first_step = 1e-3;
+    /// Layers at the ends of bodies softer than soft, in natural units, about as thick as the softness; the finer run
+    /// has cells as small as the softness times layer_cells there, graded by layer_ratio.
+    constexpr double soft = 1e-3, layer_cells = 3., layer_ratio = 0.25, max_layer_levels = 8.;
+    /// Tolerance where one cycle stands for many: its error does not average out, so the finer run is more accurate.
+    constexpr double finer_tolerance_of_cycles = 0.25;
+    /// Tolerance of the next try.
+    constexpr double refined_tolerance = 0.1;
 
     /// True if the error is known beforehand: the rule of the numerics does not cover the effect of a point value of
     /// the stretch, seen from elsewhere.
@@ -235,7 +255,7 @@ namespace crawler
         // Kinks that move with the place where the velocity changes its sign make errors that change their sign from
         // mesh to mesh: a difference may be small by chance, and so may be that which ended the search.
         if (scene.ground.direction.is_uneven() && choice.numerics.grading.levels > 0 && choice.follows_rule())
-          space = std::max(*space, accuracy_rule::graded::part * choice.wanted_error);
+          space = std::max(*space, graded_change * choice.wanted_error);
         total = *space + factor * std::abs(finer->displacement - finer_mesh->displacement);
       }
       else
@@ -259,14 +279,14 @@ namespace crawler
     }
     if (scene.keeps_its_centre()) // round-off of each step, whatever the other errors are
     {
-      total = round_off * scene.body.length * result.time.steps;
+      total = displacement_round_off * scene.body.length * result.time.steps;
       if (std::isfinite(choice.wanted_error))
         total = std::min(total, choice.wanted_error);
     }
     if (!std::isfinite(total))
       return;
     const double cycles = result.cycles ? result.cycles->bound : 0.;
-    const double rest   = std::max(total, round_off * scene.body.length);
+    const double rest   = std::max(total, displacement_round_off * scene.body.length);
     error.total         = rest + cycles;
     error.space         = scene.keeps_its_centre() ? 0. : space.value_or(choice.space_share * rest);
     error.time          = error.total - error.space;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/form_choice.h>
 #include <crawler/equation/stretch_form.h>
-#include <crawler/run/accuracy_rule.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +9,12 @@ namespace crawler
 {
   namespace
   {
-    using namespace accuracy_rule::form;
+    // Constants measured by tests/benchmark/stretch_table.cc; doc/numerics.md, "Stretch form".
+    /// Limits at low accuracy, the Accuracy below which they fall, and the powers by which they do.
+    constexpr double softest = 1e-3, emptied = 0.06, emptied_if_it_inverts = 3e-3, moderate = 1e-5;
+    constexpr double softness_power = 0.5, stretch_power = 0.35;
+    /// Limits beyond which many cells of the position form are cheaper.
+    constexpr double max_lengths = 30., min_accuracy = 1e-7;
 
     double
     falling(const double limit, const double accuracy, const double power)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/graded_choice.h>
 #include <crawler/accuracy/mesh_choices.h>
-#include <crawler/run/accuracy_rule.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +10,34 @@ namespace crawler
 {
   namespace
   {
-    using namespace accuracy_rule::graded;
-    namespace rule = accuracy_rule::choice;
+    // Constants measured by tests/verification/jump_study.cc; doc/numerics.md, "Jumps".
+    /// Degrees: the higher one below Accuracy accurate_graded.
+    constexpr unsigned int graded_degree = 6, accurate_graded_degree = 8;
+    constexpr double accurate_graded = 3e-7;
+    /// Accuracy below which runs are by radau 9, since starts take many steps that are short for any method.
+    constexpr double radau_9_accuracy_if_graded = 3e-5;
+    /// First tolerances, relative to the wanted error.
+    constexpr double graded_radau_5 = 4., graded_radau_9 = 10., graded_others = 0.1;
+    constexpr double coarse_ratio = 0.25, fine_ratio = 0.4;
+    /// Gain of a level: it reduces the error at a discontinuity at least by this factor over the square of the ratio.
+    constexpr double part_of_gain = 0.5;
+    /// Accuracy from which on the coarse ratio has never mattered.
+    constexpr double coarse_ratio_is_enough = 1e-5;
+    /// Relative change of the displacement assumed for the tolerance beyond which that is set anew.
+    constexpr double same_size = 0.1;
+    /// Limits at which the search is given up.
+    constexpr unsigned int max_runs = 40, max_cells = 96, max_cells_of_piece = 12;
+    /// Factor on max_cells while cells times steps stay below max_work; the last change by more cells may then be
+    /// last_part of the wanted error.
+    constexpr unsigned int cheap_mesh_factor = 4;
+    constexpr double max_work = 3e5, last_part = 0.5;
+    constexpr double smallest_cell = 1e-7, emptied = 1e-3;
+    /// Thickness of layers, relative to the length, below which they do not count.
+    constexpr double smallest_layer = 1e-6;
+    /// Number of times the search begins anew, with twice the cells, if its first mesh loses a stretch.
+    constexpr unsigned int max_beginnings = 3;
+    constexpr double more_cells = 1.5, finer_tolerance = 0.1;
+    constexpr double longest_first_step = 1e-2, shortest_first_step = 1e-16;
 
     /// Size of the smallest cell, relative to the length.
     double
@@ -131,9 +156,7 @@ namespace crawler
       first_tolerance() const
       {
         const std::string &name = pilots_.integrator(now_);
-        return name == "radau 9"   ? rule::graded_radau_9
-               : name == "radau 5" ? rule::graded_radau_5
-                                   : rule::graded_others;
+        return name == "radau 9" ? graded_radau_9 : name == "radau 5" ? graded_radau_5 : graded_others;
       }
 
       Numerics
@@ -165,7 +188,7 @@ namespace crawler
         if (!run(next, result))
           return false;
         change = std::abs(result.displacement - result_.displacement);
-        return change > part * wanted_;
+        return change > graded_change * wanted_;
       }
 
       /// Makes one refinement if it matters.
@@ -224,7 +247,7 @@ namespace crawler
           change  = std::abs(result.displacement - result_.displacement);
           now_    = next;
           result_ = result;
-        } while (measure() && change > gain_of_level() * part * wanted_);
+        } while (measure() && change > gain_of_level() * graded_change * wanted_);
       }
 
       Pilots &pilots_;
@@ -264,13 +287,15 @@ namespace crawler
   {
     const double accuracy = pilots.parameters.accuracy;
     Numerics start        = choice.numerics;
-    start.degree          = pilots.parameters.discretization.degree.value_or(
-      accuracy < rule::accurate_graded ? rule::accurate_graded_degree : rule::graded_degree);
-    start.n_cells = static_cast<unsigned int>(std::clamp(
-      std::ceil(0.25 * pilots.scene.body.length / pilots.scales.length), 1. * rule::min_cells, 1. * rule::max_cells));
+    start.degree = pilots.parameters.discretization.degree.value_or(accuracy < accurate_graded ? accurate_graded_degree
+                                                                                               : graded_degree);
+    start.n_cells =
+      static_cast<unsigned int>(std::clamp(std::ceil(0.25 * pilots.scene.body.length / pilots.scales.length),
+                                           1. * mesh_choice::min_cells,
+                                           1. * mesh_choice::max_cells));
     // Pieces between breaks have a cell at least.
     start.n_cells     = std::max(start.n_cells, static_cast<unsigned int>(pilots.scales.in_space) + 1);
-    start.integrator  = accuracy < rule::radau_9_accuracy_if_graded ? "radau 9" : "radau 5";
+    start.integrator  = accuracy < radau_9_accuracy_if_graded ? "radau 9" : "radau 5";
     start.tolerance   = pilots.parameters.time.tolerance.value_or(0.);
     const auto cycles = pilots.cycles;
     if (pilots.cycles)

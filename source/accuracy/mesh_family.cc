@@ -3,7 +3,6 @@
 #include <crawler/accuracy/extrapolation.h>
 #include <crawler/accuracy/finer_run_errors.h>
 #include <crawler/accuracy/mesh_family.h>
-#include <crawler/run/accuracy_rule.h>
 
 #include <fmt/format.h>
 
@@ -14,8 +13,39 @@ namespace crawler
 {
   namespace
   {
-    using namespace accuracy_rule::family;
-    using accuracy_rule::displacement_floor;
+    // Constants measured by tests/verification/random_extremes.cc and tests/benchmark/stretch_table.cc;
+    // doc/numerics.md, "Stretch form".
+    /// Cells of the finest mesh: in general, for an Accuracy below accurate, and of bodies that invert.
+    constexpr unsigned int max_cells = 51200, max_cells_if_accurate = 6400, max_cells_if_inverted = 1600;
+    constexpr double accurate = 2e-6;
+    /// Limits on cells times steps of the next mesh, about a second for each 2e6, and the factor by which it takes more
+    /// of them than the last one.
+    constexpr double max_work = 2.5e7, max_work_if_accurate = 5e7, more_work = 5.;
+    /// Part of the wanted error that the error in time may be; number of reductions of the time tolerance for that.
+    constexpr double time_part            = 0.3;
+    constexpr unsigned int max_tolerances = 5;
+    constexpr double finer_tolerance      = 0.1;
+    /// Stretch below which cells are empty; largest tolerance that checks the error in time then, over the length.
+    constexpr double empty = 1e-9, check_if_empty = 3e-8;
+    constexpr unsigned int few_steps = 30;                 ///< steps below which errors grow fast with the cells
+    constexpr double min_part        = 0.5;                ///< part of the wanted error that all runs have in common
+    constexpr double min_order = 1.5, largest_order = 2.7; ///< observed orders accepted as the second
+    /// Factors by which a time tolerance, relative to the strain, may be too large or small before it is chosen anew.
+    constexpr double too_large = 2., too_small = 0.05;
+    /// Limits relative to the time of an inversion: error beyond which it may be none; change beyond which meshes are
+    /// too coarse.
+    constexpr double believed = 0.3, largest_change_of_inversion = 0.2;
+    /// Round-off of the displacement, in lengths of the body.
+    constexpr double round_off = 4e-15;
+    /// Rates at which extrapolations settle: the fastest that is believed, and at a turning point. Regions thinner than
+    /// cells count unseen_part of their length, for a displacement of at least part_of_largest displacement of a point.
+    constexpr double fastest = 8., turned = 4., unseen_part = 0.15, part_of_largest = 0.25;
+    /// Factor on the last change of the time of an inversion for its error, for a between min_slow_exponent and 0, and
+    /// the rate at which such changes are believed to fall.
+    constexpr double min_slow_exponent = -0.5, sticking_factor = 3., sticking_rate = 3.;
+    /// Deviation of the order from 2 up to which that is accepted; else a first change counts unclean_factor times.
+    /// Two orders in a row that deviate by at most regular are no chance.
+    constexpr double clean = 0.25, unclean_factor = 2., regular = 0.1;
 
     class Family
     {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/mesh_choices.h>
-#include <crawler/run/accuracy_rule.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +7,22 @@
 
 namespace crawler
 {
+  namespace
+  {
+    /// Meshes are doubled until the displacement settles, which it does in proportion to the cell size, with tolerances
+    /// that fall in the same proportion; limits on cells, and on cells times steps.
+    constexpr unsigned int last_moving_cells = 2048;
+    constexpr double max_moving_work         = 1e7;
+    /// Smallest number of steps of a period for each cell.
+    constexpr double moving_steps = 4.;
+    /// Factors on the last change, which is the remaining error of a first-order method: the first one counts more.
+    constexpr double moving_factor = 1.5, moving_factor_of_first = 4.;
+  } // namespace
+
   void
   choose_mesh_for_moving_jumps(Pilots &pilots, NumericsChoice &choice)
   {
-    using namespace accuracy_rule::choice;
+    using namespace mesh_choice;
     const double accuracy = pilots.parameters.accuracy, end = pilots.scene.end_time;
     Numerics &n  = choice.numerics;
     n.jumps_move = true;

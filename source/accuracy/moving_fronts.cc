@@ -2,7 +2,6 @@
 #include <crawler/accuracy/extrapolation.h>
 #include <crawler/accuracy/finer_run_errors.h>
 #include <crawler/accuracy/moving_fronts.h>
-#include <crawler/run/accuracy_rule.h>
 #include <crawler/scene/moving_jumps.h>
 
 #include <fmt/format.h>
@@ -14,7 +13,19 @@ namespace crawler
 {
   namespace
   {
-    using namespace accuracy_rule::fronts;
+    // Constants measured by tests/verification/square_actuation_test.cc; doc/numerics.md, "Jumps that move".
+    /// Widths of fronts, relative to the widest that fit: the first, halved each time, and the last.
+    constexpr double first_part = 0.32, last_part = 0.0025;
+    /// Largest number of widths of an answer.
+    constexpr unsigned int max_levels = 5;
+    /// Limits of the error bound, as multiples of the change by one width less, and of that since the answer before.
+    constexpr double factor = 2., factor_of_change = 0.5;
+    /// Accuracy of the runs, relative to the wanted one, and its limits.
+    constexpr double part_of_runs = 0.1, min_accuracy = 1e-9, largest_accuracy = 1e-3;
+    /// Steps of all runs after which no steeper fronts are tried.
+    constexpr unsigned long max_steps = 100000;
+    /// Relative change of the time of an inversion from fronts to fronts below which it is known.
+    constexpr double settled_inversion = 1e-2;
 
     class Fronts
     {
@@ -90,8 +101,7 @@ namespace crawler
       wanted() const
       {
         const SimulationResult &result = answer_.result;
-        const double size =
-          std::max(std::abs(result.displacement), accuracy_rule::displacement_floor * result.largest_u);
+        const double size              = std::max(std::abs(result.displacement), displacement_floor * result.largest_u);
         return wanted_part_ * size;
       }
 

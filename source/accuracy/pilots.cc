@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/form_choice.h>
+#include <crawler/accuracy/mesh_choices.h>
 #include <crawler/accuracy/pilots.h>
-#include <crawler/run/accuracy_rule.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace crawler
 {
-  namespace rule = accuracy_rule::choice;
+  namespace
+  {
+    constexpr unsigned int max_pilot_steps = 100000;
+    /// Relative accuracy of the displacement for pilots that end when their cycles repeat.
+    constexpr double pilot_accuracy = 1e-2;
+    /// First step of methods that start with their full order, relative to the duration.
+    constexpr double one_step_start = 1e-2;
+  } // namespace
 
   Pilots::Pilots(const MPI_Comm own_communicator,
                  const RunParameters &own_parameters,
@@ -25,10 +32,10 @@ namespace crawler
     , tolerance(std::max(1e-3 * scale, negligible_displacement()))
   {
     time.step_control = StepControl::adaptive;
-    time.petsc_prefix = "pilot_";              // options after "--" are for the real run
-    time.max_steps    = rule::max_pilot_steps; // the limit is for the run itself
+    time.petsc_prefix = "pilot_";        // options after "--" are for the real run
+    time.max_steps    = max_pilot_steps; // the limit is for the run itself
     if (cycles)
-      cycles->accuracy = std::max(parameters.accuracy, rule::pilot_accuracy);
+      cycles->accuracy = std::max(parameters.accuracy, pilot_accuracy);
   }
 
   SimulationResult
@@ -65,7 +72,7 @@ namespace crawler
   Pilots::count(const SimulationResult &result)
   {
     last              = result;
-    const double part = scene.keeps_its_centre() ? 1. : accuracy_rule::displacement_floor;
+    const double part = scene.keeps_its_centre() ? 1. : displacement_floor;
     size              = std::max(finished() ? std::abs(last.displacement) : 0., part * last.largest_u);
     if (size > 0.)
       size = std::max(size, min_size());
@@ -103,7 +110,7 @@ namespace crawler
   double
   Pilots::min_size() const
   {
-    return rule::min_error * scene.body.length / parameters.accuracy;
+    return mesh_choice::min_error * scene.body.length / parameters.accuracy;
   }
 
   const std::string &
@@ -116,6 +123,6 @@ namespace crawler
   double
   Pilots::first_step(const Numerics &numerics) const
   {
-    return (integrator(numerics).starts_with("radau") ? rule::one_step_start : rule::multistep_start) * scene.end_time;
+    return (integrator(numerics).starts_with("radau") ? one_step_start : mesh_choice::multistep_start) * scene.end_time;
   }
 } // namespace crawler

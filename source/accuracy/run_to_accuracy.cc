@@ -7,7 +7,6 @@
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
-#include <crawler/run/accuracy_rule.h>
 #include <crawler/run/self_check.h>
 #include <crawler/time/failure.h>
 
@@ -21,7 +20,9 @@ namespace crawler
 {
   namespace
   {
-    using namespace accuracy_rule::finer_run;
+    /// Number of next tries, also while the error falls and is within near_factor; factors on the cells.
+    constexpr unsigned int max_refinements = 3, max_refinements_if_near = 6;
+    constexpr double near_factor = 4., refined_cells = 1.2, max_refined_cells = 4.;
 
     /**
      * Confirms an inversion where the user chose the numerics, since a coarse mesh or long steps can fake a stretch

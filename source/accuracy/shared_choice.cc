@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/choose_numerics.h>
+#include <crawler/accuracy/mesh_choices.h>
 #include <crawler/accuracy/shared_choice.h>
 #include <crawler/accuracy/stress_scales.h>
-#include <crawler/run/accuracy_rule.h>
 #include <crawler/run/batch.h>
 #include <crawler/run/stress_watch.h>
 #include <crawler/time/integrators.h>
@@ -15,7 +15,15 @@ namespace crawler
 {
   namespace
   {
-    using namespace accuracy_rule::shared;
+    // Constants measured by tests/verification/shared_numerics_test.cc; doc/numerics.md, "Sweeps".
+    /// Smallest number of cells, and factor on the first step, that are tried.
+    constexpr unsigned int min_cells   = 2;
+    constexpr double longer_first_step = 5.;
+    /// Parts of the wanted error by which space and time may each change the displacement of an example, and by which
+    /// the extrapolation of cycles may.
+    constexpr double part = 0.12, part_of_cycles = 0.1;
+    /// Tolerances tried, relative to the displacement: from the loosest, smaller by next_tolerance each time.
+    constexpr double loosest_tolerance = 3e-2, next_tolerance = 0.316;
 
     /// True if an answer of shared numerics can have a bound that is comparable with the wanted error.
     bool
@@ -205,7 +213,7 @@ namespace crawler
   SharedChoice::choice_for(const Scene &scene, const double size) const
   {
     NumericsChoice own     = choice;
-    own.numerics.tolerance = std::max(relative_tolerance * size, accuracy_rule::choice::min_error * scene.body.length);
+    own.numerics.tolerance = std::max(relative_tolerance * size, mesh_choice::min_error * scene.body.length);
     // Stress events differ from scene to scene.
     own.numerics.step_limits =
       similar_step_limits(scene, choice.numerics.step_limits, choice.numerics.min_event / min_event);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/mesh_choices.h>
-#include <crawler/run/accuracy_rule.h>
 
 #include <fmt/format.h>
 
@@ -10,10 +9,20 @@
 
 namespace crawler
 {
+  namespace
+  {
+    /// Cells of the coarsest mesh, cells for each length in which the active stress changes, and the time tolerance
+    /// relative to the strain, as a multiple of Accuracy and at most.
+    constexpr unsigned int first_family_cells = 25;
+    constexpr double cells_of_length = 4., family_tolerance = 10., largest_family_tolerance = 1e-3;
+    /// Layers: layer_lengths times k/max|m_s| thick, at most this part of the body.
+    constexpr double layer_lengths = 1., largest_layer = 0.02;
+  } // namespace
+
   void
   choose_stretch_form(const Pilots &pilots, NumericsChoice &choice)
   {
-    using namespace accuracy_rule::choice;
+    using namespace mesh_choice;
     const RunParameters &own = pilots.parameters;
     const Scene &scene       = pilots.scene;
     const double L = scene.body.length, length = pilots.scales.length;

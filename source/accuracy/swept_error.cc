@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/answer.h>
+#include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/swept_error.h>
 #include <crawler/adjoint/error_sweep.h>
-#include <crawler/run/accuracy_rule.h>
 
 #include <fmt/format.h>
 
@@ -19,11 +19,11 @@ namespace crawler
               SimulationResult &result,
               const std::function<bool()> &keep_going)
   {
-    using namespace accuracy_rule;
+    constexpr double max_work = 5e4; // steps times cells: about a second
     if (result.time.status != Status::finished || !result.error || !std::isfinite(result.error->total) ||
         result.cycles || scene.ground.direction.is_uneven() || // moving kinks have no higher orders
         !RecordedRun::is_possible(scene, parameters.time, choice.numerics) ||
-        static_cast<double>(result.time.steps) * result.most_cells > sweep::max_work)
+        static_cast<double>(result.time.steps) * result.most_cells > max_work)
       return;
     DisplacementError &error = *result.error;
     try
@@ -33,7 +33,7 @@ namespace crawler
       if (!swept || !swept->is_good())
         return;
       const double value = run.displacement + swept->time + swept->space;
-      const double bound = std::max(swept->bound_of_corrected(), finer_run::round_off * scene.body.length);
+      const double bound = std::max(swept->bound_of_corrected(), displacement_round_off * scene.body.length);
       const double found = std::abs(result.displacement - value);
       if (bound < found) // otherwise it may be the sweep's own error
         error.total = std::max(error.total, found);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/mesh_choices.h>
-#include <crawler/run/accuracy_rule.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +8,12 @@ namespace crawler
 {
   namespace
   {
-    using namespace accuracy_rule::choice;
+    using namespace mesh_choice;
+
+    /// Thickness, in distances between the unknowns, below which layers may look resolved when they are not.
+    constexpr double widest_hidden_layer = 1.;
+    /// Factor on `unresolved` of the mesh: a bound of the relative error of the displacement in space.
+    constexpr double space_factor = 6.;
 
     /// True if all layers are wide enough to show in the modes of the stretch on this mesh. Where nothing starts
     /// suddenly they are as wide as elasticity smooths against the largest friction of the last pilot while the active

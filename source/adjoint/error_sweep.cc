@@ -2,7 +2,6 @@
 #include <crawler/adjoint/error_sweep.h>
 #include <crawler/adjoint/forces_at_points.h>
 #include <crawler/mesh/reference_element.h>
-#include <crawler/run/accuracy_rule.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +10,12 @@ namespace crawler
 {
   namespace
   {
-    using namespace accuracy_rule::sweep;
+    // Constants measured by tests/verification/error_sweep_test.cc; doc/numerics.md, "Errors by the adjoint".
+    /// Quadrature points of a cell beyond its degree + 1; number of improvements of the functions of higher degree.
+    constexpr unsigned int more_points = 2, rounds = 2;
+    /// Bound of the corrected displacement: this part of the sums of the sizes of all errors, plus the change of the
+    /// last round. Nothing is estimated below least_stretch.
+    constexpr double part_of_sums = 0.4, least_stretch = 0.1;
 
     /// Functions L_{q+1}, L_{q+2} at points x of [0,1]: integrals of Legendre polynomials, which vanish at both ends,
     /// with int L_j' L_l' dx = delta_jl over a cell of size 1; and their derivatives there. [point][function]

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/run/accuracy_rule.h>
 #include <crawler/run/cycle_stop.h>
 #include <crawler/run/run_parameters.h>
 
@@ -12,8 +11,21 @@ namespace crawler
 {
   namespace
   {
-    using namespace accuracy_rule::cycles;
-    using accuracy_rule::displacement_floor;
+    // Constants measured by tests/verification/cycle_stop_test.cc.
+    /// Part of the wanted accuracy that the bound may take.
+    constexpr double part = 0.2;
+    /// Relative difference of the strains of two successive cycles below which they repeat.
+    constexpr double same = 1e-3;
+    /// Safety factor on the observed dependence of a cycle's displacement on its start.
+    constexpr double safety = 10.;
+    /// Changes of the strain below this multiple of the tolerance of the time integration are its noise.
+    constexpr double noise = 10.;
+    /// Limit of the remaining drift, as a part of the smallest stretch.
+    constexpr double min_part = 0.1;
+    /// Distance of a start from the first phase, as a part of a cycle, below which it is left out.
+    constexpr double short_start = 1e-3;
+    /// Largest number of cycles watched.
+    constexpr unsigned int max_watched = 200;
 
     /// Number of whole cycles up to the end of the run, in units of its duration.
     double

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/run/accuracy_rule.h>
 #include <crawler/run/gait_efficiency.h>
 #include <crawler/run/result_table.h>
 #include <crawler/run/self_check.h>
@@ -13,10 +12,16 @@
 
 namespace crawler
 {
-  using namespace accuracy_rule::identities;
-
   namespace
   {
+    // Constants measured by tests/verification/identities_test.cc; doc/numerics.md, "Energy balance and self-checks".
+    /// Energy residual, relative: in units of Accuracy for each form, and at least.
+    constexpr double of_accuracy = 10., of_accuracy_in_stretch_form = 300., min_residual = 1e-8;
+    /// Energy residuals with the user's numerics; for moving jumps; above which stretch-form works are unknown.
+    constexpr double residual_of_users = 0.1, residual_of_moving_jumps = 0.2, residual_of_known_works = 0.1;
+    /// Net friction, relative to the absolute one: at least; in units of Accuracy; with the user's own steps.
+    constexpr double min_net_friction = 1e-6, net_friction_of_accuracy = 0.1, net_friction_of_users = 1e-3;
+
     /// True if the integration in time is the user's own, whose errors do not follow Accuracy.
     bool
     has_own_steps(const RunParameters &parameters)

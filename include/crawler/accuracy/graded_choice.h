@@ -5,6 +5,9 @@
 
 namespace crawler
 {
+  /// Change of the displacement, as a part of the wanted error, below which a refinement was not needed.
+  inline constexpr double graded_change = 0.25;
+
   /// First step of a run or piece on a graded mesh [time]: the smallest cells come to rest in it, whatever the active
   /// stress did, and Newton's method converges.
   double

@@ -13,6 +13,34 @@
  */
 namespace crawler
 {
+  /// Constants that several choices have in common. Measured by tests/verification/calibration.cc and
+  /// tests/benchmark/setting_search.cc.
+  namespace mesh_choice
+  {
+    inline constexpr unsigned int min_cells = 4, max_cells = 4096;
+    /// Stretch below which a pilot that breaks off has lost it.
+    inline constexpr double emptied = 0.1;
+    /// Limit on the cells of uniform meshes of pilots.
+    inline constexpr unsigned int max_uniform_cells = 1024;
+    /// Factor on the sum of the error indicators over the strain: a bound of the relative error of the displacement.
+    inline constexpr double indicator_factor = 8.;
+    /// Limit of `unresolved` below which a pilot's mesh is good enough to predict others.
+    inline constexpr double resolved = 1e-3;
+    /// Size of a start or jump of the stress, relative to the largest stress, over the root of Accuracy, above which
+    /// layers count.
+    inline constexpr double sudden_part = 0.1;
+    /// Smallest error that may be wanted, as a part of the length: round-off.
+    inline constexpr double min_error = 3e-15;
+    /// Meshes for moving jumps: the coarsest, and its tolerance.
+    inline constexpr unsigned int moving_degree = 2, first_moving_cells = 64;
+    inline constexpr double moving_tolerance = 0.1;
+    /// First step, relative to the duration, of methods that start with order 1.
+    inline constexpr double multistep_start = 1e-5;
+    /// Bodies softer than this, in natural units, have layers that the error indicators do not see, and uniform meshes
+    /// not at all.
+    inline constexpr double very_soft = 2e-5;
+  } // namespace mesh_choice
+
   /// Uniform mesh of at most @p most cells; of few cells if the solution @p may_be_steep.
   std::optional<double>
   choose_uniform_mesh(Pilots &pilots, NumericsChoice &choice, unsigned int most, bool may_be_steep);

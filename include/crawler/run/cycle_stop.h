@@ -10,6 +10,9 @@
 
 namespace crawler
 {
+  /// Floor of the displacement for relative errors, as a part of the body's largest deformation [1].
+  inline constexpr double displacement_floor = 1e-4;
+
   /// Cycles of a run that ended early because they repeat; the missing ones are extrapolated.
   struct Cycles
   {

@@ -4,7 +4,6 @@
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/base/clock.h>
-#include <crawler/run/accuracy_rule.h>
 #include <crawler/run/batch.h>
 #include <crawler/run/reduced_model.h>
 #include <crawler/run/self_check.h>
@@ -313,7 +312,7 @@ namespace crawler
         if (!may_share(task.parameters))
           return std::nullopt;
         if (!task.parameters.error_estimate)
-          task.parameters.accuracy *= accuracy_rule::shared::unchecked;
+          task.parameters.accuracy *= 0.3; // no finer run finds the scenes that need more than the examples
         create_scene(task);
         scenes.push_back({&task.parameters, &*task.scene});
       }

@@ -3,7 +3,6 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/parameters/declarations.h>
-#include <crawler/run/accuracy_rule.h>
 #include <crawler/run/result_table.h>
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/sensitivities.h>
@@ -17,7 +16,19 @@
 
 namespace crawler
 {
-  using namespace accuracy_rule::sensitivities;
+  namespace
+  {
+    // Constants measured by tests/verification/sensitivity_bounds.py.
+    /// Bound of a derivative: factor on its difference to the finer numerics; since both may agree by chance, multiples
+    /// of Accuracy of the derivative and of D/p, for works of the relative error of the work and with factors of their
+    /// own; and relative round-off of the differences that give dF/dp.
+    constexpr double measured_factor = 2., wanted_factor = 16., wanted_factor_of_works = 40.,
+                     wanted_factor_of_positive_work = 160., round_off = 1e-10;
+    /// Relative steps of entries whose answers are compared where there is no adjoint; a slope is suspicious if it
+    /// changes by more than this part, as a kink's does, and values closer by closer_answers decide.
+    constexpr double min_step_of_answers = 1e-3, largest_step_of_answers = 0.01, suspicious = 0.1,
+                     closer_answers = 0.25;
+  } // namespace
 
   double
   step_of_differences(const double relative_error)
