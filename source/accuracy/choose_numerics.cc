@@ -26,7 +26,8 @@ namespace crawler
     constexpr double radau_5_superconvergence = 50., radau_9_superconvergence = 2000.;
     /// Smallest tolerances relative to the motion; below the second, kinks in the friction of stiff bodies stop a run.
     constexpr double min_tolerance = 1e-15, min_tolerance_if_kinks = 1e-10;
-    /// Accuracy below which runs on uniform meshes are by radau 9, others by radau 5.
+    /// Wanted error, relative to the largest deformation, below which runs on uniform meshes are by radau 9, others by
+    /// radau 5.
     constexpr double radau_9_accuracy = 1.1e-4;
     /// Numbers of breaks beyond which graded meshes become too large, or too many starts have nothing sudden.
     constexpr std::size_t max_graded_places = 200, max_gentle_breaks = 200;
@@ -200,7 +201,8 @@ namespace crawler
           pilots_.size = pilots_.scale;
         if (!n.jumps_move && n.grading.levels == 0)
         {
-          if (n.integrator == "radau 5" && n.mesh.tolerance == 0. && accuracy_ < radau_9_accuracy)
+          if (n.integrator == "radau 5" && n.mesh.tolerance == 0. &&
+              accuracy_ * pilots_.size < radau_9_accuracy * std::max(pilots_.last.largest_u, pilots_.size))
             n.integrator = "radau 9";
           n.tolerance = time_.tolerance.value_or(tolerance_by_rule());
         }

@@ -76,8 +76,7 @@ namespace crawler
         for (const SceneToCompute &one : examples_)
         {
           const auto choice = choose_numerics(MPI_COMM_SELF, *one.parameters, *one.scene, keep_going_);
-          if (!choice || !may_share(*choice, one) ||
-              (!found_.sizes.empty() && choice->numerics.integrator != found_.choice.numerics.integrator))
+          if (!choice || !may_share(*choice, one))
             return false;
           const double size         = choice->wanted_error / one.parameters->accuracy; // not 0 where D nearly is
           found_.relative_tolerance = std::min(found_.relative_tolerance, choice->numerics.tolerance / size);
@@ -90,6 +89,7 @@ namespace crawler
           const Numerics a = found_.choice.numerics, &b = choice->numerics;
           Numerics &n            = found_.choice.numerics;
           n                      = b.n_cells * b.degree > a.n_cells * a.degree ? b : a;
+          n.integrator           = a.integrator == b.integrator ? a.integrator : "radau 9";
           n.initial_step         = std::min(a.initial_step, b.initial_step);
           n.min_event            = std::min(a.min_event, b.min_event);
           found_.choice.is_rough = found_.choice.is_rough || choice->is_rough;
