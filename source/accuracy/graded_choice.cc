@@ -25,6 +25,8 @@ namespace crawler
     constexpr double coarse_ratio_is_enough = 1e-5;
     /// Relative change of the displacement assumed for the tolerance beyond which that is set anew.
     constexpr double same_size = 0.1;
+    /// Ratio of two successive changes by more cells above which they show errors of the time steps, not of the mesh.
+    constexpr double falling = 0.35;
     /// Limits at which the search is given up.
     constexpr unsigned int max_runs = 40, max_cells = 96, max_cells_of_piece = 12;
     /// Factor on max_cells while cells times steps stay below max_work; the last change by more cells may then be
@@ -117,13 +119,16 @@ namespace crawler
             return std::nullopt;
         }
         if (chooses_tolerance)
-          refine(time_change_, [](Numerics &n) { n.tolerance *= finer_tolerance; });
+          while (try_one(time_change_, [](Numerics &n) { n.tolerance *= finer_tolerance; }))
+          {
+          }
         const auto one_more_level   = [](Numerics &n) { ++n.grading.levels; };
         const auto with_finer_ratio = [](Numerics &n) { n.grading = finer(n.grading); };
         const auto with_more_cells  = [this](Numerics &n) {
           n.n_cells = finer_n_cells(more_cells, n.n_cells, n_pieces_ - 1, n.grading);
         };
         bool again               = true;
+        double last              = std::numeric_limits<double>::infinity(); // change by more cells
         const auto is_ratio_fine = [this]() {
           return pilots_.parameters.accuracy >= coarse_ratio_is_enough || now_.grading.ratio > fine_ratio * 0.99;
         };
@@ -133,7 +138,13 @@ namespace crawler
           climb(levels_change, one_more_level);
           if (is_ratio_fine() || try_one(ratio_change, with_finer_ratio))
             ratio_change = 0.;
-          again = refine(cells_change, with_more_cells);
+          again = false;
+          for (; try_one(cells_change, with_more_cells); last = cells_change)
+          {
+            again = true;
+            if (chooses_tolerance && cells_change > falling * last)
+              take_finer_steps();
+          }
           if (is_too_fine_ && cells_change <= last_part * wanted_)
           {
             rest_     = cells_change;
@@ -206,15 +217,17 @@ namespace crawler
         return true;
       }
 
-      /// Repeats a refinement while it matters; returns true if there has been one.
-      template <typename Refinement>
-      bool
-      refine(double &change, const Refinement &refinement)
+      void
+      take_finer_steps()
       {
-        bool any = false;
-        while (try_one(change, refinement))
-          any = true;
-        return any;
+        Numerics next = now_;
+        next.tolerance *= finer_tolerance;
+        SimulationResult result;
+        if (!run(next, result))
+          return;
+        time_change_ = std::abs(result.displacement - result_.displacement);
+        now_         = next;
+        result_      = result;
       }
 
       /// Sets the wanted error of a displacement like the last one; false if that is 0.

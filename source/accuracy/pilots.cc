@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/form_choice.h>
-#include <crawler/accuracy/mesh_choices.h>
 #include <crawler/accuracy/pilots.h>
 
 #include <algorithm>

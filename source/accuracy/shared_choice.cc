@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/choose_numerics.h>
-#include <crawler/accuracy/mesh_choices.h>
+#include <crawler/accuracy/pilots.h>
 #include <crawler/accuracy/shared_choice.h>
 #include <crawler/accuracy/stress_scales.h>
 #include <crawler/run/batch.h>

@@ -29,13 +29,9 @@ namespace crawler
     /// Size of a start or jump of the stress, relative to the largest stress, over the root of Accuracy, above which
     /// layers count.
     inline constexpr double sudden_part = 0.1;
-    /// Smallest error that may be wanted, as a part of the length: round-off.
-    inline constexpr double min_error = 3e-15;
     /// Meshes for moving jumps: the coarsest, and its tolerance.
     inline constexpr unsigned int moving_degree = 2, first_moving_cells = 64;
     inline constexpr double moving_tolerance = 0.1;
-    /// First step, relative to the duration, of methods that start with order 1.
-    inline constexpr double multistep_start = 1e-5;
     /// Bodies softer than this, in natural units, have layers that the error indicators do not see, and uniform meshes
     /// not at all.
     inline constexpr double very_soft = 2e-5;

@@ -10,6 +10,14 @@
 
 namespace crawler
 {
+  namespace mesh_choice
+  {
+    /// Smallest error that may be wanted, as a part of the length: round-off.
+    inline constexpr double min_error = 3e-15;
+    /// First step, relative to the duration, of methods that start with order 1.
+    inline constexpr double multistep_start = 1e-5;
+  } // namespace mesh_choice
+
   /// Exception for a stop that was requested during the pilots.
   struct PilotsInterrupted
   {
