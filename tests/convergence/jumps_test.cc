@@ -288,6 +288,16 @@ TEST(Jumps, GetGradedMeshes)
   EXPECT_EQ(choose_numerics(MPI_COMM_WORLD, smooth->parameters, smooth->scene)->numerics.grading.levels, 0u);
 }
 
+/// Errors of the time steps, multiplied by the cycles that are extrapolated, are not taken for those of the mesh.
+TEST(Jumps, OfManyCyclesNeedNoMoreCells)
+{
+  test::LaneRun run(test::set("p = 2; k = 3; T = 800; segments"), "automatic", {});
+  run.parameters.accuracy = 1e-6;
+  const auto choice       = choose_numerics(MPI_COMM_WORLD, run.parameters, run.scene);
+  EXPECT_GE(choice->numerics.grading.levels, 1u);
+  EXPECT_LT(choice->numerics.n_cells, 100u);
+}
+
 /// A robot that repeats its cycle: the run ends early, at a break, and knows the displacement at the end.
 TEST(Jumps, MayEndWhenCyclesRepeat)
 {
