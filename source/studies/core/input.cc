@@ -113,13 +113,6 @@ namespace crawler
   ModelChoice
   choose_model(const Input &input)
   {
-    try
-    {
-      return choose_model(input.parameters, input.scene);
-    }
-    catch (const InputError &error)
-    {
-      throw input.file.with_place(error);
-    }
+    return input.file.placing_errors([&]() { return choose_model(input.parameters, input.scene); });
   }
 } // namespace crawler

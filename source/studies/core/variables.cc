@@ -142,13 +142,6 @@ namespace crawler
   read_variables(const ParameterFile &file, const std::string &entry)
   {
     Form form(file);
-    try
-    {
-      return read_variables(form, entry);
-    }
-    catch (const InputError &error)
-    {
-      throw file.with_place(error);
-    }
+    return file.placing_errors([&]() { return read_variables(form, entry); });
   }
 } // namespace crawler

@@ -300,18 +300,13 @@ namespace crawler
     StudyClock clock("Optimize");
     Log log(rank_of(communicator) == 0, options);
     OptimizeCases cases(communicator, file);
-    try
-    {
-      if (options.check_gradient)
-        return check_gradients(cases, log);
+    if (options.check_gradient)
+      return file.placing_errors([&]() { return check_gradients(cases, log); });
+    file.placing_errors([&]() {
       const CaseStart start(cases, 0);
       introduce(cases, *start.model, cases.notes(file), log);
       start.model->evaluate(start.x, /*with_gradients=*/false).require_start();
-    }
-    catch (const InputError &error)
-    {
-      throw file.with_place(error);
-    }
+    });
     const fs::path path = output_folder(options.output, options.file);
     StudyFolder folder(
       {"optimization", {OptimizeMemory::file}, {"Optimize/Time limit", "Optimize/Starts"}}, path, options, log);
@@ -342,8 +337,7 @@ namespace crawler
     if (variables == nullptr || variables->value.empty())
       return false;
     OptimizeCases cases(communicator, file);
-    try
-    {
+    file.placing_errors([&]() {
       for (unsigned long number = 0; number < cases.size(); ++number)
       {
         const CaseStart start(cases, number);
@@ -362,11 +356,7 @@ namespace crawler
                                ? "is within all limits"
                                : fmt::format("exceeds {} by {:.3g} %", record.worst_limit, 100. * record.violation)));
       }
-    }
-    catch (const InputError &error)
-    {
-      throw file.with_place(error);
-    }
+    });
     log.line(file.name() + " is valid: all variables and cases are admissible. Nothing was written.");
     return true;
   }

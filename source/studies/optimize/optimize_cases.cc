@@ -39,8 +39,7 @@ namespace crawler
                        : names_.objective == "speed"         ? "length/time"
                        : names_.objective.ends_with("merit") ? "1"
                                                              : "force";
-    try
-    {
+    file.placing_errors([&]() {
       if (points_)
         for (const SweepAxis &axis : points_->design().axes())
         {
@@ -57,11 +56,7 @@ namespace crawler
           throw are_several() ? InputError(fmt::format("the case {}: {}", in_words(number), error.what()), error.entry)
                               : error;
         }
-    }
-    catch (const InputError &error)
-    {
-      throw file.with_place(error);
-    }
+    });
     std::ranges::sort(names_.limits, {}, [](const std::string &name) {
       return std::ranges::find(limit_entries, name, &LimitEntry::name) - limit_entries.begin();
     });

@@ -35,14 +35,7 @@ namespace crawler
                  const std::function<void()> &start,
                  const std::function<bool()> &interrupted)
   {
-    try
-    {
-      take(numbers);
-    }
-    catch (const InputError &error)
-    {
-      throw input_.file.with_place(error);
-    }
+    input_.file.placing_errors([&]() { take(numbers); });
     if (!is_similar || !model_)
     {
       model_    = choose_model(input_);

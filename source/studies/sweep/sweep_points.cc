@@ -38,8 +38,7 @@ namespace crawler
     auto base  = std::make_unique<Form>(file);
     sweep_     = base->parameters.sweep;
     effective_ = base->effective();
-    try
-    {
+    file_.placing_errors([&]() {
       const Assignment *const axes = file_.assignment_of(axes_entry);
       design_                      = std::make_unique<SweepDesign>(sweep_, axes != nullptr ? axes->folder : "");
       file_axis_                   = design_->axes().size();
@@ -53,11 +52,7 @@ namespace crawler
       require_scene();
       kept_points();
       sensitivities_ = sensitivity_entries(form(0));
-    }
-    catch (const InputError &error)
-    {
-      throw file_.with_place(error);
-    }
+    });
   }
 
   std::vector<std::string>

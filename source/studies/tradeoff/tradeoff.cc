@@ -281,7 +281,7 @@ namespace crawler
     Log log(rank_of(communicator) == 0, options);
     const Input input             = read_input(file, /*command=*/"tradeoff");
     const TradeoffParameters &own = input.parameters.tradeoff;
-    const auto settings           = settings_to_try(input);
+    const auto settings           = file.placing_errors([&]() { return settings_to_try(input); });
     const auto path               = output_folder(options.output, options.file);
     const PointTable table        = tradeoff_table(own.run_time_limit);
     clock.set_limit(own.time_limit);
