@@ -242,6 +242,8 @@ namespace crawler
         options_.output.empty())
       throw InputError(fmt::format("found \"\" after \"--output\", but the name of a {} is expected",
                                    needs_mpi() ? "folder" : "file"));
+    if (options_.resume && options_.overwrite)
+      throw InputError("--resume and --overwrite contradict each other; one of them is expected");
     if (!petsc_options.empty())
     {
       if (const Command *const computes = find_command(chosen()); computes == nullptr || !computes->takes_petsc_options)

@@ -231,8 +231,6 @@ namespace crawler
     , log(its_log)
     , options_(options)
   {
-    if (options_.resume && options_.overwrite)
-      throw InputError("--resume and --overwrite contradict each other; one of them is expected");
   }
 
   bool

@@ -47,8 +47,6 @@ namespace crawler
   bool
   RunMemory::begin(Log &log)
   {
-    if (options_.resume && options_.overwrite)
-      throw InputError("--resume and --overwrite contradict each other; one of them is expected");
     Resumption resumption;
     on_first_rank(communicator_, [&]() {
       require_usable(folder_, options_.overwrite || options_.resume);
