@@ -85,13 +85,15 @@ namespace crawler
       return std::all_of(begin(files), end, [](const auto &file) { return file.path().filename() == study_lock_name; });
     }
 
-    void
-    make_folder(const fs::path &folder)
+    /// The folder, which is made now unless it exists.
+    const fs::path &
+    made(const fs::path &folder)
     {
       std::error_code error;
       fs::create_directories(folder, error);
       if (error)
         throw FileError("cannot make the output folder \"" + folder.string() + "\": " + error.message());
+      return folder;
     }
   } // namespace
 
@@ -171,10 +173,9 @@ namespace crawler
   }
 
   FolderLock::FolderLock(const fs::path &folder, const bool overwrite)
+    : FileLock(made(folder) / study_lock_name)
   {
-    make_folder(folder);
-    lock_.emplace(folder / study_lock_name);
-    if (lock_->lock() == FileLock::State::of_another_process)
+    if (lock() == State::of_another_process)
       throw InputError("a run or study is writing to \"" + folder.string() +
                        "\"; wait for it to end, or give another folder with --output");
     try
@@ -183,20 +184,19 @@ namespace crawler
     }
     catch (...)
     {
-      lock_->remove();
+      remove();
       throw;
     }
   }
 
   FolderLock::~FolderLock()
   {
-    lock_->remove();
+    remove();
   }
 
   void
   prepare(const fs::path &folder)
   {
-    make_folder(folder);
     std::error_code error;
     for (const std::string &name : own_names)
       fs::remove(folder / name, error);
@@ -236,10 +236,8 @@ namespace crawler
   bool
   StudyFolder::has_results() const
   {
-    return std::ranges::any_of(kind.results, [&](const std::string &name) {
-      std::error_code error;
-      return fs::exists(path / name, error);
-    });
+    std::error_code error;
+    return fs::exists(path / kind.results, error);
   }
 
   bool
@@ -248,10 +246,7 @@ namespace crawler
     std::error_code error;
     if (!fs::is_directory(path, error) || fs::is_empty(path, error) || has_results())
       return false;
-    std::set<std::string> unfinished;
-    for (const std::string &name : kind.results)
-      unfinished.insert(name + ".part");
-    return !fs::exists(path / study_lock_name, error) || !has_just_begun(path, unfinished);
+    return !fs::exists(path / study_lock_name, error) || !has_just_begun(path, {kind.results + ".part"});
   }
 
   void
@@ -273,7 +268,7 @@ namespace crawler
   StudyFolder::lock()
   {
     constexpr std::chrono::milliseconds longest_wait(5000), pause(100);
-    lock_.emplace(path / study_lock_name);
+    lock_.emplace(made(path) / study_lock_name);
     FileLock::State state = lock_->lock();
     if (state == FileLock::State::of_another_process)
       log.line(fmt::format("Another study is writing to \"{}\"; it may be about to end: waiting for at most {} s",
@@ -319,7 +314,6 @@ namespace crawler
     };
     require_own();
     require_usable(path, options_.resume || options_.overwrite);
-    make_folder(path);
     lock();
     remove_locks_of_mpi();
     leaving_if_refused(require_own); // the previous owner of the lock may have changed it

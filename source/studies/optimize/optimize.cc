@@ -309,7 +309,7 @@ namespace crawler
     });
     const fs::path path = output_folder(options.output, options.file);
     StudyFolder folder(
-      {"optimization", {OptimizeMemory::file}, {"Optimize/Time limit", "Optimize/Starts"}}, path, options, log);
+      {"optimization", OptimizeMemory::file, {"Optimize/Time limit", "Optimize/Starts"}}, path, options, log);
     std::unique_ptr<OptimizeMemory> memory;
     on_first_rank(communicator, [&]() {
       if (options.resume)

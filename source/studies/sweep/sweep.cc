@@ -238,7 +238,7 @@ namespace crawler
     const auto kept            = points.kept_points();
     const fs::path path        = output_folder(options.output, options.file);
     const PointTable table     = table_of(points);
-    StudyFolder folder({"sweep", {sweep_file}, {"Sweep/Time limit", "Sweep/Time limit per point", "Sweep/Keep fields"}},
+    StudyFolder folder({"sweep", sweep_file, {"Sweep/Time limit", "Sweep/Time limit per point", "Sweep/Keep fields"}},
                        path,
                        options,
                        log);

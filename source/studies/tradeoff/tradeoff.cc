@@ -286,7 +286,7 @@ namespace crawler
     const PointTable table        = tradeoff_table(own.run_time_limit);
     clock.set_limit(own.time_limit);
     const std::function<bool()> interrupted = [&]() { return clock.is_over(); };
-    const StudyKind kind = {"tradeoff", {table.file}, {"Tradeoff/Time limit", "Tradeoff/Time limit per run"}};
+    const StudyKind kind = {"tradeoff", table.file, {"Tradeoff/Time limit", "Tradeoff/Time limit per run"}};
     StudyFolder folder(kind, path, options, log);
     Study study{communicator, input, table, settings, interrupted, clock, options.command_line, folder};
     const TradeoffReference reference = begin(study);

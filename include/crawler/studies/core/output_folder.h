@@ -42,26 +42,15 @@ namespace crawler
                     const std::vector<std::string> &free_entries);
 
   /// Keeps other processes from writing to a folder during its lifetime.
-  class FolderLock
+  class FolderLock : public FileLock
   {
   public:
     /// Makes the folder. Throws InputError if another process writes to it, and as require_usable() does.
     FolderLock(const std::filesystem::path &folder, bool overwrite);
     ~FolderLock();
-    FolderLock(const FolderLock &) = delete;
-
-    /// Throws FileError if the folder is no longer the one that was locked.
-    void
-    require_in_place() const
-    {
-      lock_->require_in_place();
-    }
-
-  private:
-    std::optional<FileLock> lock_;
   };
 
-  /// Makes the folder, without the results of an earlier run (only files that this program writes are removed).
+  /// Removes the results of an earlier run from the folder (only files that this program writes).
   void
   prepare(const std::filesystem::path &folder);
 
@@ -77,7 +66,7 @@ namespace crawler
   struct StudyKind
   {
     std::string name;                      ///< "sweep", for sentences
-    std::vector<std::string> results;      ///< files any of which makes a folder one with results, to be resumed
+    std::string results;                   ///< file that makes a folder one with results, to be resumed
     std::vector<std::string> free_entries; ///< entries for the amount of computation: they may change meanwhile
   };
 
