@@ -4,7 +4,7 @@
 #include <crawler/reduced_models/kinematic.h>
 #include <crawler/reduced_models/reduced_scene.h>
 #include <crawler/reduced_models/strain_functional.h>
-#include <crawler/studies/optimize/gait_models.h>
+#include <crawler/studies/optimize/scene_family.h>
 
 #include <fmt/format.h>
 

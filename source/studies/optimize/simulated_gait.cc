@@ -8,7 +8,7 @@
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/sensitivities.h>
 #include <crawler/studies/optimize/extremes_in_boxes.h>
-#include <crawler/studies/optimize/gait_models.h>
+#include <crawler/studies/optimize/scene_family.h>
 
 #include <algorithm>
 #include <cmath>

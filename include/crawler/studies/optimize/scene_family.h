@@ -80,4 +80,14 @@ namespace crawler
     double
     largest_stress(const std::vector<double> &x, bool rate);
   };
+
+  /// Makes the model of gaits of the kinematic level. Throws InputError if the start does not make a scene with a given
+  /// strain.
+  std::unique_ptr<GaitModel>
+  kinematic_gait(SceneFamily &family, const GaitWishes &wishes, const std::vector<double> &start);
+
+  /// Makes the model of gaits of the levels that are simulated. @p interrupted is called after every step. Throws
+  /// InputError for a wish that only the kinematic level fulfils.
+  std::unique_ptr<GaitModel>
+  simulated_gait(SceneFamily &family, const GaitWishes &wishes, std::function<bool()> interrupted);
 } // namespace crawler
