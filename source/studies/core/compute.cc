@@ -226,7 +226,7 @@ namespace crawler
       Simulation::Options options = options_of_batch(task);
       options.cycles              = cycle_wish(task.parameters, *task.scene, /*has_pictures=*/false);
       bool is_computed            = task.computed.result.time.status != Status::none;
-      Answer answer               = run_to_accuracy(
+      task.computed               = run_to_accuracy(
         MPI_COMM_SELF,
         task.parameters,
         *task.scene,
@@ -240,7 +240,6 @@ namespace crawler
         options,
         /*writes=*/false,
         keep_going);
-      task.computed = {std::move(answer.result), std::move(answer.choice)};
     }
 
     bool
