@@ -4,7 +4,6 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/entry_notes.h>
 #include <crawler/studies/core/input.h>
-#include <crawler/studies/core/variables.h>
 
 #include <fmt/format.h>
 

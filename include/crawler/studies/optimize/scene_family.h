@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/studies/core/variables.h>
+#include <crawler/studies/core/scene_numbers.h>
 #include <crawler/studies/optimize/gait_model.h>
 
 #include <array>
