@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/app/completion.h>
 #include <crawler/app/help_texts.h>
-#include <crawler/app/option_names.h>
 #include <crawler/app/parameter_listing.h>
 #include <crawler/app/templates.h>
 #include <crawler/base/exceptions.h>
