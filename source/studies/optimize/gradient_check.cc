@@ -49,16 +49,13 @@ namespace crawler
                     const std::vector<Checked> &list,
                     std::vector<std::vector<double>> &differences)
     {
-      const auto around = family.stencil(x, i, width);
-      for (std::size_t k = 0; k < around.places.size(); ++k)
+      for (const auto &point : family.stencil(x, i, width))
       {
-        std::vector<double> other = x;
-        other[i] += around.places[k];
-        const GaitValues there = model.evaluate(other, /*with_gradients=*/false);
+        const GaitValues there = model.evaluate(point.x, /*with_gradients=*/false);
         if (!there.problem.empty())
           throw InputError("near the start: " + there.problem, "Optimize/Variables");
         for (std::size_t c = 0; c < list.size(); ++c)
-          differences[c][i] += around.weights[k] * list[c].value(there);
+          differences[c][i] += point.weight * list[c].value(there);
       }
     }
 

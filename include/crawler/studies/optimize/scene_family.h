@@ -57,13 +57,14 @@ namespace crawler
     double
     scale(const std::vector<double> &x, std::size_t i) const;
 
-    /// Stencil about variable @p i: offsets @p places from x, all in its range, and the weights of the values there in
-    /// the derivative, of fourth order inside the range. @p relative_step: in scales of the variable.
-    struct Stencil
+    /// Points of a stencil about variable @p i, all in its range, by their offset from x, and the weights of the values
+    /// there in the derivative, of fourth order inside the range. @p relative_step: in scales of the variable.
+    struct StencilPoint
     {
-      std::vector<double> places, weights;
+      double offset, weight;
+      std::vector<double> x;
     };
-    Stencil
+    std::vector<StencilPoint>
     stencil(const std::vector<double> &x, std::size_t i, double relative_step) const;
 
     /// Derivatives by differences of @p values of the parameters: [place][variable]. Throws InputError.
