@@ -24,6 +24,10 @@ namespace crawler
 
   namespace
   {
+    /// File that is locked (base/file_lock.h) while a run or study writes to the folder.
+    const std::string study_lock_name = "study.lock";
+    /// Page that `crawler report` makes.
+    const std::string report_name = "report.html";
     /// Files of runs and studies, except those that a run writes as it proceeds.
     const std::vector<std::string> own_names =
       split_parts("original.prm, parameters.prm, log.txt, summary.json, restart.dat, restart.dat.new, restart.old.dat, "
@@ -94,6 +98,22 @@ namespace crawler
       if (error)
         throw FileError("cannot make the output folder \"" + folder.string() + "\": " + error.message());
       return folder;
+    }
+
+    /// Removes the file FILE-1-NUMBER.lock that MPI leaves beside a table where the only process of a study is killed.
+    void
+    remove_locks_of_mpi(const fs::path &folder)
+    {
+      const auto is_lock = [](const std::string &name) {
+        return name.ends_with(".lock") && (name.find(".h5-") != name.npos || name.find(".h5.part-") != name.npos);
+      };
+      std::vector<fs::path> locks;
+      for (const auto &file : fs::directory_iterator(folder))
+        if (is_lock(file.path().filename().string()))
+          locks.push_back(file.path());
+      std::error_code ignored; // remaining locks are harmless
+      for (const auto &file : locks)
+        fs::remove(file, ignored);
     }
   } // namespace
 
@@ -250,21 +270,6 @@ namespace crawler
   }
 
   void
-  StudyFolder::remove_locks_of_mpi() const
-  {
-    const auto is_lock = [](const std::string &name) {
-      return name.ends_with(".lock") && (name.find(".h5-") != name.npos || name.find(".h5.part-") != name.npos);
-    };
-    std::vector<fs::path> locks;
-    for (const auto &file : fs::directory_iterator(path))
-      if (is_lock(file.path().filename().string()))
-        locks.push_back(file.path());
-    std::error_code ignored; // remaining locks are harmless
-    for (const auto &file : locks)
-      fs::remove(file, ignored);
-  }
-
-  void
   StudyFolder::lock()
   {
     constexpr std::chrono::milliseconds longest_wait(5000), pause(100);
@@ -315,7 +320,7 @@ namespace crawler
     require_own();
     require_usable(path, options_.resume || options_.overwrite);
     lock();
-    remove_locks_of_mpi();
+    remove_locks_of_mpi(path);
     leaving_if_refused(require_own); // the previous owner of the lock may have changed it
     if (options_.resume && has_results())
       return true;

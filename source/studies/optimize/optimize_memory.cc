@@ -15,9 +15,6 @@
 
 namespace crawler
 {
-  const std::string OptimizeMemory::file = "starts.h5", OptimizeMemory::group = "starts";
-  const std::string OptimizeMemory::evaluations_file = "results.h5", OptimizeMemory::evaluations_group = "optimize";
-
   namespace
   {
     const std::string converged = "converged", stopped = "stopped";

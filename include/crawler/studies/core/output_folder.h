@@ -23,12 +23,6 @@ namespace crawler
   void
   require_usable(const std::filesystem::path &folder, bool overwrite);
 
-  /// Name of the file that is locked (base/file_lock.h) while a run or study writes to the folder.
-  inline const std::string study_lock_name = "study.lock";
-
-  /// Page that `crawler report` makes.
-  inline const std::string report_name = "report.html";
-
   /// Returns true if the folder has nothing but what a run or study leaves that is killed while it begins, and files of
   /// these names too.
   bool
@@ -114,10 +108,6 @@ namespace crawler
 
     void
     lock();
-
-    /// Removes the file FILE-1-NUMBER.lock that MPI leaves beside a table where the only process of a study is killed.
-    void
-    remove_locks_of_mpi() const;
 
     void
     leaving_if_refused(const std::function<void()> &work);

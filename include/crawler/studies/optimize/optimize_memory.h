@@ -19,8 +19,8 @@ namespace crawler
   class OptimizeMemory
   {
   public:
-    static const std::string file, group;                         ///< starts.h5
-    static const std::string evaluations_file, evaluations_group; ///< results.h5
+    static inline const std::string file = "starts.h5", group = "starts";
+    static inline const std::string evaluations_file = "results.h5", evaluations_group = "optimize";
 
     /// Begins a study in the folder, or resumes the one in it. @p cases must outlive it. Throws as begin_or_resume() of
     /// a table.
