@@ -41,34 +41,30 @@ namespace crawler
     {
       const char *name, *description;
       ExitCode (*function)(MPI_Comm, const CommandOptions &, const ParameterFile &);
-      bool writes; ///< --resume, --overwrite and --quiet
       bool takes_petsc_options;
+      bool writes = true; ///< --resume, --overwrite and --quiet
     };
     constexpr Command commands[] = {
       {"run",
        "Runs the crawler that a parameter file describes",
        run,
-       /*writes=*/true,
        /*takes_petsc_options=*/true},
       {"check",
        "Says what run would do with a parameter file, without running it or writing anything",
        check,
-       /*writes=*/false,
-       /*takes_petsc_options=*/true},
+       /*takes_petsc_options=*/true,
+       /*writes=*/false},
       {"tradeoff",
        "Measures the cost and the error of many numerical settings on the scene of a parameter file",
        tradeoff,
-       /*writes=*/true,
        /*takes_petsc_options=*/false},
       {"optimize",
        "Searches for the best gait as section Optimize of a parameter file defines it",
        optimize,
-       /*writes=*/true,
        /*takes_petsc_options=*/false},
       {"sweep",
        "Runs all points of section Sweep of a parameter file and tabulates the results",
        sweep,
-       /*writes=*/true,
        /*takes_petsc_options=*/true},
     };
 

@@ -11,7 +11,6 @@
 #include <crawler/studies/core/compute.h>
 #include <crawler/time/failure.h>
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
