@@ -65,7 +65,7 @@ namespace crawler
       find(const std::string &name, const std::string &own, const std::string &or_else = "") const
       {
         std::string path = normal_path(name);
-        const auto word  = own.substr(own.rfind('/') + 1);
+        const auto word  = split_path(own).back();
         const auto is_in = [&](const std::vector<std::string> &list) {
           if (std::ranges::find(list, path) != list.end())
             return true;

@@ -5,6 +5,7 @@
 #include <crawler/studies/optimize/optimize_cases.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -100,16 +101,10 @@ namespace crawler
   std::string
   OptimizeCases::in_words(const unsigned long number) const
   {
-    std::string words;
+    std::vector<std::string> words;
     for (std::size_t i = 0; i < names_.axes.size(); ++i)
-    {
-      const std::string &axis = names_.axes[i];
-      words += fmt::format("{}{} = {}",
-                           i == 0 ? "" : ", ",
-                           axis.substr(axis.rfind('/') + 1 /* npos + 1 is 0 */),
-                           names_.cases[number].values[i]);
-    }
-    return words;
+      words.push_back(split_path(names_.axes[i]).back() + " = " + names_.cases[number].values[i]);
+    return fmt::format("{}", fmt::join(words, ", "));
   }
 
   std::vector<std::string>
