@@ -245,11 +245,11 @@ namespace crawler
           fs::remove(file.path(), error);
   }
 
-  StudyFolder::StudyFolder(StudyKind its_kind, fs::path its_path, const CommandOptions &options, Log &its_log)
+  StudyFolder::StudyFolder(StudyKind its_kind, const CommandOptions &its_options, Log &its_log)
     : kind(std::move(its_kind))
-    , path(std::move(its_path))
+    , options(its_options)
+    , path(output_folder(options.output, options.file))
     , log(its_log)
-    , options_(options)
   {
   }
 
@@ -311,18 +311,18 @@ namespace crawler
   StudyFolder::begin(const std::string &original, const std::string &effective)
   {
     const auto require_own = [&]() {
-      if (options_.resume && is_foreign())
+      if (options.resume && is_foreign())
         throw InputError(
           fmt::format("\"{}\" has no {} that can be resumed; another folder is expected for --output, or --overwrite",
                       path.string(),
                       kind.name));
     };
     require_own();
-    require_usable(path, options_.resume || options_.overwrite);
+    require_usable(path, options.resume || options.overwrite);
     lock();
     remove_locks_of_mpi(path);
     leaving_if_refused(require_own); // the previous owner of the lock may have changed it
-    if (options_.resume && has_results())
+    if (options.resume && has_results())
       return true;
     prepare(path);
     write_file(path / "original.prm", original);

@@ -71,7 +71,7 @@ namespace crawler
   class StudyFolder
   {
   public:
-    StudyFolder(StudyKind its_kind, std::filesystem::path its_path, const CommandOptions &options, Log &its_log);
+    StudyFolder(StudyKind its_kind, const CommandOptions &its_options, Log &its_log);
 
     /// Returns true if a study is to be resumed (--resume). Otherwise makes the folder, with the parameter file, the @p
     /// effective parameters and the log; a study that was killed before it had results is begun anew. Throws InputError
@@ -96,7 +96,8 @@ namespace crawler
     leave();
 
     const StudyKind kind;
-    const std::filesystem::path path;
+    const CommandOptions &options;
+    const std::filesystem::path path; ///< output_folder()
     Log &log;
 
   private:
@@ -112,7 +113,6 @@ namespace crawler
     void
     leaving_if_refused(const std::function<void()> &work);
 
-    const CommandOptions &options_;
     std::optional<FileLock> lock_;
   };
 } // namespace crawler
