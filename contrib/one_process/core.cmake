@@ -25,8 +25,8 @@ foreach(one base/archive base/clock base/communication base/csv_numbers base/cub
         parameters/axis parameters/declarations parameters/entry_info parameters/entry_lists parameters/listed_numbers
         parameters/parameter_file parameters/plain_text parameters/slips
         studies/core/entry_notes studies/core/entry_rules studies/core/form studies/core/input studies/core/parameters
-        studies/core/scene_numbers studies/core/sensitivity_entries studies/core/variables
-        studies/run/field_runs studies/run/reduced_pictures studies/run/run_in_memory)
+        studies/core/scene_numbers
+        studies/run/reduced_pictures studies/run/run_in_memory)
   list(APPEND ONE_PROCESS_SOURCES ${CRAWLER}/source/${one}.cc)
 endforeach()
 list(APPEND ONE_PROCESS_SOURCES ${ONE_PROCESS}/left_out.cc)

@@ -7,7 +7,7 @@
 #include <crawler/studies/core/log.h>
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/progress.h>
-#include <crawler/studies/core/variables.h>
+#include <crawler/studies/core/scene_numbers.h>
 #include <crawler/studies/optimize/optimize.h>
 #include <crawler/studies/run/run_files.h>
 #include <crawler/studies/sweep/sweep.h>

@@ -12,8 +12,6 @@
 #include <crawler/studies/core/python.h>
 #include <crawler/time/failure.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <csignal>
 #include <cstring>

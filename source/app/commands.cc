@@ -41,38 +41,30 @@ namespace crawler
     {
       const char *name, *description;
       ExitCode (*function)(MPI_Comm, const CommandOptions &, const ParameterFile &);
-      bool writes, resumes, takes_petsc_options; ///< --overwrite and --quiet; --resume
+      bool takes_petsc_options;
+      bool writes = true; ///< --resume, --overwrite and --quiet
     };
     constexpr Command commands[] = {
       {"run",
        "Runs the crawler that a parameter file describes",
        run,
-       /*writes=*/true,
-       /*resumes=*/true,
        /*takes_petsc_options=*/true},
       {"check",
        "Says what run would do with a parameter file, without running it or writing anything",
        check,
-       /*writes=*/false,
-       /*resumes=*/false,
-       /*takes_petsc_options=*/true},
+       /*takes_petsc_options=*/true,
+       /*writes=*/false},
       {"tradeoff",
        "Measures the cost and the error of many numerical settings on the scene of a parameter file",
        tradeoff,
-       /*writes=*/true,
-       /*resumes=*/true,
        /*takes_petsc_options=*/false},
       {"optimize",
        "Searches for the best gait as section Optimize of a parameter file defines it",
        optimize,
-       /*writes=*/true,
-       /*resumes=*/true,
        /*takes_petsc_options=*/false},
       {"sweep",
        "Runs all points of section Sweep of a parameter file and tabulates the results",
        sweep,
-       /*writes=*/true,
-       /*resumes=*/true,
        /*takes_petsc_options=*/true},
     };
 
@@ -95,7 +87,7 @@ namespace crawler
         ->option_text("ENTRY=VALUE");
       own->add_option("--output", options.output, "Output folder (default: output-NAME for NAME.prm)")
         ->option_text("DIR");
-      if (command.resumes)
+      if (command.writes)
         own->add_flag(
           "--resume",
           options.resume,
@@ -246,22 +238,17 @@ namespace crawler
         options_.output.empty())
       throw InputError(fmt::format("found \"\" after \"--output\", but the name of a {} is expected",
                                    needs_mpi() ? "folder" : "file"));
+    if (options_.resume && options_.overwrite)
+      throw InputError("--resume and --overwrite contradict each other; one of them is expected");
     if (!petsc_options.empty())
     {
-      check_petsc_options(petsc_options);
+      if (const Command *const computes = find_command(chosen()); computes == nullptr || !computes->takes_petsc_options)
+        throw InputError(fmt::format(
+          "found \"{}\" after \"--\", but the command \"{}\" takes no PETSc options", petsc_options[0], chosen()));
       // PETSc options are for its integrators, unless the user chooses another engine
       options_.overrides.insert(options_.overrides.begin(), "Time/Engine=petsc");
     }
     return true;
-  }
-
-  void
-  Commands::check_petsc_options(const std::vector<std::string> &petsc_options) const
-  {
-    const Command *const command = find_command(chosen());
-    if (command == nullptr || !command->takes_petsc_options)
-      throw InputError(fmt::format(
-        "found \"{}\" after \"--\", but the command \"{}\" takes no PETSc options", petsc_options[0], chosen()));
   }
 
   bool

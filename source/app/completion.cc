@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/app/completion.h>
 #include <crawler/app/help_texts.h>
-#include <crawler/app/option_names.h>
 #include <crawler/app/parameter_listing.h>
 #include <crawler/app/templates.h>
 #include <crawler/base/exceptions.h>
@@ -10,7 +9,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <iostream>
 #include <set>
 
@@ -18,21 +16,6 @@ namespace crawler
 {
   namespace
   {
-    /// Admissible values of an option or of an argument of a command.
-    struct Values
-    {
-      enum class Kind
-      {
-        none,
-        words,
-        beginnings, ///< beginnings of a word, which continues behind them
-        parameter_file,
-        folder,
-        file
-      } kind                         = Kind::none;
-      std::vector<std::string> words = {};
-    };
-
     std::vector<std::string>
     section_names()
     {
@@ -43,61 +26,40 @@ namespace crawler
       return {sections.begin(), sections.end()};
     }
 
-    Values
-    values_of(const CLI::App &command, const CLI::Option &option)
+    /// Commands that fill COMPREPLY with those of the words that fit.
+    std::string
+    words_action(const std::vector<std::string> &words)
     {
-      using Kind             = Values::Kind;
+      return fmt::format("_crawler_words '{}'", fmt::join(words, "' '"));
+    }
+
+    /// Commands for the admissible values of an option or of an argument of a command.
+    std::string
+    bash_action(const CLI::App &command, const CLI::Option &option)
+    {
       const std::string name = option.get_positional() ? option.get_name() : option.get_lnames().front();
       if (name == "FILE")
-        return {Kind::parameter_file};
-      if (name == "DIR")
-        return {Kind::folder};
-      if (name == "output")
-        return {command.get_name() == "init" ? Kind::file : Kind::folder};
+        return "_crawler_files -X '!*.prm'";
+      if (name == "output" && command.get_name() == "init")
+        return "_crawler_files";
+      if (name == "output" || name == "DIR")
+        return "_crawler_files -d";
       if (name == "TEMPLATE")
-        return {Kind::words, template_names()};
+        return words_action(template_names());
       if (name == "SHELL")
-        return {Kind::words, completion_shells()};
+        return words_action(completion_shells());
       if (name == "SECTION")
-        return {Kind::words, section_names()};
+        return words_action(section_names());
       if (name == "format")
-        return {Kind::words, parameter_formats()};
+        return words_action(parameter_formats());
       if (name == "kind")
-        return {Kind::words, plot_kinds()};
+        return words_action(plot_kinds());
       if (name != "set")
-        return {};
-      Values entries = {Kind::beginnings, entry_names()};
-      for (std::string &entry : entries.words)
+        return ":";
+      std::vector<std::string> beginnings = entry_names();
+      for (std::string &entry : beginnings)
         entry += "=";
-      return entries;
-    }
-
-    bool
-    has_value(const CLI::Option &option)
-    {
-      return option.get_items_expected_max() > 0;
-    }
-
-    /// Commands that fill COMPREPLY.
-    std::string
-    bash_action(const Values &values)
-    {
-      switch (values.kind)
-      {
-        case Values::Kind::none:
-          return ":";
-        case Values::Kind::parameter_file:
-          return "_crawler_files -X '!*.prm'";
-        case Values::Kind::folder:
-          return "_crawler_files -d";
-        case Values::Kind::file:
-          return "_crawler_files";
-        case Values::Kind::beginnings:
-          return fmt::format("compopt -o nospace 2>/dev/null; _crawler_words '{}'", fmt::join(values.words, "' '"));
-        case Values::Kind::words:
-          return fmt::format("_crawler_words '{}'", fmt::join(values.words, "' '"));
-      }
-      return ":";
+      return "compopt -o nospace 2>/dev/null; " + words_action(beginnings);
     }
 
     constexpr const char *bash_head =
@@ -134,47 +96,6 @@ _crawler()
   COMPREPLY=()
   [ "$before" != "=" ] && [ "$word" != "=" ] || return 0
 )~~~~";
-
-    void
-    print_bash(const CLI::App &app)
-    {
-      std::cout << bash_head;
-      std::vector<std::string> names;
-      for (const CLI::App *command : all_commands(app))
-        names.push_back(command->get_name());
-      for (const CLI::Option *option : app.get_options())
-        names.push_back(typed_names(*option).front());
-      std::cout << fmt::format("  [ \"$COMP_CWORD\" -gt 1 ] || {{ _crawler_words '{}'; return; }}\n"
-                               "  case \"${{COMP_WORDS[1]}} $before\" in\n",
-                               fmt::join(names, "' '"));
-      std::string arguments;
-      for (const CLI::App *command : all_commands(app))
-      {
-        std::vector<std::string> options;
-        std::string action = ":";
-        for (const CLI::Option *option : command->get_options())
-        {
-          if (option->get_positional())
-          {
-            action = bash_action(values_of(*command, *option));
-            continue;
-          }
-          options.push_back(typed_names(*option).front());
-          if (has_value(*option))
-            std::cout << fmt::format("    '{} {}') {}; return ;;\n",
-                                     command->get_name(),
-                                     options.back(),
-                                     bash_action(values_of(*command, *option)));
-        }
-        arguments += fmt::format("    '{0} '-*) _crawler_words '{1}' ;;\n    '{0} '*) {2} ;;\n",
-                                 command->get_name(),
-                                 fmt::join(options, "' '"),
-                                 action);
-      }
-      std::cout << "  esac\n  case \"${COMP_WORDS[1]} $word\" in\n"
-                << arguments << "  esac\n}\n"
-                << "complete -F _crawler crawler\n";
-    }
   } // namespace
 
   std::vector<std::string>
@@ -191,6 +112,37 @@ _crawler()
                                    "\"autoload -U bashcompinit; bashcompinit\"",
                                    shell,
                                    quoted_list(completion_shells())));
-    print_bash(app);
+    std::cout << bash_head;
+    std::vector<std::string> names;
+    for (const CLI::App *command : all_commands(app))
+      names.push_back(command->get_name());
+    for (const CLI::Option *option : app.get_options())
+      names.push_back(typed_names(*option).front());
+    std::cout << fmt::format("  [ \"$COMP_CWORD\" -gt 1 ] || {{ {}; return; }}\n"
+                             "  case \"${{COMP_WORDS[1]}} $before\" in\n",
+                             words_action(names));
+    std::string arguments;
+    for (const CLI::App *command : all_commands(app))
+    {
+      std::vector<std::string> options;
+      std::string action = ":";
+      for (const CLI::Option *option : command->get_options())
+      {
+        if (option->get_positional())
+        {
+          action = bash_action(*command, *option);
+          continue;
+        }
+        options.push_back(typed_names(*option).front());
+        if (option->get_items_expected_max() > 0) // it has a value
+          std::cout << fmt::format(
+            "    '{} {}') {}; return ;;\n", command->get_name(), options.back(), bash_action(*command, *option));
+      }
+      arguments +=
+        fmt::format("    '{0} '-*) {1} ;;\n    '{0} '*) {2} ;;\n", command->get_name(), words_action(options), action);
+    }
+    std::cout << "  esac\n  case \"${COMP_WORDS[1]} $word\" in\n"
+              << arguments << "  esac\n}\n"
+              << "complete -F _crawler crawler\n";
   }
 } // namespace crawler

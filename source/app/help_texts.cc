@@ -95,6 +95,23 @@ namespace crawler
     return list;
   }
 
+  std::vector<const CLI::App *>
+  all_commands(const CLI::App &app)
+  {
+    return app.get_subcommands([](const CLI::App *) { return true; });
+  }
+
+  std::vector<std::string>
+  typed_names(const CLI::Option &option)
+  {
+    std::vector<std::string> names;
+    for (const std::string &name : option.get_lnames())
+      names.push_back("--" + name);
+    for (const std::string &name : option.get_snames())
+      names.push_back("-" + name);
+    return names;
+  }
+
   std::string
   help_footer()
   {

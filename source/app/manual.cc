@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/app/help_texts.h>
 #include <crawler/app/manual.h>
-#include <crawler/app/option_names.h>
 #include <crawler/base/versions.h>
 
 #include <fmt/format.h>

@@ -13,19 +13,13 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <functional>
 #include <iostream>
+#include <string_view>
 
 namespace crawler
 {
   namespace
   {
-    struct Format
-    {
-      const char *name;
-      std::function<void(const Declarations &, std::ostream &)> print;
-    };
-
     /// Prints descriptions of the numbers in summary.json, and the versions of the program, for pages that show them.
     void
     print_results(const Declarations &, std::ostream &out)
@@ -33,16 +27,16 @@ namespace crawler
       out << nlohmann::ordered_json({{"versions", versions()}, {"numbers", result_entries()}}).dump(2) << "\n";
     }
 
-    const std::vector<Format> &
-    formats()
+    struct Format
     {
-      static const std::vector<Format> list = {{"prm", print_prm},
-                                               {"json", print_json},
-                                               {"markdown", print_markdown},
-                                               {"schema", print_schema},
-                                               {"results", print_results}};
-      return list;
-    }
+      std::string_view name;
+      void (*print)(const Declarations &, std::ostream &);
+    };
+    constexpr Format formats[] = {{"prm", print_prm},
+                                  {"json", print_json},
+                                  {"markdown", print_markdown},
+                                  {"schema", print_schema},
+                                  {"results", print_results}};
 
     /// Declares all entries, with one term of a sum, to show its entries.
     void
@@ -59,7 +53,7 @@ namespace crawler
   parameter_formats()
   {
     std::vector<std::string> names;
-    for (const Format &format : formats())
+    for (const Format &format : formats)
       names.emplace_back(format.name);
     return names;
   }
@@ -67,8 +61,8 @@ namespace crawler
   void
   print_parameters(const std::string &format, const std::string &section)
   {
-    const auto found = std::ranges::find(formats(), format, [](const Format &one) { return std::string(one.name); });
-    if (found == formats().end())
+    const auto *const found = std::ranges::find(formats, format, &Format::name);
+    if (found == std::end(formats))
       throw InputError(
         fmt::format("\"--format\" is \"{}\", but {} is expected", format, quoted_list(parameter_formats())));
     Parameters parameters;

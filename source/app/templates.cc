@@ -2,42 +2,17 @@
 #include <crawler/app/templates.h>
 #include <crawler/app/texts.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
 #include <crawler/base/nearest_name.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
+#include <filesystem>
 #include <iostream>
 
 namespace crawler
 {
-  namespace
-  {
-    /// Writes a file that does not exist yet.
-    void
-    write_new_file(const std::string &path, const std::string_view text)
-    {
-      std::FILE *const file = std::fopen(path.c_str(), "wx");
-      if (file == nullptr && errno == EEXIST)
-        throw InputError(fmt::format("\"{}\" already exists; the name of a new file is expected", path));
-      bool good = file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size();
-      int error = errno;
-      if (file != nullptr && std::fclose(file) != 0 && good)
-      {
-        good  = false;
-        error = errno;
-      }
-      if (good)
-        return;
-      if (file != nullptr)
-        std::remove(path.c_str()); // created just now
-      throw FileError(fmt::format("cannot write \"{}\": {}", path, std::strerror(error)), /*on_all_ranks=*/true);
-    }
-  } // namespace
-
   std::vector<std::string>
   template_names()
   {
@@ -63,6 +38,11 @@ namespace crawler
     if (output.empty())
       std::cout << found->text;
     else
-      write_new_file(output, found->text);
+    {
+      std::error_code ignored;
+      if (std::filesystem::exists(std::filesystem::symlink_status(output, ignored)))
+        throw InputError(fmt::format("\"{}\" already exists; the name of a new file is expected", output));
+      write_file(output, found->text);
+    }
   }
 } // namespace crawler

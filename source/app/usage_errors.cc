@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/app/option_names.h>
+#include <crawler/app/help_texts.h>
 #include <crawler/app/usage_errors.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/nearest_name.h>

@@ -18,7 +18,7 @@ namespace crawler::test
   }
 
   /// Computes what `crawler run` does, without files.
-  inline Computed
+  inline Answer
   computed(const Parameters &parameters)
   {
     Task task;
@@ -30,7 +30,7 @@ namespace crawler::test
     return task.computed;
   }
 
-  inline Computed
+  inline Answer
   computed(const Settings &settings)
   {
     return computed(parameters_with(settings));

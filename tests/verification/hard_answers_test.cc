@@ -44,7 +44,7 @@ TEST(HardAnswers, ExtremesOfSteepFriction)
   for (const auto &[text, smallest, efficiency] : scenes)
   {
     const test::Settings settings  = test::with(test::set(text), {{"Accuracy", "1e-2"}});
-    const Computed answer          = test::computed(settings);
+    const Answer answer            = test::computed(settings);
     const SimulationResult &result = answer.result;
     EXPECT_NEAR(result.min_stretch.value, smallest, error_bound(result, "min_stretch.value").value()) << text;
     EXPECT_NEAR(result.gait_efficiency.value(), efficiency, error_bound(result, "gait.efficiency").value()) << text;

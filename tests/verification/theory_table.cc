@@ -44,7 +44,7 @@ main(int argc, char **argv)
   for (const auto &row : rows)
     for (const double accuracy : accuracies)
     {
-      const Computed outcome = test::computed(
+      const Answer outcome = test::computed(
         test::with(test::wave(row["exponent"], row["chi"], row["speed"], row["end_time"], row["elastic_modulus"]),
                    "Accuracy = {}",
                    accuracy));

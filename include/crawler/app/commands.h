@@ -52,9 +52,6 @@ namespace crawler
     const std::string &
     chosen() const;
 
-    void
-    check_petsc_options(const std::vector<std::string> &petsc_options) const;
-
     CLI::App app_;
     CommandOptions options_;
     std::vector<std::string> words_;           ///< words of the command line

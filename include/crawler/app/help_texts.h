@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <CLI/CLI.hpp>
+
 #include <string>
 #include <vector>
 
@@ -29,6 +31,14 @@ namespace crawler
   /// Exit codes as in the table of the user guide.
   std::vector<ExitCodeMeaning>
   exit_code_meanings();
+
+  /// Commands of the program, in the order of the help.
+  std::vector<const CLI::App *>
+  all_commands(const CLI::App &app);
+
+  /// Names of an option as they are typed: "--set", "-h".
+  std::vector<std::string>
+  typed_names(const CLI::Option &option);
 
   /// Text at the end of crawler --help.
   std::string

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-namespace CLI
-{
-  class App;
-}
+#include <CLI/CLI.hpp>
 
 namespace crawler
 {

@@ -34,7 +34,7 @@ namespace crawler
     std::optional<double> energy_balance_tolerance;
     std::vector<double> active_stress_table; ///< numbers of samples over s and t; empty: no table
     unsigned int segment_table = 0;          ///< parts of the duration; 0: no table
-    std::string sensitivities  = "";         ///< entries, or "all" (studies/core/sensitivity_entries.h)
+    std::string sensitivities  = "";         ///< entries, or "all" (studies/core/scene_numbers.h)
     std::string uncertainty    = "";         ///< entries and their standard deviations (likewise)
 
     /// True if derivatives by entries are wanted.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/exceptions.h>
+
 #include <filesystem>
 #include <set>
 #include <string>
@@ -10,7 +12,6 @@
 namespace crawler
 {
   class Declarations;
-  class InputError;
 
   /// A line "set Entry = value" of a file or one --set of the command line, with its place.
   struct Assignment
@@ -52,6 +53,21 @@ namespace crawler
     /// (slips.h) is named instead.
     InputError
     with_place(const InputError &error) const;
+
+    /// Returns the result of @p work; an InputError that it throws gets its place.
+    template <typename Work>
+    auto
+    placing_errors(const Work &work) const
+    {
+      try
+      {
+        return work();
+      }
+      catch (const InputError &error)
+      {
+        throw with_place(error);
+      }
+    }
 
     /// The sections within the section @p path that the file opens or sets entries of, sorted.
     std::set<std::string>

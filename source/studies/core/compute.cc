@@ -10,7 +10,6 @@
 #include <crawler/studies/core/compute.h>
 #include <crawler/time/failure.h>
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -225,7 +224,7 @@ namespace crawler
       Simulation::Options options = options_of_batch(task);
       options.cycles              = cycle_wish(task.parameters, *task.scene, /*has_pictures=*/false);
       bool is_computed            = task.computed.result.time.status != Status::none;
-      Answer answer               = run_to_accuracy(
+      task.computed               = run_to_accuracy(
         MPI_COMM_SELF,
         task.parameters,
         *task.scene,
@@ -239,7 +238,6 @@ namespace crawler
         options,
         /*writes=*/false,
         keep_going);
-      task.computed = {std::move(answer.result), std::move(answer.choice)};
     }
 
     bool

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/parameters/axis.h>
 #include <crawler/parameters/listed_numbers.h>
 #include <crawler/scene/active_stress_library.h>
 #include <crawler/studies/core/entry_rules.h>
@@ -24,8 +25,6 @@ namespace crawler
       return false;
     }
 
-    const std::string command_entry = "crawler";
-
     // Conditions of a chooser on its value.
 
     auto
@@ -41,9 +40,11 @@ namespace crawler
       return !value.empty() && value != "automatic";
     }
     auto
-    is_not(const double number)
+    is_not(const std::string &word)
     {
-      return [number](const std::string &value) { return to_number(value) != number; };
+      return [word](const std::string &value) {
+        return value != word && !(to_number(word) && to_number(value) == to_number(word));
+      };
     }
     bool
     is_csv(const std::string &value)
@@ -122,7 +123,7 @@ namespace crawler
       }
       add("Pulse/", {"Window edge"}, {"Window start", "Window end"}, is_set);
       add("Segments/", {"Front width"}, {"Switching"}, any_of({"smooth"}));
-      add("Segments/", {"Phase lag", "Direction", "Gap"}, {"Number of segments"}, is_not(1.));
+      add("Segments/", {"Phase lag", "Direction", "Gap"}, {"Number of segments"}, is_not("1"));
       add(strain, {"Strain", "Constants"}, {"Given by"}, any_of({"expression"}));
       add(strain, {"File"}, {"Given by"}, any_of({"table"}));
       add(strain, {"Mean strain", "Amplitude", "Wave number", "Wave speed", "Phase"}, {"Given by"}, any_of({"wave"}));
@@ -151,92 +152,68 @@ namespace crawler
       }
     }
 
-    /// Adds the rules of the sections behind the active stress in the file.
-    void
-    add_rules_of_numerics(std::vector<EntryRule> &rules)
-    {
-      const auto has_equation   = any_of({"auto", "linear", "nonlinear"});
-      const auto is_not_stretch = any_of({"automatic", "position"});
-      const std::string mesh = "Discretization/", time = "Time/", output = "Output/";
-      rules.push_back({{"Error estimate",
-                        mesh,
-                        time + "Integrator",
-                        time + "Engine",
-                        time + "Order",
-                        time + "Step control",
-                        time + "Tolerance",
-                        time + "Initial step",
-                        time + "Cycle stop",
-                        time + "Maximum number of steps",
-                        time + "Wall time limit",
-                        time + "Checkpoint interval"},
-                       {{"Model", has_equation}}});
-      rules.push_back(
-        {{mesh + "Mesh tolerance", mesh + "Smallest cell"}, {{mesh + "Mesh", any_of({"adaptive", "automatic"})}}});
-      rules.push_back({{mesh + "Mesh", mesh + "Mesh tolerance", mesh + "Smallest cell", mesh + "Degree"},
-                       {{mesh + "Formulation", is_not_stretch}}});
-      // Engine has no effect where the fused engine does not fit: PETSc is the only one.
-      rules.push_back({{time + "Engine"}, {{time + "Integrator", any_of({"automatic", "radau 5", "radau 9"})}}});
-      rules.push_back({{time + "Engine"}, {{time + "Step control", any_of({"adaptive"})}}});
-      rules.push_back({{time + "Engine"}, {{mesh + "Mesh", any_of({"automatic", "uniform"})}}});
-      rules.push_back({{time + "Order"}, {{time + "Integrator", any_of({"bdf", "automatic"})}}});
-      rules.push_back(
-        {{output + "Snapshot format", output + "Kymograph"}, {{output + "Number of snapshots", is_not(0.)}}});
-      rules.push_back({{output + "Ledger tolerance"}, {{output + "Ledger", any_of({"true"})}}});
-      // Perturbation, a series, has no energy balance to check.
-      rules.push_back(
-        {{output + "Ledger tolerance"}, {{"Model", any_of({"auto", "kinematic", "linear", "nonlinear"})}}});
-      // Cycle stop is off by default with fixed steps.
-      rules.push_back({{time + "Cycle stop"},
-                       {{time + "Cycle stop", any_of({"on"})}, {time + "Step control", any_of({"adaptive"})}}});
-    }
+    /// Rules in words: entries, and the choosers with the values that fit. The sections of studies serve their own
+    /// command; check makes the plan of all.
+    constexpr std::pair<const char *, const char *> rules_in_words[] = {
+      {"Body/Anchoring exponent", "Ground/Friction law = power"},
+      {"Ground/Expression", "Ground/Friction law = expression"},
+      {"Ground/Switching velocity", "Ground/Backward ratio != 1"},
 
-    /// Adds the rules of the studies, and of other entries that some commands do not need.
-    void
-    add_rules_of_commands(std::vector<EntryRule> &rules)
+      {"Error estimate, Discretization/, Time/Integrator, Time/Engine, Time/Order, Time/Step control, Time/Tolerance, "
+       "Time/Initial step, Time/Cycle stop, Time/Maximum number of steps, Time/Wall time limit, "
+       "Time/Checkpoint interval",
+       "Model = auto, linear, nonlinear"},
+      {"Discretization/Mesh tolerance, Discretization/Smallest cell", "Discretization/Mesh = adaptive, automatic"},
+      {"Discretization/Mesh, Discretization/Mesh tolerance, Discretization/Smallest cell, Discretization/Degree",
+       "Discretization/Formulation = automatic, position"},
+      // Engine has no effect where the fused engine does not fit: PETSc is the only one.
+      {"Time/Engine", "Time/Integrator = automatic, radau 5, radau 9"},
+      {"Time/Engine", "Time/Step control = adaptive"},
+      {"Time/Engine", "Discretization/Mesh = automatic, uniform"},
+      {"Time/Order", "Time/Integrator = bdf, automatic"},
+      {"Output/Snapshot format, Output/Kymograph", "Output/Number of snapshots != 0"},
+      {"Output/Ledger tolerance", "Output/Ledger = true"},
+      // Perturbation, a series, has no energy balance to check.
+      {"Output/Ledger tolerance", "Model = auto, kinematic, linear, nonlinear"},
+      // Cycle stop is off by default with fixed steps.
+      {"Time/Cycle stop", "Time/Cycle stop = on; Time/Step control = adaptive"},
+
+      {"Sweep/", "crawler = sweep, optimize, check"},
+      {"Tradeoff/", "crawler = tradeoff, check"},
+      {"Optimize/", "crawler = optimize, check"},
+      {"Fit/", "crawler = fit, check"},
+      {"Sweep/Design, Sweep/Number of points, Sweep/Seed", "Sweep/Axes is set"},
+      {"Sweep/Keep fields, Sweep/Cross-check, Sweep/Cross-check refinement, Sweep/Time limit per point, "
+       "Sweep/Time limit",
+       "crawler = sweep, check"},
+      {"Sweep/Cross-check refinement", "Sweep/Cross-check = true"},
+      {"Sweep/Number of points, Sweep/Seed", "Sweep/Design = random, latin hypercube"},
+      {"Output/Number of snapshots, Output/Snapshot format, Output/Kymograph, Output/Statistics, "
+       "Output/Active stress table, Time/Wall time limit, Time/Checkpoint interval",
+       "crawler = run, run in memory, optimize, check; Sweep/Keep fields is set"},
+      {"Output/Snapshot format, Output/Active stress table, Time/Checkpoint interval", "crawler != run in memory"},
+      // Zero or nonzero: fields or none.
+      {"Output/Number of snapshots", "crawler != run in memory; Output/Number of snapshots = 0"},
+      {"Error estimate, Discretization/, Time/Integrator, Time/Engine, Time/Step control, Time/Tolerance, "
+       "Time/Cycle stop",
+       "crawler = run, run in memory, batch, sweep, optimize, fit, check"},
+      {"Optimize/", "Optimize/Variables is set; crawler = optimize"},
+      {"Optimize/Start spread, Optimize/Seed", "Optimize/Starts != 1"},
+      {"Fit/", "Fit/Variables is set; crawler = fit"},
+      {"Fit/Seed", "Fit/Starts != 1"},
+    };
+
+    /// Chooser in words: "ENTRY = WORD, WORD", "ENTRY != WORD" or "ENTRY is set".
+    Chooser
+    read_chooser(const std::string &words)
     {
-      const auto is_random = any_of({"random", "latin hypercube"});
-      // Sections of studies serve their own command; check makes the plan of all.
-      rules.push_back({{"Sweep/"}, {{command_entry, any_of({"sweep", "optimize", "check"})}}});
-      for (const auto &[section, command] :
-           {std::pair("Tradeoff/", "tradeoff"), std::pair("Optimize/", "optimize"), std::pair("Fit/", "fit")})
-        rules.push_back({{section}, {{command_entry, any_of({command, "check"})}}});
-      rules.push_back({{"Sweep/Design", "Sweep/Number of points", "Sweep/Seed"}, {{"Sweep/Axes", is_set}}});
-      rules.push_back({{"Sweep/Keep fields",
-                        "Sweep/Cross-check",
-                        "Sweep/Cross-check refinement",
-                        "Sweep/Time limit per point",
-                        "Sweep/Time limit"},
-                       {{command_entry, any_of({"sweep", "check"})}}});
-      rules.push_back({{"Sweep/Cross-check refinement"}, {{"Sweep/Cross-check", any_of({"true"})}}});
-      rules.push_back({{"Sweep/Number of points", "Sweep/Seed"}, {{"Sweep/Design", is_random}}});
-      rules.push_back({{"Output/Number of snapshots",
-                        "Output/Snapshot format",
-                        "Output/Kymograph",
-                        "Output/Statistics",
-                        "Output/Active stress table",
-                        "Time/Wall time limit",
-                        "Time/Checkpoint interval"},
-                       {{command_entry, any_of({"run", run_in_memory_command, "optimize", "check"})},
-                        {"Sweep/Keep fields", is_set}}});
-      const auto has_files = [](const std::string &command) { return command != run_in_memory_command; };
-      rules.push_back({{"Output/Snapshot format", "Output/Active stress table", "Time/Checkpoint interval"},
-                       {{command_entry, has_files}}});
-      rules.push_back({{"Output/Number of snapshots"}, // zero or nonzero: fields or none
-                       {{command_entry, has_files}, {"Output/Number of snapshots", any_of({"0"})}}});
-      rules.push_back(
-        {{"Error estimate",
-          "Discretization/",
-          "Time/Integrator",
-          "Time/Engine",
-          "Time/Step control",
-          "Time/Tolerance",
-          "Time/Cycle stop"},
-         {{command_entry, any_of({"run", run_in_memory_command, "batch", "sweep", "optimize", "fit", "check"})}}});
-      rules.push_back({{"Optimize/"}, {{"Optimize/Variables", is_set}, {command_entry, any_of({"optimize"})}}});
-      rules.push_back({{"Optimize/Start spread", "Optimize/Seed"}, {{"Optimize/Starts", is_not(1.)}}});
-      rules.push_back({{"Fit/"}, {{"Fit/Variables", is_set}, {command_entry, any_of({"fit"})}}});
-      rules.push_back({{"Fit/Seed"}, {{"Fit/Starts", is_not(1.)}}});
+      const auto sign = words.find_first_of("!=");
+      if (sign == std::string::npos)
+        return {words.substr(0, words.find(" is set")), is_set};
+      const std::string entry = trimmed(words.substr(0, sign)), values = trimmed(words.substr(words.find('=') + 1));
+      if (words[sign] == '!')
+        return {entry, is_not(values)};
+      return {entry, any_of(split_parts(values, ','))};
     }
   } // namespace
 
@@ -276,22 +253,23 @@ namespace crawler
       if (entry.path.starts_with(stress + "Sum/") && entry.path.ends_with(generator))
         add_rules_of_generators(
           entry.path.substr(0, entry.path.size() - generator.size() + 1), /*has_sum=*/false, rules);
-    rules.push_back({{body + "Anchoring exponent"}, {{ground + "Friction law", any_of({"power"})}}});
     rules.push_back({{body + "Profile interpolation"},
                      {{body + "Elastic modulus profile", is_csv_or_list},
                       {body + "Friction profile", is_csv_or_list},
                       {body + "Initial stretch", is_csv_or_list}}});
     rules.push_back({{ground + "Profile interpolation", ground + "Outside"}, {{ground + "Profile", is_csv}}});
     const std::string constants = ground + "Constants";
-    rules.push_back({{ground + "Expression"}, {{ground + "Friction law", any_of({"expression"})}}});
     rules.push_back({{constants},
                      {{ground + "Friction law", any_of({"expression"})},
                       {ground + "Profile",
                        uses_one_of(listed_numbers(declarations.info(constants), declarations.value(constants)))}}});
-    rules.push_back({{ground + "Switching velocity"}, {{ground + "Backward ratio", is_not(1.)}}});
     add_rules_of_constants(declarations, rules);
-    add_rules_of_numerics(rules);
-    add_rules_of_commands(rules);
+    for (const auto &[entries, choosers] : rules_in_words)
+    {
+      EntryRule &rule = rules.emplace_back(EntryRule{split_parts(entries, ','), {}});
+      for (const std::string &chooser : split_parts(choosers, ';'))
+        rule.choosers.push_back(read_chooser(chooser));
+    }
     return rules;
   }
 } // namespace crawler

@@ -4,7 +4,6 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/entry_notes.h>
 #include <crawler/studies/core/input.h>
-#include <crawler/studies/core/variables.h>
 
 #include <fmt/format.h>
 
@@ -113,13 +112,6 @@ namespace crawler
   ModelChoice
   choose_model(const Input &input)
   {
-    try
-    {
-      return choose_model(input.parameters, input.scene);
-    }
-    catch (const InputError &error)
-    {
-      throw input.file.with_place(error);
-    }
+    return input.file.placing_errors([&]() { return choose_model(input.parameters, input.scene); });
   }
 } // namespace crawler

@@ -24,6 +24,10 @@ namespace crawler
 
   namespace
   {
+    /// File that is locked (base/file_lock.h) while a run or study writes to the folder.
+    const std::string study_lock_name = "study.lock";
+    /// Page that `crawler report` makes.
+    const std::string report_name = "report.html";
     /// Files of runs and studies, except those that a run writes as it proceeds.
     const std::vector<std::string> own_names =
       split_parts("original.prm, parameters.prm, log.txt, summary.json, restart.dat, restart.dat.new, restart.old.dat, "
@@ -85,13 +89,31 @@ namespace crawler
       return std::all_of(begin(files), end, [](const auto &file) { return file.path().filename() == study_lock_name; });
     }
 
-    void
-    make_folder(const fs::path &folder)
+    /// The folder, which is made now unless it exists.
+    const fs::path &
+    made(const fs::path &folder)
     {
       std::error_code error;
       fs::create_directories(folder, error);
       if (error)
         throw FileError("cannot make the output folder \"" + folder.string() + "\": " + error.message());
+      return folder;
+    }
+
+    /// Removes the file FILE-1-NUMBER.lock that MPI leaves beside a table where the only process of a study is killed.
+    void
+    remove_locks_of_mpi(const fs::path &folder)
+    {
+      const auto is_lock = [](const std::string &name) {
+        return name.ends_with(".lock") && (name.find(".h5-") != name.npos || name.find(".h5.part-") != name.npos);
+      };
+      std::vector<fs::path> locks;
+      for (const auto &file : fs::directory_iterator(folder))
+        if (is_lock(file.path().filename().string()))
+          locks.push_back(file.path());
+      std::error_code ignored; // remaining locks are harmless
+      for (const auto &file : locks)
+        fs::remove(file, ignored);
     }
   } // namespace
 
@@ -171,10 +193,9 @@ namespace crawler
   }
 
   FolderLock::FolderLock(const fs::path &folder, const bool overwrite)
+    : FileLock(made(folder) / study_lock_name)
   {
-    make_folder(folder);
-    lock_.emplace(folder / study_lock_name);
-    if (lock_->lock() == FileLock::State::of_another_process)
+    if (lock() == State::of_another_process)
       throw InputError("a run or study is writing to \"" + folder.string() +
                        "\"; wait for it to end, or give another folder with --output");
     try
@@ -183,20 +204,19 @@ namespace crawler
     }
     catch (...)
     {
-      lock_->remove();
+      remove();
       throw;
     }
   }
 
   FolderLock::~FolderLock()
   {
-    lock_->remove();
+    remove();
   }
 
   void
   prepare(const fs::path &folder)
   {
-    make_folder(folder);
     std::error_code error;
     for (const std::string &name : own_names)
       fs::remove(folder / name, error);
@@ -225,23 +245,19 @@ namespace crawler
           fs::remove(file.path(), error);
   }
 
-  StudyFolder::StudyFolder(StudyKind its_kind, fs::path its_path, const CommandOptions &options, Log &its_log)
+  StudyFolder::StudyFolder(StudyKind its_kind, const CommandOptions &its_options, Log &its_log)
     : kind(std::move(its_kind))
-    , path(std::move(its_path))
+    , options(its_options)
+    , path(output_folder(options.output, options.file))
     , log(its_log)
-    , options_(options)
   {
-    if (options_.resume && options_.overwrite)
-      throw InputError("--resume and --overwrite contradict each other; one of them is expected");
   }
 
   bool
   StudyFolder::has_results() const
   {
-    return std::ranges::any_of(kind.results, [&](const std::string &name) {
-      std::error_code error;
-      return fs::exists(path / name, error);
-    });
+    std::error_code error;
+    return fs::exists(path / kind.results, error);
   }
 
   bool
@@ -250,32 +266,14 @@ namespace crawler
     std::error_code error;
     if (!fs::is_directory(path, error) || fs::is_empty(path, error) || has_results())
       return false;
-    std::set<std::string> unfinished;
-    for (const std::string &name : kind.results)
-      unfinished.insert(name + ".part");
-    return !fs::exists(path / study_lock_name, error) || !has_just_begun(path, unfinished);
-  }
-
-  void
-  StudyFolder::remove_locks_of_mpi() const
-  {
-    const auto is_lock = [](const std::string &name) {
-      return name.ends_with(".lock") && (name.find(".h5-") != name.npos || name.find(".h5.part-") != name.npos);
-    };
-    std::vector<fs::path> locks;
-    for (const auto &file : fs::directory_iterator(path))
-      if (is_lock(file.path().filename().string()))
-        locks.push_back(file.path());
-    std::error_code ignored; // remaining locks are harmless
-    for (const auto &file : locks)
-      fs::remove(file, ignored);
+    return !fs::exists(path / study_lock_name, error) || !has_just_begun(path, {kind.results + ".part"});
   }
 
   void
   StudyFolder::lock()
   {
     constexpr std::chrono::milliseconds longest_wait(5000), pause(100);
-    lock_.emplace(path / study_lock_name);
+    lock_.emplace(made(path) / study_lock_name);
     FileLock::State state = lock_->lock();
     if (state == FileLock::State::of_another_process)
       log.line(fmt::format("Another study is writing to \"{}\"; it may be about to end: waiting for at most {} s",
@@ -313,19 +311,18 @@ namespace crawler
   StudyFolder::begin(const std::string &original, const std::string &effective)
   {
     const auto require_own = [&]() {
-      if (options_.resume && is_foreign())
+      if (options.resume && is_foreign())
         throw InputError(
           fmt::format("\"{}\" has no {} that can be resumed; another folder is expected for --output, or --overwrite",
                       path.string(),
                       kind.name));
     };
     require_own();
-    require_usable(path, options_.resume || options_.overwrite);
-    make_folder(path);
+    require_usable(path, options.resume || options.overwrite);
     lock();
-    remove_locks_of_mpi();
+    remove_locks_of_mpi(path);
     leaving_if_refused(require_own); // the previous owner of the lock may have changed it
-    if (options_.resume && has_results())
+    if (options.resume && has_results())
       return true;
     prepare(path);
     write_file(path / "original.prm", original);

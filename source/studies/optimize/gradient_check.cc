@@ -39,29 +39,6 @@ namespace crawler
       }
     }
 
-    /// Adds the differences of all numbers by a variable, of simulations in a stencil of this width.
-    void
-    add_differences(GaitModel &model,
-                    const SceneFamily &family,
-                    const std::vector<double> &x,
-                    const std::size_t i,
-                    const double width,
-                    const std::vector<Checked> &list,
-                    std::vector<std::vector<double>> &differences)
-    {
-      const auto around = family.stencil(x, i, width);
-      for (std::size_t k = 0; k < around.places.size(); ++k)
-      {
-        std::vector<double> other = x;
-        other[i] += around.places[k];
-        const GaitValues there = model.evaluate(other, /*with_gradients=*/false);
-        if (!there.problem.empty())
-          throw InputError("near the start: " + there.problem, "Optimize/Variables");
-        for (std::size_t c = 0; c < list.size(); ++c)
-          differences[c][i] += around.weights[k] * list[c].value(there);
-      }
-    }
-
     /// Largest deviation of a gradient from differences, relative to the number or to its largest derivative.
     double
     deviation_of(const Checked &number,
@@ -120,7 +97,14 @@ namespace crawler
     {
       std::vector<std::vector<double>> narrower(list.size(), std::vector<double>(x.size()));
       for (const std::size_t i : checked)
-        add_differences(model, family, x, i, width, list, narrower);
+        for (const auto &point : family.stencil(x, i, width))
+        {
+          const GaitValues there = model.evaluate(point.x, /*with_gradients=*/false);
+          if (!there.problem.empty())
+            throw InputError("near the start: " + there.problem, "Optimize/Variables");
+          for (std::size_t c = 0; c < list.size(); ++c)
+            narrower[c][i] += point.weight * list[c].value(there);
+        }
       for (std::size_t c = 0; c < list.size(); ++c)
         if (const double deviation = deviation_of(
               list[c], here, narrower[c], checked, [&](const std::size_t i) { return family.scale(x, i); });

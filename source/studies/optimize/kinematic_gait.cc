@@ -4,7 +4,7 @@
 #include <crawler/reduced_models/kinematic.h>
 #include <crawler/reduced_models/reduced_scene.h>
 #include <crawler/reduced_models/strain_functional.h>
-#include <crawler/studies/optimize/gait_models.h>
+#include <crawler/studies/optimize/scene_family.h>
 
 #include <fmt/format.h>
 
@@ -404,21 +404,18 @@ namespace crawler
           own_slopes.assign(x.size(), {});
           for (std::size_t i = 0; i < x.size(); ++i)
           {
-            const auto around = family_.stencil(x, i, step);
             ByGaitNumber<double> derivatives{};
-            for (std::size_t k = 0; k < around.places.size(); ++k)
+            for (const auto &point : family_.stencil(x, i, step))
             {
-              std::vector<double> other = x;
-              other[i] += around.places[k];
-              const State there(family_.parameters(other));
+              const State there(family_.parameters(point.x));
               const Samples its = sample(there);
-              own_slopes[i].add(around.weights[k], its);
+              own_slopes[i].add(point.weight, its);
               only_strain[i] = only_strain[i] && there.is_like(state);
               if (const auto its_values = grid_->values(its.on_grid, there.body(*grid_)))
               {
                 const auto its_numbers = numbers(there, its, *its_values);
                 for (std::size_t j = 0; j < gait_numbers.size(); ++j)
-                  derivatives[j] += around.weights[k] * its_numbers[j];
+                  derivatives[j] += point.weight * its_numbers[j];
               }
             }
             if (!only_strain[i]) // variables of body, ground or time

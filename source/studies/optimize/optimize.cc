@@ -80,23 +80,20 @@ namespace crawler
     /// Writes the optimum as a parameter file, and runs it in a folder of its own. Returns the summary of the run, and
     /// true if it ended as it should.
     std::pair<std::string, bool>
-    run_optimum(OptimizeCases &cases,
-                const StartResult &start,
-                const std::string &effective,
-                const fs::path &folder,
-                const CommandOptions &options)
+    run_optimum(OptimizeCases &cases, const StartResult &start, const StudyFolder &folder)
     {
+      const std::string effective = cases.effective(); // before its values are replaced
       const auto family           = cases.family(start.number_of_case);
       const Parameters parameters = family->parameters(start.best.x);
       const std::string number    = cases.are_several() ? fmt::format("-{}", start.number_of_case + 1) : "";
       Declarations &entries       = family->form.declarations;
       entries.set("Sweep/Axes", "");
-      const fs::path file = folder / ("optimum" + number + ".prm"), place = folder / ("best" + number);
+      const fs::path file = folder.path / ("optimum" + number + ".prm"), place = folder.path / ("best" + number);
       write_file(file,
                  "# The best gait: what differs from the file that was optimised.\ninclude parameters.prm\n" +
                    changes(entries, ParameterFile::from_text(effective, "parameters.prm")));
       entries.set("Sweep/Axes", parameters.sweep.axes);
-      CommandOptions one = options;
+      CommandOptions one = folder.options;
       one.file           = file.string();
       one.output         = place.string();
       one.overrides      = {};
@@ -172,10 +169,10 @@ namespace crawler
            const OptimizeResults &results,
            const std::size_t n_neighbours,
            const double seconds,
-           const fs::path &folder,
-           Log &log)
+           const StudyFolder &folder)
     {
-      const std::string number = cases.are_several() ? "-N" : "", place = folder.string();
+      Log &log                 = folder.log;
+      const std::string number = cases.are_several() ? "-N" : "", place = folder.path.string();
       if (cases.parameters().optimize.n_starts == 1 && !results.best.empty())
         log.line(
           fmt::format("{}1 start: the optimum may be a local one; Optimize/Starts = 8 searches from others, too.",
@@ -196,40 +193,41 @@ namespace crawler
     write_results(OptimizeCases &cases,
                   OptimizeMemory &memory,
                   const std::vector<StartName> &starts,
-                  const CommandOptions &options,
                   const std::string &stop,
                   const StudyClock &clock,
-                  const fs::path &folder,
-                  Log &log)
+                  const StudyFolder &folder)
     {
+      const fs::path &path = folder.path;
+      Log &log             = folder.log;
       memory.arrange(starts);
       const OptimizeResults results(cases.names(), memory.starts());
       const auto n_neighbours =
         static_cast<std::size_t>(std::ranges::count_if(starts, [](const StartName &one) { return one.neighbour > 0; }));
       for (const auto &[file, group] : {std::pair(OptimizeMemory::evaluations_file, OptimizeMemory::evaluations_group),
                                         std::pair(OptimizeMemory::file, OptimizeMemory::group)})
-        write_table_csv(MPI_COMM_SELF, folder / file, group, (folder / file).replace_extension("csv"));
+        write_table_csv(MPI_COMM_SELF, path / file, group, (path / file).replace_extension("csv"));
       std::vector<std::string> summaries;
       bool runs_are_good = true;
       for (const std::size_t best : results.best)
       {
-        const auto [summary, is_good] = run_optimum(cases, results.starts[best], cases.effective(), folder, options);
+        const auto [summary, is_good] = run_optimum(cases, results.starts[best], folder);
         summaries.push_back(summary);
         runs_are_good = runs_are_good && is_good;
       }
-      write_file(folder / "optima.csv", csv(optimum_table(results, folder, summaries)));
+      write_file(path / "optima.csv", csv(optimum_table(results, path, summaries)));
       const Ending end         = ending_of(results, runs_are_good, stop, clock);
       const std::string status = !stop.empty() ? "stopped" : end.code == ExitCode::finished ? "finished" : "failed";
       const double seconds     = clock.seconds(); // without pictures
-      write_file(folder / "summary.json",
-                 optimize_json(results, summaries, status, end.reason, end.warning, seconds, options.command_line));
+      write_file(
+        path / "summary.json",
+        optimize_json(results, summaries, status, end.reason, end.warning, seconds, folder.options.command_line));
       for (const std::string &line : in_words(results, cases, summaries))
         log.line(line);
       if (!results.best.empty())
-        draw("optimize", folder, log);
+        draw("optimize", path, log);
       if (!end.warning.empty())
         log.warn(end.warning);
-      report(cases, results, n_neighbours, seconds, folder, log);
+      report(cases, results, n_neighbours, seconds, folder);
       return end.code;
     }
 
@@ -300,36 +298,30 @@ namespace crawler
     StudyClock clock("Optimize");
     Log log(rank_of(communicator) == 0, options);
     OptimizeCases cases(communicator, file);
-    try
-    {
-      if (options.check_gradient)
-        return check_gradients(cases, log);
+    if (options.check_gradient)
+      return file.placing_errors([&]() { return check_gradients(cases, log); });
+    file.placing_errors([&]() {
       const CaseStart start(cases, 0);
       introduce(cases, *start.model, cases.notes(file), log);
       start.model->evaluate(start.x, /*with_gradients=*/false).require_start();
-    }
-    catch (const InputError &error)
-    {
-      throw file.with_place(error);
-    }
-    const fs::path path = output_folder(options.output, options.file);
+    });
     StudyFolder folder(
-      {"optimization", {OptimizeMemory::file}, {"Optimize/Time limit", "Optimize/Starts"}}, path, options, log);
+      {"optimization", OptimizeMemory::file, {"Optimize/Time limit", "Optimize/Starts"}}, options, log);
     std::unique_ptr<OptimizeMemory> memory;
     on_first_rank(communicator, [&]() {
       if (options.resume)
-        require_no_old_starts(path);
-      memory = std::make_unique<OptimizeMemory>(cases, folder, file, options.command_line);
+        require_no_old_starts(folder.path);
+      memory = std::make_unique<OptimizeMemory>(cases, folder, file);
       if (memory->starts().empty())
-        remove_optima(path);
+        remove_optima(folder.path);
     });
     clock.set_limit(cases.parameters().optimize.time_limit);
-    const SearchesMade searches = make_searches(
-      communicator, cases, memory.get(), path, [&]() { return clock.is_over(); }, log);
+    const SearchesMade searches =
+      make_searches(communicator, cases, memory.get(), folder, [&]() { return clock.is_over(); });
     const std::string stop = clock.reason(communicator, searches.are_whole);
     return exit_code_of_first_rank(communicator, [&]() {
       folder.require_in_place();
-      const ExitCode end = write_results(cases, *memory, searches.starts, options, stop, clock, path, log);
+      const ExitCode end = write_results(cases, *memory, searches.starts, stop, clock, folder);
       folder.leave();
       return end;
     });
@@ -342,8 +334,7 @@ namespace crawler
     if (variables == nullptr || variables->value.empty())
       return false;
     OptimizeCases cases(communicator, file);
-    try
-    {
+    file.placing_errors([&]() {
       for (unsigned long number = 0; number < cases.size(); ++number)
       {
         const CaseStart start(cases, number);
@@ -362,11 +353,7 @@ namespace crawler
                                ? "is within all limits"
                                : fmt::format("exceeds {} by {:.3g} %", record.worst_limit, 100. * record.violation)));
       }
-    }
-    catch (const InputError &error)
-    {
-      throw file.with_place(error);
-    }
+    });
     log.line(file.name() + " is valid: all variables and cases are admissible. Nothing was written.");
     return true;
   }

@@ -5,6 +5,7 @@
 #include <crawler/studies/optimize/optimize_cases.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -39,8 +40,7 @@ namespace crawler
                        : names_.objective == "speed"         ? "length/time"
                        : names_.objective.ends_with("merit") ? "1"
                                                              : "force";
-    try
-    {
+    file.placing_errors([&]() {
       if (points_)
         for (const SweepAxis &axis : points_->design().axes())
         {
@@ -57,11 +57,7 @@ namespace crawler
           throw are_several() ? InputError(fmt::format("the case {}: {}", in_words(number), error.what()), error.entry)
                               : error;
         }
-    }
-    catch (const InputError &error)
-    {
-      throw file.with_place(error);
-    }
+    });
     std::ranges::sort(names_.limits, {}, [](const std::string &name) {
       return std::ranges::find(limit_entries, name, &LimitEntry::name) - limit_entries.begin();
     });
@@ -105,16 +101,10 @@ namespace crawler
   std::string
   OptimizeCases::in_words(const unsigned long number) const
   {
-    std::string words;
+    std::vector<std::string> words;
     for (std::size_t i = 0; i < names_.axes.size(); ++i)
-    {
-      const std::string &axis = names_.axes[i];
-      words += fmt::format("{}{} = {}",
-                           i == 0 ? "" : ", ",
-                           axis.substr(axis.rfind('/') + 1 /* npos + 1 is 0 */),
-                           names_.cases[number].values[i]);
-    }
-    return words;
+      words.push_back(split_path(names_.axes[i]).back() + " = " + names_.cases[number].values[i]);
+    return fmt::format("{}", fmt::join(words, ", "));
   }
 
   std::vector<std::string>

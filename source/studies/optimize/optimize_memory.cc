@@ -15,9 +15,6 @@
 
 namespace crawler
 {
-  const std::string OptimizeMemory::file = "starts.h5", OptimizeMemory::group = "starts";
-  const std::string OptimizeMemory::evaluations_file = "results.h5", OptimizeMemory::evaluations_group = "optimize";
-
   namespace
   {
     const std::string converged = "converged", stopped = "stopped";
@@ -222,21 +219,17 @@ namespace crawler
     }
   } // namespace
 
-  OptimizeMemory::OptimizeMemory(const OptimizeCases &cases,
-                                 StudyFolder &folder,
-                                 const ParameterFile &parameter_file,
-                                 std::string command_line)
+  OptimizeMemory::OptimizeMemory(const OptimizeCases &cases, StudyFolder &folder, const ParameterFile &parameter_file)
     : names_(cases.names())
-    , folder_(folder.path)
-    , command_line_(std::move(command_line))
+    , folder_(folder)
     , table_(table_of_starts(names_))
     , plan_{0, known_index(), cases.inputs(), cases.effective()}
   {
-    const auto done = begin_or_resume(folder, table_, parameter_file, plan_, command_line_);
+    const auto done = begin_or_resume(folder, table_, parameter_file, plan_);
     if (std::ranges::count(done, true) > 0)
     {
-      const RowReader rows(MPI_COMM_SELF, folder_ / file, group);
-      Evaluations evaluations = read_evaluations(names_, folder_ / evaluations_file);
+      const RowReader rows(MPI_COMM_SELF, folder_.path / file, group);
+      Evaluations evaluations = read_evaluations(names_, folder_.path / evaluations_file);
       Table table             = rows.read(0, rows.n_rows());
       table.erase(table.begin()); // index
       unsigned long n_damaged = 0;
@@ -313,17 +306,18 @@ namespace crawler
     const std::string fresh = ".part";
     PointTable table        = table_;
     table.file += fresh;
-    create_table(folder_, table, plan_, command_line_);
-    RowFile::create(folder_ / (evaluations_file + fresh),
+    create_table(folder_, table, plan_);
+    RowFile::create(folder_.path / (evaluations_file + fresh),
                     evaluations_group,
                     columns,
                     max_evaluations_,
-                    provenance(plan_.effective, command_line_),
+                    provenance(plan_.effective, folder_.options.command_line),
                     known_index());
     const auto open = [&](const std::string &end) {
-      start_rows_ = std::make_unique<RowFile>(MPI_COMM_SELF, folder_ / (file + end), group, table_.written_columns());
+      start_rows_ =
+        std::make_unique<RowFile>(MPI_COMM_SELF, folder_.path / (file + end), group, table_.written_columns());
       evaluation_rows_ =
-        std::make_unique<RowFile>(MPI_COMM_SELF, folder_ / (evaluations_file + end), evaluations_group, written);
+        std::make_unique<RowFile>(MPI_COMM_SELF, folder_.path / (evaluations_file + end), evaluations_group, written);
     };
     open(fresh);
     n_starts_ = n_evaluations_ = 0;
@@ -332,7 +326,7 @@ namespace crawler
     start_rows_.reset();
     evaluation_rows_.reset();
     for (const std::string &name : {evaluations_file, file})
-      rename_whole(folder_ / (name + fresh), folder_ / name);
+      rename_whole(folder_.path / (name + fresh), folder_.path / name);
     open("");
   }
 

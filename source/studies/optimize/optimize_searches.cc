@@ -72,15 +72,14 @@ namespace crawler
       OptimizeSearches(MPI_Comm communicator,
                        OptimizeCases &cases,
                        OptimizeMemory *memory,
-                       const std::filesystem::path &folder,
-                       std::function<bool()> interrupted,
-                       Log &log)
+                       const StudyFolder &folder,
+                       std::function<bool()> interrupted)
         : communicator_(communicator)
         , cases_(cases)
         , memory_(memory)
         , interrupted_(std::move(interrupted))
-        , log_(log)
-        , note_(folder)
+        , log_(folder.log)
+        , note_(folder.path)
       {
         for (unsigned long number = 0; number < cases.size(); ++number)
           for (unsigned long start = 0; start < cases.parameters().optimize.n_starts; ++start)
@@ -265,11 +264,10 @@ namespace crawler
   make_searches(MPI_Comm communicator,
                 OptimizeCases &cases,
                 OptimizeMemory *const memory,
-                const std::filesystem::path &folder,
-                std::function<bool()> interrupted,
-                Log &log)
+                const StudyFolder &folder,
+                std::function<bool()> interrupted)
   {
-    OptimizeSearches searches(communicator, cases, memory, folder, std::move(interrupted), log);
+    OptimizeSearches searches(communicator, cases, memory, folder, std::move(interrupted));
     const bool is_whole = searches.go_on();
     return {is_whole, searches.names_in_order()};
   }

@@ -2,9 +2,9 @@
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/exceptions.h>
-#include <crawler/studies/optimize/gait_models.h>
 #include <crawler/studies/optimize/optimize_start.h>
 #include <crawler/studies/optimize/rol_optimizer.h>
+#include <crawler/studies/optimize/scene_family.h>
 
 #include <fmt/format.h>
 

@@ -128,17 +128,24 @@ namespace crawler
     return size > 0. ? std::clamp(size, least * range, range) : of_unknown * range;
   }
 
-  SceneFamily::Stencil
+  std::vector<SceneFamily::StencilPoint>
   SceneFamily::stencil(const std::vector<double> &x, const std::size_t i, const double relative_step) const
   {
     const Variable &variable = variables[i];
     const double step        = relative_step * scale(x, i);
-    if (x[i] - 2. * step >= variable.from && x[i] + 2. * step <= variable.to)
-      return {{-2. * step, -step, step, 2. * step},
-              {1. / (12. * step), -8. / (12. * step), 8. / (12. * step), -1. / (12. * step)}};
-    const double d = x[i] + 2. * step > variable.to ? -step : step; // inwards
-    return {{0., d, 2. * d, 3. * d, 4. * d},
-            {-25. / (12. * d), 48. / (12. * d), -36. / (12. * d), 16. / (12. * d), -3. / (12. * d)}};
+    // Offsets in steps, and weights in 1/(12 steps).
+    using Weights                  = std::vector<std::pair<double, double>>;
+    static const Weights central   = {{-2., 1.}, {-1., -8.}, {1., 8.}, {2., -1.}},
+                         one_sided = {{0., -25.}, {1., 48.}, {2., -36.}, {3., 16.}, {4., -3.}};
+    const bool is_central          = x[i] - 2. * step >= variable.from && x[i] + 2. * step <= variable.to;
+    const double d                 = x[i] + 2. * step > variable.to ? -step : step; // inwards
+    std::vector<StencilPoint> points;
+    for (const auto &[place, weight] : is_central ? central : one_sided)
+    {
+      points.push_back({place * d, weight / (12. * d), x});
+      points.back().x[i] += points.back().offset;
+    }
+    return points;
   }
 
   std::vector<double>
@@ -148,18 +155,13 @@ namespace crawler
   {
     std::vector<double> result;
     for (std::size_t i = 0; i < x.size(); ++i)
-    {
-      const Stencil around = stencil(x, i, relative_step);
-      for (std::size_t k = 0; k < around.places.size(); ++k)
+      for (const StencilPoint &point : stencil(x, i, relative_step))
       {
-        std::vector<double> other = x;
-        other[i] += around.places[k];
-        const std::vector<double> there = values(parameters(other));
+        const std::vector<double> there = values(parameters(point.x));
         result.resize(there.size() * x.size());
         for (std::size_t p = 0; p < there.size(); ++p)
-          result[p * x.size() + i] += around.weights[k] * there[p];
+          result[p * x.size() + i] += point.weight * there[p];
       }
-    }
     return result;
   }
 

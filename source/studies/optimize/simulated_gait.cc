@@ -8,7 +8,7 @@
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/sensitivities.h>
 #include <crawler/studies/optimize/extremes_in_boxes.h>
-#include <crawler/studies/optimize/gait_models.h>
+#include <crawler/studies/optimize/scene_family.h>
 
 #include <algorithm>
 #include <cmath>
@@ -285,18 +285,16 @@ namespace crawler
         {
           const auto around = family_.stencil(x, i, /*relative_step=*/1e-3);
           bool is_similar   = true;
-          for (const double place : around.places)
-            if (place != 0.)
+          for (const auto &point : around)
+            if (point.offset != 0.)
             {
-              std::vector<double> other = x;
-              other[i] += place;
-              scenes[i].push_back(family_.parameters(other).create_scene());
+              scenes[i].push_back(family_.parameters(point.x).create_scene());
               is_similar = is_similar && have_similar_breaks(*task.scene, scenes[i].back());
             }
           if (!is_similar)
             continue;
-          const bool is_one_sided = around.places[0] == 0.;
-          const double apart      = around.places[is_one_sided ? 1 : 2];
+          const bool is_one_sided = around[0].offset == 0.;
+          const double apart      = around[is_one_sided ? 1 : 2].offset;
           const auto &its         = scenes[i];
           variations.push_back({{{its.data(), &its[1], &its[2], &its[3]}}, apart, is_one_sided});
           own.push_back(i);
@@ -343,15 +341,11 @@ namespace crawler
         std::vector<std::pair<std::size_t, double>> weights; // variable and weight of each place
         for (std::size_t i = 0; i < x.size(); ++i)
           if (values.by_differences[i] || values.strain_by_differences[i])
-          {
-            const auto around = family_.stencil(x, i, step);
-            for (std::size_t k = 0; k < around.places.size(); ++k)
+            for (const auto &point : family_.stencil(x, i, step))
             {
-              places.push_back(x);
-              places.back()[i] += around.places[k];
-              weights.emplace_back(i, around.weights[k]);
+              places.push_back(point.x);
+              weights.emplace_back(i, point.weight);
             }
-          }
         if (places.empty())
           return;
         const std::vector<Task> tasks = answers(places);

@@ -24,7 +24,6 @@
 #include <crawler/studies/run/run.h>
 #include <crawler/studies/run/run_files.h>
 #include <crawler/studies/run/run_memory.h>
-#include <crawler/studies/run/run_progress.h>
 #include <crawler/studies/run/run_stops.h>
 #include <crawler/time/failure.h>
 
@@ -52,6 +51,55 @@ namespace crawler
       outcome.reason          = text.substr(0, split);
       outcome.message         = text.substr(split + 1);
     }
+
+    /// Progress of a run: a bar, or a line at every tenth of the duration.
+    class RunProgress : public Observer
+    {
+    public:
+      RunProgress(Log &log, const Scene &scene)
+        : log_(log)
+        , end_time_(scene.end_time)
+        , length_(scene.body.length)
+        , bar_(log)
+      {
+      }
+
+      void
+      observe(const Snapshot &snapshot) override
+      {
+        if (!snapshot.is_step_end || snapshot.step.number == 0)
+          return;
+        const Step &step          = snapshot.step;
+        const StretchRange &range = snapshot.stretch;
+        const double done = step.time / end_time_, displacement = snapshot.integrals.displacement / length_;
+        if (bar_.is_due())
+          bar_.show(std::min(done, 1.),
+                    fmt::format("t = {:.4g}  displacement {:.6g}  stretch {:.3g} to {:.3g}",
+                                step.time,
+                                displacement,
+                                range.min.value,
+                                range.max.value));
+        if (10. * done < next_tenth_)
+          return;
+        while (next_tenth_ <= 10. * done)
+          ++next_tenth_;
+        log_.progress(fmt::format(
+          "  {:3.0f} %  t = {:<10.4g} step {:<6} size {:<9.3g} displacement {:<14.8g} stretch {:.3g} to {:.3g}",
+          100. * done,
+          step.time,
+          step.number,
+          step.size,
+          displacement,
+          range.min.value,
+          range.max.value));
+      }
+
+    private:
+      Log &log_;
+      const double end_time_, length_;
+      ProgressBar bar_;
+      unsigned int next_tenth_ = 1;
+    };
 
     /// `crawler run`, from the parameter file to the files and the exit code (all functions are collective). An
     /// exception in a part of the computation becomes the end of the run, with all files of an end.

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/files.h>
-#include <crawler/output/active_stress_table.h>
 #include <crawler/run/batch.h>
 #include <crawler/run/summary.h>
-#include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/run/run_files.h>
 
 #include <fmt/format.h>
@@ -76,35 +73,6 @@ namespace crawler
     }
     for (const std::string &note : notes_on_choice(input, model.model, choice ? &choice->numerics : nullptr))
       log.line(note);
-  }
-
-  void
-  begin_files(Log &log, const Input &input, const std::filesystem::path &folder, const bool goes_on)
-  {
-    if (!goes_on)
-      prepare(folder);
-    const OutputParameters &output = input.parameters.output;
-    if (output.has_snapshots() && output.snapshot_format == SnapshotFormat::vtu)
-      std::filesystem::create_directories(folder / "solution");
-    write_file(folder / "original.prm", input.file.text());
-    write_file(folder / "parameters.prm", input.effective);
-    std::error_code error;
-    std::filesystem::remove(folder / "stop", error);
-    log.open(folder / "log.txt", /*append=*/goes_on);
-    if (output.segment_table > 0)
-      write_segment_tables(
-        folder, *input.scene.active_stress, input.scene.end_time, output.segment_table, input.parameters.units);
-    const std::vector<double> &size = output.active_stress_table;
-    if (size.empty())
-      return;
-    const std::string problem = write_active_stress_table(folder / "active_stress.csv",
-                                                          *input.scene.active_stress,
-                                                          input.scene.body.length,
-                                                          input.scene.end_time,
-                                                          static_cast<unsigned int>(size[0]),
-                                                          static_cast<unsigned int>(size[1]));
-    if (!problem.empty())
-      log.warn("warning: active_stress.csv is not written: " + problem);
   }
 
   ExitCode

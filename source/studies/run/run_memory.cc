@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
+#include <crawler/base/files.h>
 #include <crawler/base/stop_place.h>
+#include <crawler/output/active_stress_table.h>
 #include <crawler/studies/core/study.h>
-#include <crawler/studies/run/run_files.h>
 #include <crawler/studies/run/run_memory.h>
+#include <crawler/studies/run/run_stops.h>
 
 #include <fmt/format.h>
 
@@ -47,8 +49,6 @@ namespace crawler
   bool
   RunMemory::begin(Log &log)
   {
-    if (options_.resume && options_.overwrite)
-      throw InputError("--resume and --overwrite contradict each other; one of them is expected");
     Resumption resumption;
     on_first_rank(communicator_, [&]() {
       require_usable(folder_, options_.overwrite || options_.resume);
@@ -75,7 +75,28 @@ namespace crawler
   {
     if (!lock_)
       lock_.emplace(folder_, options_.overwrite);
-    crawler::begin_files(log, input_, folder_, goes_on_);
+    if (!goes_on_)
+      prepare(folder_);
+    const OutputParameters &output = input_.parameters.output;
+    if (output.has_snapshots() && output.snapshot_format == SnapshotFormat::vtu)
+      std::filesystem::create_directories(folder_ / "solution");
+    write_file(folder_ / "original.prm", input_.file.text());
+    write_file(folder_ / "parameters.prm", input_.effective);
+    std::error_code error;
+    std::filesystem::remove(folder_ / stop_file_name, error);
+    log.open(folder_ / "log.txt", /*append=*/goes_on_);
+    if (output.segment_table > 0)
+      write_segment_tables(
+        folder_, *input_.scene.active_stress, input_.scene.end_time, output.segment_table, input_.parameters.units);
+    if (const std::vector<double> &size = output.active_stress_table; !size.empty())
+      if (const std::string problem = write_active_stress_table(folder_ / "active_stress.csv",
+                                                                *input_.scene.active_stress,
+                                                                input_.scene.body.length,
+                                                                input_.scene.end_time,
+                                                                static_cast<unsigned int>(size[0]),
+                                                                static_cast<unsigned int>(size[1]));
+          !problem.empty())
+        log.warn("warning: active_stress.csv is not written: " + problem);
     has_files_ = true;
   }
 

@@ -201,30 +201,23 @@ namespace crawler
   }
 
   void
-  create_table(const std::filesystem::path &folder,
-               const PointTable &table,
-               const PlannedRows &plan,
-               const std::string &command_line)
+  create_table(const StudyFolder &folder, const PointTable &table, const PlannedRows &plan)
   {
-    auto attributes = provenance(plan.effective, command_line);
+    auto attributes = provenance(plan.effective, folder.options.command_line);
     attributes["not known"] =
       fmt::format("NaN in numbers, an empty text in texts; an empty {}: not computed yet", table.done);
     attributes.merge(plan.inputs.attributes());
     attributes.insert(plan.more.begin(), plan.more.end());
-    RowFile::create(folder / table.file, table.group, table.columns, plan.n, attributes, plan.known);
+    RowFile::create(folder.path / table.file, table.group, table.columns, plan.n, attributes, plan.known);
   }
 
   std::vector<bool>
-  begin_or_resume(StudyFolder &folder,
-                  const PointTable &table,
-                  const ParameterFile &file,
-                  const PlannedRows &plan,
-                  const std::string &command_line)
+  begin_or_resume(StudyFolder &folder, const PointTable &table, const ParameterFile &file, const PlannedRows &plan)
   {
     const auto path = folder.path / table.file;
     if (!folder.begin(file.text(), plan.effective))
     {
-      create_table(folder.path, table, plan, command_line);
+      create_table(folder, table, plan);
       return std::vector<bool>(plan.n, false);
     }
     std::optional<RowReader> rows;

@@ -59,25 +59,24 @@ namespace crawler
     /// that were given up have none.
     bool
     keep_fields(MPI_Comm communicator,
-                const CommandOptions &options,
-                const fs::path &folder,
+                const StudyFolder &folder,
                 const SweepPoints &points,
                 const std::vector<unsigned long> &kept)
     {
       bool all = true;
       std::string problem;
-      const RowReader table(MPI_COMM_SELF, folder / sweep_file, sweep_group);
+      const RowReader table(MPI_COMM_SELF, folder.path / sweep_file, sweep_group);
       const std::size_t reason = table.index_of("reason");
       for (std::size_t i = rank_of(communicator); i < kept.size(); i += size_of(communicator))
       {
-        const fs::path place = folder / "points" / fmt::format("{}", kept[i]);
+        const fs::path place = folder.path / "points" / fmt::format("{}", kept[i]);
         const Column row     = table.read(reason, kept[i], 1);
         if (fs::exists(place / "summary.json") ||
             std::get<std::vector<std::string>>(row.values).front() == time_limit_reason)
           continue;
-        CommandOptions one = options;
+        CommandOptions one = folder.options;
         if (one.file == "-")
-          one.file = (folder / "original.prm").string();
+          one.file = (folder.path / "original.prm").string();
         one.output    = place.string();
         one.overwrite = one.quiet = true;
         one.resume                = false;
@@ -122,16 +121,15 @@ namespace crawler
     /// Computes the missing rows on all ranks. Returns false if some rank was interrupted.
     bool
     compute_rows(MPI_Comm communicator,
-                 const fs::path &folder,
+                 const StudyFolder &folder,
                  SweepPoints &points,
                  const PointTable &table,
                  const std::vector<bool> &done,
-                 const std::function<bool()> &interrupted,
-                 Log &log)
+                 const std::function<bool()> &interrupted)
     {
-      CrashNote note(folder);
+      CrashNote note(folder.path);
       SweepWork own(points, size_of(communicator), &note);
-      RowFile results(communicator, folder / table.file, table.group, table.written_columns());
+      RowFile results(communicator, folder.path / table.file, table.group, table.written_columns());
       return share_work(
         communicator,
         {own.n_parts(),
@@ -146,7 +144,7 @@ namespace crawler
              stops,
              see);
          }},
-        log);
+        folder.log);
     }
 
     void
@@ -166,8 +164,9 @@ namespace crawler
     }
 
     void
-    report(const SweepCounts &counts, const SweepEnd &end, const fs::path &folder, const StudyClock &clock, Log &log)
+    report(const SweepCounts &counts, const SweepEnd &end, const StudyFolder &folder, const StudyClock &clock)
     {
+      Log &log = folder.log;
       std::vector<std::string> words;
       for (const auto &[status, count] : counts.statuses)
         words.push_back(fmt::format("{} {}", count, status));
@@ -181,7 +180,7 @@ namespace crawler
       if (end.status != "finished")
         log.warn(clock.in_words(end.reason) + "; --resume continues");
       log.line(fmt::format("Results are in {0}/results.h5 and {0}/results.csv; draw them with: crawler plot {0}",
-                           folder.string()));
+                           folder.path.string()));
     }
 
     std::string
@@ -194,27 +193,21 @@ namespace crawler
 
     /// Writes the files and the lines at the end of a sweep; returns its exit code.
     ExitCode
-    end_sweep(MPI_Comm communicator,
-              SweepEnd end,
-              StudyFolder &folder,
-              const fs::path &path,
-              const bool is_strict,
-              const StudyClock &clock,
-              Log &log)
+    end_sweep(MPI_Comm communicator, SweepEnd end, StudyFolder &folder, const StudyClock &clock)
     {
       try
       {
-        const SweepCounts counts = write_results_csv(communicator, path);
+        const SweepCounts counts = write_results_csv(communicator, folder.path);
         end.seconds              = clock.seconds();
         return exit_code_of_first_rank(communicator, [&]() {
-          write_file(path / "summary.json", sweep_json(counts, end));
-          report(counts, end, path, clock, log);
+          write_file(folder.path / "summary.json", sweep_json(counts, end));
+          report(counts, end, folder, clock);
           folder.leave();
           const auto finished     = counts.statuses.find("finished");
           const auto not_finished = counts.n_points - (finished == counts.statuses.end() ? 0 : finished->second);
-          return end.status != "finished"        ? ExitCode::stopped
-                 : is_strict && not_finished > 0 ? ExitCode::rows_failed
-                                                 : ExitCode::finished;
+          return end.status != "finished"                    ? ExitCode::stopped
+                 : folder.options.strict && not_finished > 0 ? ExitCode::rows_failed
+                                                             : ExitCode::finished;
         });
       }
       catch (const FileError &error)
@@ -236,18 +229,15 @@ namespace crawler
     const SweepDesign &design  = points.design();
     const SweepParameters &own = points.sweep();
     const auto kept            = points.kept_points();
-    const fs::path path        = output_folder(options.output, options.file);
     const PointTable table     = table_of(points);
-    StudyFolder folder({"sweep", {sweep_file}, {"Sweep/Time limit", "Sweep/Time limit per point", "Sweep/Keep fields"}},
-                       path,
-                       options,
-                       log);
+    StudyFolder folder(
+      {"sweep", sweep_file, {"Sweep/Time limit", "Sweep/Time limit per point", "Sweep/Keep fields"}}, options, log);
     const std::vector<bool> done = points_done(communicator, [&]() {
       const PlannedRows plan{
         design.n_points(), known_columns(table.columns, design), sweep_inputs(points), points.effective()};
-      auto list = begin_or_resume(folder, table, file, plan, options.command_line);
+      auto list = begin_or_resume(folder, table, file, plan);
       if (std::count(list.begin(), list.end(), true) == 0)
-        remove_kept_fields(path / "points"); // fields of an earlier sweep
+        remove_kept_fields(folder.path / "points"); // fields of an earlier sweep
       return list;
     });
     const auto n_done            = static_cast<unsigned long>(std::count(done.begin(), done.end(), true));
@@ -260,12 +250,11 @@ namespace crawler
     announce_petsc_options(options, log);
 
     clock.set_limit(own.time_limit);
-    bool is_whole = compute_rows(
-      communicator, path, points, table, done, [&]() { return clock.is_over(); }, log);
+    bool is_whole      = compute_rows(communicator, folder, points, table, done, [&]() { return clock.is_over(); });
     std::string reason = clock.reason(communicator, is_whole);
     if (n_done < design.n_points())
       warn_of_unused_petsc_options(communicator, options, log);
-    if (is_whole && !kept.empty() && !keep_fields(communicator, options, path, points, kept))
+    if (is_whole && !kept.empty() && !keep_fields(communicator, folder, points, kept))
     {
       is_whole = false;
       reason   = "signal";
@@ -274,10 +263,7 @@ namespace crawler
     return end_sweep(communicator,
                      {is_whole ? "finished" : "stopped", reason, 0., n_ranks, n_done, options.command_line},
                      folder,
-                     path,
-                     options.strict,
-                     clock,
-                     log);
+                     clock);
   }
 
   bool

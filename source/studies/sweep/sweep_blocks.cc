@@ -2,7 +2,7 @@
 #include <crawler/base/clock.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/sensitivities.h>
-#include <crawler/studies/sweep/checked_runs.h>
+#include <crawler/studies/sweep/cross_check.h>
 #include <crawler/studies/sweep/sweep_blocks.h>
 #include <crawler/studies/sweep/sweep_rows.h>
 

@@ -38,26 +38,19 @@ namespace crawler
     auto base  = std::make_unique<Form>(file);
     sweep_     = base->parameters.sweep;
     effective_ = base->effective();
-    try
-    {
+    file_.placing_errors([&]() {
       const Assignment *const axes = file_.assignment_of(axes_entry);
       design_                      = std::make_unique<SweepDesign>(sweep_, axes != nullptr ? axes->folder : "");
-      file_axis_                   = design_->axes().size();
-      for (std::size_t i = 0; i < design_->axes().size(); ++i)
-        if (design_->axes()[i].is_file())
-          file_axis_ = i;
-      base_ = std::move(base);
+      const auto &all_axes         = design_->axes();
+      file_axis_ = static_cast<std::size_t>(std::ranges::find_if(all_axes, &SweepAxis::is_file) - all_axes.begin());
+      base_      = std::move(base);
       require_scene_files(communicator);
       require_admissible_values();
       require_words();
       require_scene();
       kept_points();
       sensitivities_ = sensitivity_entries(form(0));
-    }
-    catch (const InputError &error)
-    {
-      throw file_.with_place(error);
-    }
+    });
   }
 
   std::vector<std::string>
@@ -65,10 +58,9 @@ namespace crawler
   {
     if (file_axis_ == design_->axes().size())
       return {};
-    std::vector<std::string> names = design_->axes()[file_axis_].values;
-    std::ranges::sort(names);
-    names.erase(std::unique(names.begin(), names.end()), names.end());
-    return names;
+    const std::vector<std::string> &files = design_->axes()[file_axis_].values;
+    const std::set<std::string> names(files.begin(), files.end());
+    return {names.begin(), names.end()};
   }
 
   std::vector<std::string>

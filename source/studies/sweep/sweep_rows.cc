@@ -5,7 +5,6 @@
 #include <crawler/base/versions.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/sensitivities.h>
-#include <crawler/studies/sweep/checked_runs.h>
 #include <crawler/studies/sweep/sweep_rows.h>
 
 #include <fmt/format.h>

@@ -98,7 +98,6 @@ namespace crawler
       const std::vector<TradeoffSetting> &settings;
       const std::function<bool()> &interrupted;
       const StudyClock &clock;
-      const std::string &command_line;
       StudyFolder &folder;
       std::vector<bool> done = {}; ///< settings that have a row
     };
@@ -213,7 +212,7 @@ namespace crawler
                        {{"reference", ""}}};
       std::string text;
       study.done        = points_done(study.communicator, [&]() {
-        auto done = begin_or_resume(study.folder, study.table, input.file, plan, study.command_line);
+        auto done = begin_or_resume(study.folder, study.table, input.file, plan);
         text      = read_attribute(study.folder.path / study.table.file, study.table.group, "reference");
         return done;
       });
@@ -235,7 +234,7 @@ namespace crawler
       text = broadcast(made.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), study.communicator);
       on_first_rank(study.communicator, [&]() {
         plan.more["reference"] = text;
-        create_table(study.folder.path, study.table, plan, study.command_line);
+        create_table(study.folder, study.table, plan);
       });
       return nlohmann::json::parse(text);
     }
@@ -281,14 +280,13 @@ namespace crawler
     Log log(rank_of(communicator) == 0, options);
     const Input input             = read_input(file, /*command=*/"tradeoff");
     const TradeoffParameters &own = input.parameters.tradeoff;
-    const auto settings           = settings_to_try(input);
-    const auto path               = output_folder(options.output, options.file);
+    const auto settings           = file.placing_errors([&]() { return settings_to_try(input); });
     const PointTable table        = tradeoff_table(own.run_time_limit);
     clock.set_limit(own.time_limit);
     const std::function<bool()> interrupted = [&]() { return clock.is_over(); };
-    const StudyKind kind = {"tradeoff", {table.file}, {"Tradeoff/Time limit", "Tradeoff/Time limit per run"}};
-    StudyFolder folder(kind, path, options, log);
-    Study study{communicator, input, table, settings, interrupted, clock, options.command_line, folder};
+    const StudyKind kind = {"tradeoff", table.file, {"Tradeoff/Time limit", "Tradeoff/Time limit per run"}};
+    StudyFolder folder(kind, options, log);
+    Study study{communicator, input, table, settings, interrupted, clock, folder};
     const TradeoffReference reference = begin(study);
     const auto n_before               = static_cast<unsigned long>(std::ranges::count(study.done, true));
     SweepEnd end{reference.status, "", 0., size_of(communicator), n_before, options.command_line};
@@ -301,7 +299,7 @@ namespace crawler
       end.reason = clock.reason(communicator, /*is_whole=*/false);
     }
     on_first_rank(communicator, [&]() { folder.require_in_place(); });
-    const SweepCounts counts = write_results_csv(communicator, path, table.file, table.group);
+    const SweepCounts counts = write_results_csv(communicator, folder.path, table.file, table.group);
     end.seconds              = clock.seconds();
     on_first_rank(communicator, [&]() {
       conclude(study, reference, counts, end);

@@ -168,7 +168,6 @@ namespace crawler
 
   std::vector<TradeoffSetting>
   settings_to_try(const Input &input)
-  try
   {
     const Scene &scene = input.scene;
     Parameters own     = input.parameters;
@@ -197,10 +196,6 @@ namespace crawler
         add({way});
     }
     return list;
-  }
-  catch (const InputError &error)
-  {
-    throw input.file.with_place(error);
   }
 
   Texts

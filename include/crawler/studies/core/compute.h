@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/accuracy/answer.h>
 #include <crawler/accuracy/shared_choice.h>
 #include <crawler/run/simulation.h>
 #include <crawler/studies/core/parameters.h>
@@ -14,13 +15,6 @@
 
 namespace crawler
 {
-  /// Result and numerics of one run without files.
-  struct Computed
-  {
-    SimulationResult result;
-    NumericsChoice choice;
-  };
-
   /// Task among many: a scene to compute, and its outcome.
   struct Task
   {
@@ -29,7 +23,7 @@ namespace crawler
     /// a call.
     bool gait = false;
     std::optional<Scene> scene;
-    Computed computed;
+    Answer computed;
     std::exception_ptr error;    ///< exception thrown instead of a result
     double seconds      = 0.;    ///< wall time [s]; runs of a batch share its time
     bool is_out_of_time = false; ///< stopped by the time limit

@@ -3,7 +3,7 @@
 
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/run/numerics.h>
-#include <crawler/studies/core/sensitivity_entries.h>
+#include <crawler/studies/core/scene_numbers.h>
 
 #include <mpi.h>
 

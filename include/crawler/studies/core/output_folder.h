@@ -23,12 +23,6 @@ namespace crawler
   void
   require_usable(const std::filesystem::path &folder, bool overwrite);
 
-  /// Name of the file that is locked (base/file_lock.h) while a run or study writes to the folder.
-  inline const std::string study_lock_name = "study.lock";
-
-  /// Page that `crawler report` makes.
-  inline const std::string report_name = "report.html";
-
   /// Returns true if the folder has nothing but what a run or study leaves that is killed while it begins, and files of
   /// these names too.
   bool
@@ -42,26 +36,15 @@ namespace crawler
                     const std::vector<std::string> &free_entries);
 
   /// Keeps other processes from writing to a folder during its lifetime.
-  class FolderLock
+  class FolderLock : public FileLock
   {
   public:
     /// Makes the folder. Throws InputError if another process writes to it, and as require_usable() does.
     FolderLock(const std::filesystem::path &folder, bool overwrite);
     ~FolderLock();
-    FolderLock(const FolderLock &) = delete;
-
-    /// Throws FileError if the folder is no longer the one that was locked.
-    void
-    require_in_place() const
-    {
-      lock_->require_in_place();
-    }
-
-  private:
-    std::optional<FileLock> lock_;
   };
 
-  /// Makes the folder, without the results of an earlier run (only files that this program writes are removed).
+  /// Removes the results of an earlier run from the folder (only files that this program writes).
   void
   prepare(const std::filesystem::path &folder);
 
@@ -77,7 +60,7 @@ namespace crawler
   struct StudyKind
   {
     std::string name;                      ///< "sweep", for sentences
-    std::vector<std::string> results;      ///< files any of which makes a folder one with results, to be resumed
+    std::string results;                   ///< file that makes a folder one with results, to be resumed
     std::vector<std::string> free_entries; ///< entries for the amount of computation: they may change meanwhile
   };
 
@@ -88,7 +71,7 @@ namespace crawler
   class StudyFolder
   {
   public:
-    StudyFolder(StudyKind its_kind, std::filesystem::path its_path, const CommandOptions &options, Log &its_log);
+    StudyFolder(StudyKind its_kind, const CommandOptions &its_options, Log &its_log);
 
     /// Returns true if a study is to be resumed (--resume). Otherwise makes the folder, with the parameter file, the @p
     /// effective parameters and the log; a study that was killed before it had results is begun anew. Throws InputError
@@ -113,7 +96,8 @@ namespace crawler
     leave();
 
     const StudyKind kind;
-    const std::filesystem::path path;
+    const CommandOptions &options;
+    const std::filesystem::path path; ///< output_folder()
     Log &log;
 
   private:
@@ -126,14 +110,9 @@ namespace crawler
     void
     lock();
 
-    /// Removes the file FILE-1-NUMBER.lock that MPI leaves beside a table where the only process of a study is killed.
-    void
-    remove_locks_of_mpi() const;
-
     void
     leaving_if_refused(const std::function<void()> &work);
 
-    const CommandOptions &options_;
     std::optional<FileLock> lock_;
   };
 } // namespace crawler

@@ -54,7 +54,7 @@ namespace crawler
     add_parameters(Declarations &declarations);
   };
 
-  /// Section "Optimize": the gait that `crawler optimize` looks for (variables.h reads the variables).
+  /// Section "Optimize": the gait that `crawler optimize` looks for (scene_numbers.h reads the variables).
   struct OptimizeParameters
   {
     std::string objective = "displacement";
@@ -72,8 +72,8 @@ namespace crawler
     add_parameters(Declarations &declarations);
   };
 
-  /// Section "Fit": unknowns of `crawler fit` in measured data (contrib/python/crawler/fitting; variables.h reads the
-  /// variables).
+  /// Section "Fit": unknowns of `crawler fit` in measured data (contrib/python/crawler/fitting; scene_numbers.h reads
+  /// the variables).
   struct FitParameters
   {
     std::string data = "", variables = "", markers_at = "first", origin = "unknown", deviation = "automatic";

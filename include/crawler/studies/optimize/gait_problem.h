@@ -3,7 +3,7 @@
 
 #include <crawler/base/archive.h>
 #include <crawler/studies/core/parameters.h>
-#include <crawler/studies/core/variables.h>
+#include <crawler/studies/core/scene_numbers.h>
 #include <crawler/studies/optimize/gait_model.h>
 
 #include <algorithm>

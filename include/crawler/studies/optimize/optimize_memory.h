@@ -19,15 +19,12 @@ namespace crawler
   class OptimizeMemory
   {
   public:
-    static const std::string file, group;                         ///< starts.h5
-    static const std::string evaluations_file, evaluations_group; ///< results.h5
+    static inline const std::string file = "starts.h5", group = "starts";
+    static inline const std::string evaluations_file = "results.h5", evaluations_group = "optimize";
 
-    /// Begins a study in the folder, or resumes the one in it. @p cases must outlive it. Throws as begin_or_resume() of
-    /// a table.
-    OptimizeMemory(const OptimizeCases &cases,
-                   StudyFolder &folder,
-                   const ParameterFile &file,
-                   std::string command_line);
+    /// Begins a study in the folder, or resumes the one in it. @p cases and the folder must outlive it. Throws as
+    /// begin_or_resume() of a table.
+    OptimizeMemory(const OptimizeCases &cases, StudyFolder &folder, const ParameterFile &file);
 
     /// Returns this start if it has ended, otherwise null.
     const StartResult *
@@ -54,8 +51,7 @@ namespace crawler
     write(const StartResult &start);
 
     const OptimizeNames &names_;
-    const std::filesystem::path folder_;
-    const std::string command_line_;
+    const StudyFolder &folder_;
     const PointTable table_;
     PlannedRows plan_;
     std::vector<StartResult> starts_; ///< in the order of their rows

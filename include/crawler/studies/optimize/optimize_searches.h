@@ -24,7 +24,6 @@ namespace crawler
   make_searches(MPI_Comm communicator,
                 OptimizeCases &cases,
                 OptimizeMemory *memory,
-                const std::filesystem::path &folder,
-                std::function<bool()> interrupted,
-                Log &log);
+                const StudyFolder &folder,
+                std::function<bool()> interrupted);
 } // namespace crawler

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/studies/core/variables.h>
+#include <crawler/studies/core/scene_numbers.h>
 #include <crawler/studies/optimize/gait_model.h>
 
 #include <array>
@@ -57,13 +57,14 @@ namespace crawler
     double
     scale(const std::vector<double> &x, std::size_t i) const;
 
-    /// Stencil about variable @p i: offsets @p places from x, all in its range, and the weights of the values there in
-    /// the derivative, of fourth order inside the range. @p relative_step: in scales of the variable.
-    struct Stencil
+    /// Points of a stencil about variable @p i, all in its range, by their offset from x, and the weights of the values
+    /// there in the derivative, of fourth order inside the range. @p relative_step: in scales of the variable.
+    struct StencilPoint
     {
-      std::vector<double> places, weights;
+      double offset, weight;
+      std::vector<double> x;
     };
-    Stencil
+    std::vector<StencilPoint>
     stencil(const std::vector<double> &x, std::size_t i, double relative_step) const;
 
     /// Derivatives by differences of @p values of the parameters: [place][variable]. Throws InputError.
@@ -80,4 +81,14 @@ namespace crawler
     double
     largest_stress(const std::vector<double> &x, bool rate);
   };
+
+  /// Makes the model of gaits of the kinematic level. Throws InputError if the start does not make a scene with a given
+  /// strain.
+  std::unique_ptr<GaitModel>
+  kinematic_gait(SceneFamily &family, const GaitWishes &wishes, const std::vector<double> &start);
+
+  /// Makes the model of gaits of the levels that are simulated. @p interrupted is called after every step. Throws
+  /// InputError for a wish that only the kinematic level fulfils.
+  std::unique_ptr<GaitModel>
+  simulated_gait(SceneFamily &family, const GaitWishes &wishes, std::function<bool()> interrupted);
 } // namespace crawler

@@ -21,11 +21,6 @@ namespace crawler
   void
   report_plan(Log &log, const Input &input, const ModelChoice &model, const NumericsChoice *choice);
 
-  /// Makes the output folder with the initial files of a run: parameters, log, and the tables of active stress and
-  /// segments if the input asks for them. Throws FileError.
-  void
-  begin_files(Log &log, const Input &input, const std::filesystem::path &folder, bool goes_on = false);
-
   /// Reports how a run ended, where its results are, and that @p animation among them opens in ParaView (empty: there
   /// is none). Returns the exit code.
   ExitCode

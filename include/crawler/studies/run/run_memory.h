@@ -24,7 +24,8 @@ namespace crawler
     begin(Log &log);
 
     // Functions of the first rank.
-    /// Makes the files with which a run begins. Throws FileError.
+    /// Makes the output folder with the files with which a run begins: parameters, log, and the tables of active stress
+    /// and segments if the input asks for them. Throws FileError.
     void
     begin_files(Log &log);
 

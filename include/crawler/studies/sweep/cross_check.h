@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/row_file.h>
+#include <crawler/studies/core/compute.h>
+
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -64,4 +68,15 @@ namespace crawler
    */
   Verdict
   cross_check(const std::vector<Claim> &runs, const Claim &refined, const InversionFacts &facts);
+
+  /// Columns of the other runs of a point, in both forms and refined, and of the verdict, in the table of a sweep (a
+  /// contract, doc/user_guide.md, "Sweep").
+  std::vector<RowFile::Column>
+  checked_columns();
+
+  /// Values in these columns for each of @p points, which have been computed, all with gait numbers or all without.
+  /// Failures are the status of a run. The runs of all points share the lanes (compute_all()); each has the time limit
+  /// of a point. Results are of no use once @p interrupted returns true.
+  std::vector<RowFile::Row>
+  checked_values(const std::vector<const Task *> &points, const std::function<bool()> &interrupted);
 } // namespace crawler

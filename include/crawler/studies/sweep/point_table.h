@@ -74,19 +74,12 @@ namespace crawler
 
   /// Makes the table without rows (one process).
   void
-  create_table(const std::filesystem::path &folder,
-               const PointTable &table,
-               const PlannedRows &plan,
-               const std::string &command_line);
+  create_table(const StudyFolder &folder, const PointTable &table, const PlannedRows &plan);
 
   /// Makes the files of a new study, or, with --resume, looks for the same study. Returns which rows exist. Throws as
   /// StudyFolder::begin() and resume() (one process).
   std::vector<bool>
-  begin_or_resume(StudyFolder &folder,
-                  const PointTable &table,
-                  const ParameterFile &file,
-                  const PlannedRows &plan,
-                  const std::string &command_line);
+  begin_or_resume(StudyFolder &folder, const PointTable &table, const ParameterFile &file, const PlannedRows &plan);
 
   /// Sends the result of @p list on rank 0 to all ranks (collective).
   std::vector<bool>

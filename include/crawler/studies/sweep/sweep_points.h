@@ -2,7 +2,7 @@
 #pragma once
 
 #include <crawler/studies/core/entry_notes.h>
-#include <crawler/studies/core/sensitivity_entries.h>
+#include <crawler/studies/core/scene_numbers.h>
 #include <crawler/studies/sweep/sweep_design.h>
 
 #include <mpi.h>

@@ -18,7 +18,7 @@ namespace crawler
   class Declarations;
 
   /// Columns of results.h5 (a contract, doc/user_guide.md, "Sweep"): index, the axes, the numbers of summary.json with
-  /// dots for nesting, those of the requested sensitivities, those of a cross-check (checked_runs.h), seconds, reason,
+  /// dots for nesting, those of the requested sensitivities, those of a cross-check (cross_check.h), seconds, reason,
   /// message, and status, which is written last.
   std::vector<RowFile::Column>
   sweep_columns(const SweepPoints &points);

@@ -46,8 +46,7 @@ namespace crawler
   /**
    * Combinations of the lists in section "Tradeoff"; those of one mesh follow each other, from the loosest tolerance
    * on. Settings that the program cannot compute are listed once, whatever the meshes. The level perturbation is one
-   * setting; for kinematic the tolerances are values of Accuracy, 0.1 at first. Throws InputError, with the place in
-   * the file.
+   * setting; for kinematic the tolerances are values of Accuracy, 0.1 at first. Throws InputError.
    */
   std::vector<TradeoffSetting>
   settings_to_try(const Input &input);
