@@ -35,7 +35,7 @@ namespace crawler
   Assembler::root_mean_square(const ConstVector y) const
   {
     std::vector<double> buffer;
-    const auto local                = discretization_.to_local<double>(displacement(y), buffer);
+    const auto local                = discretization_.to_local(displacement(y), buffer);
     const ReferenceElement &element = discretization_.element();
     double sum                      = 0.;
     for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
@@ -60,7 +60,7 @@ namespace crawler
     const auto &element  = discretization_.element();
     const unsigned int q = element.degree;
     std::vector<double> buffer;
-    const auto local = discretization_.to_local<double>(displacement(y), buffer);
+    const auto local = discretization_.to_local(displacement(y), buffer);
     std::vector<double> strain(static_cast<std::size_t>(discretization_.n_local_cells()) * q, 0.);
     for (std::size_t c = 0; c < discretization_.n_local_cells(); ++c)
       for (unsigned int p = 0; p < q; ++p)
@@ -111,7 +111,7 @@ namespace crawler
   {
     if (piece_ends_.n_pieces != n_pieces)
       find_piece_ends(n_pieces);
-    const auto u         = discretization_.to_local<double>(displacement(y), u_local_);
+    const auto u         = discretization_.to_local(displacement(y), u_local_);
     const unsigned int n = discretization_.element().n, q = discretization_.element().degree;
     std::vector<double> values(n_pieces + 1, 0.);
     for (std::size_t e = 0; e < piece_ends_.places.size(); ++e)

@@ -20,7 +20,7 @@ namespace crawler
   Resolution
   PositionForm::resolution(const ConstVector y)
   {
-    const auto local    = discretization_.to_local<double>(displacement(y), u_local_);
+    const auto local    = discretization_.to_local(displacement(y), u_local_);
     const auto &element = discretization_.element();
     double sums[2]      = {0., 0.};
     // Stretches are polynomials of degree q - 1 in a cell.

@@ -80,7 +80,7 @@ namespace crawler
         for (unsigned int i = 0; i < n; ++i)
           local[c * q + i] +=
             element.weights[p] * far.by_near[c * n + p] * change[c * n + p] * element.derivatives[p * n + i];
-    discretization_.add_to_owned<double>(local, owned);
+    discretization_.add_to_owned(local, owned);
     for (std::size_t i = 0; i < result.size(); ++i)
       result[i] += owned[i];
   }

@@ -75,8 +75,8 @@ namespace crawler
   GeneralSampler::sample(const double t, const std::span<const double> y, const std::span<const double> v)
   {
     const Discretization &d = assembler_.discretization();
-    const auto u_local      = d.to_local<double>(assembler_.displacement(y), u_local_);
-    const auto v_local      = d.to_local<double>(v, v_local_);
+    const auto u_local      = d.to_local(assembler_.displacement(y), u_local_);
+    const auto v_local      = d.to_local(v, v_local_);
     const auto cells        = assembler_.stretch(y);
     const unsigned int n = d.element().n, q = d.element().degree;
     for (std::size_t p = 0; p < cells_.size(); ++p)

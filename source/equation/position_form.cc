@@ -69,8 +69,8 @@ namespace crawler
             &discretization_.element(),
             scene_.friction.get(),
             scene_.body.elastic_modulus,
-            discretization_.to_local<double>(u, u_local_).data(),
-            v.data() == nullptr ? nullptr : discretization_.to_local<double>(v, v_local_).data(),
+            discretization_.to_local(u, u_local_).data(),
+            v.data() == nullptr ? nullptr : discretization_.to_local(v, v_local_).data(),
             stress_at(t).data()};
   }
 
@@ -107,7 +107,7 @@ namespace crawler
   StretchRange
   PositionForm::stretch_range(const ConstVector y)
   {
-    const auto local          = discretization_.to_local<double>(displacement(y), u_local_);
+    const auto local          = discretization_.to_local(displacement(y), u_local_);
     const unsigned n          = discretization_.element().n;
     constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -219,7 +219,7 @@ namespace crawler
     if (bad < 0)
       bad = kernels_.residual(in, data);
     if (!one)
-      discretization_.add_to_owned<double>(F_local_, F);
+      discretization_.add_to_owned(F_local_, F);
 
     int any = bad >= 0;
     if (discretization_.n_ranks() > 1)

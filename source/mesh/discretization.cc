@@ -4,7 +4,6 @@
 #include <crawler/mesh/triangulation.h>
 
 #include <algorithm>
-#include <complex>
 #include <stdexcept>
 
 namespace crawler
@@ -172,28 +171,16 @@ namespace crawler
     return all;
   }
 
-  template <typename Number>
-  std::span<const Number>
-  Discretization::to_local(const std::span<const Number> owned, std::vector<Number> &buffer) const
+  std::span<const double>
+  Discretization::to_local(const std::span<const double> owned, std::vector<double> &buffer) const
   {
     if (n_active_ranks_ == 1 || n_local() == 0)
       return owned;
-    Number from_left    = 0.;
-    constexpr int count = sizeof(Number) / sizeof(double);
-    const auto left     = has_left_neighbour() ? static_cast<int>(rank_) - 1 : MPI_PROC_NULL;
-    const auto right    = has_right_neighbour() ? static_cast<int>(rank_) + 1 : MPI_PROC_NULL;
-    MPI_Sendrecv(&owned.back(),
-                 count,
-                 MPI_DOUBLE,
-                 right,
-                 0,
-                 &from_left,
-                 count,
-                 MPI_DOUBLE,
-                 left,
-                 0,
-                 communicator_,
-                 MPI_STATUS_IGNORE);
+    double from_left = 0.;
+    const int left   = has_left_neighbour() ? static_cast<int>(rank_) - 1 : MPI_PROC_NULL;
+    const int right  = has_right_neighbour() ? static_cast<int>(rank_) + 1 : MPI_PROC_NULL;
+    MPI_Sendrecv(
+      &owned.back(), 1, MPI_DOUBLE, right, 0, &from_left, 1, MPI_DOUBLE, left, 0, communicator_, MPI_STATUS_IGNORE);
     if (!has_left_neighbour())
       return owned;
     buffer.resize(n_local());
@@ -202,9 +189,8 @@ namespace crawler
     return buffer;
   }
 
-  template <typename Number>
   void
-  Discretization::add_to_owned(const std::span<const Number> local, const std::span<Number> owned) const
+  Discretization::add_to_owned(const std::span<const double> local, const std::span<double> owned) const
   {
     if (n_local() == 0)
       return;
@@ -213,32 +199,13 @@ namespace crawler
       std::copy(local.begin() + (skip_first ? 1 : 0), local.end(), owned.begin());
     if (n_active_ranks_ == 1)
       return;
-    Number from_right   = 0.;
-    constexpr int count = sizeof(Number) / sizeof(double);
-    const auto left     = has_left_neighbour() ? static_cast<int>(rank_) - 1 : MPI_PROC_NULL;
-    const auto right    = has_right_neighbour() ? static_cast<int>(rank_) + 1 : MPI_PROC_NULL;
-    MPI_Sendrecv(local.data(),
-                 count,
-                 MPI_DOUBLE,
-                 left,
-                 1,
-                 &from_right,
-                 count,
-                 MPI_DOUBLE,
-                 right,
-                 1,
-                 communicator_,
-                 MPI_STATUS_IGNORE);
+    double from_right = 0.;
+    const int left    = has_left_neighbour() ? static_cast<int>(rank_) - 1 : MPI_PROC_NULL;
+    const int right   = has_right_neighbour() ? static_cast<int>(rank_) + 1 : MPI_PROC_NULL;
+    MPI_Sendrecv(
+      local.data(), 1, MPI_DOUBLE, left, 1, &from_right, 1, MPI_DOUBLE, right, 1, communicator_, MPI_STATUS_IGNORE);
     owned.back() += from_right;
   }
-
-  template std::span<const double>
-  Discretization::to_local(std::span<const double>, std::vector<double> &) const;
-  template std::span<const std::complex<double>>
-  Discretization::to_local(std::span<const std::complex<double>>, std::vector<std::complex<double>> &) const;
-  template void Discretization::add_to_owned(std::span<const double>, std::span<double>) const;
-  template void Discretization::add_to_owned(std::span<const std::complex<double>>,
-                                             std::span<std::complex<double>>) const;
 
   std::vector<CellPlace>
   Discretization::own_places(const std::vector<double> &points) const

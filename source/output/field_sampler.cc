@@ -62,8 +62,8 @@ namespace crawler
   FieldSampler::sample(const double t, const std::span<const double> y, const std::span<const double> v)
   {
     const Discretization &d            = assembler_.discretization();
-    const auto u_local                 = d.to_local<double>(assembler_.displacement(y), u_local_);
-    const auto v_local                 = d.to_local<double>(v, v_local_);
+    const auto u_local                 = d.to_local(assembler_.displacement(y), u_local_);
+    const auto v_local                 = d.to_local(v, v_local_);
     const std::vector<double> slopes   = assembler_.stretch_slopes(y);
     const std::vector<double> friction = assembler_.node_friction(t, y, v);
     const auto cells                   = assembler_.stretch(y);

@@ -139,14 +139,12 @@ namespace crawler
 
     /// Completes a local array from the owned values of all ranks (collective). Returns @p owned itself where nothing
     /// is missing; else fills and returns @p buffer.
-    template <typename Number>
-    std::span<const Number>
-    to_local(std::span<const Number> owned, std::vector<Number> &buffer) const;
+    std::span<const double>
+    to_local(std::span<const double> owned, std::vector<double> &buffer) const;
 
     /// Sums local contributions to owned ones (collective): @p local is added up where two ranks share a node.
-    template <typename Number>
     void
-    add_to_owned(std::span<const Number> local, std::span<Number> owned) const;
+    add_to_owned(std::span<const double> local, std::span<double> owned) const;
 
     /// Concatenates all ranks' parts of a distributed array, in rank order, on all ranks (collective).
     std::vector<double>
