@@ -86,7 +86,7 @@ namespace crawler
   bool
   Simulation::mesh_is_good(const Step &step, const std::span<const double> y)
   {
-    run_->indicators = all_indicators(mesh_.position->error_indicators(step.time, y, v_), *mesh_.discretization);
+    run_->indicators = mesh_.discretization->gather(mesh_.position->error_indicators(step.time, y, v_));
     const double sum = std::accumulate(run_->indicators.begin(), run_->indicators.end(), 0.);
     run_->changes.clear();
     if (sum > numerics_.mesh.tolerance)
