@@ -165,11 +165,9 @@ namespace crawler
     if (!initial)
       return;
     // Displacement u: the integral of w - 1, from node to node by a Gauss formula, minus its mean.
-    const auto &element     = discretization_.element();
-    const auto &formula     = reference_element(ReferenceElement::highest_degree);
-    const unsigned int n    = element.n;
-    const std::size_t first = static_cast<std::size_t>(discretization_.first_cell()) * element.degree +
-                              (discretization_.has_left_neighbour() ? 1 : 0);
+    const auto &element  = discretization_.element();
+    const auto &formula  = reference_element(ReferenceElement::highest_degree);
+    const unsigned int n = element.n;
     std::vector<double> u(discretization_.n_unknowns(), 0.), places(formula.n), w(formula.n);
     double mean = 0.;
     for (std::size_t c = 0; c < discretization_.n_cells(); ++c)
@@ -192,8 +190,9 @@ namespace crawler
         mean += cell.size * element.node_weights[i] * here;
       }
     }
-    for (std::size_t i = 0; i < discretization_.n_owned(); ++i)
-      y[i] = u[first + i] - mean / discretization_.length();
+    const auto owned = discretization_.owned_part(u);
+    for (std::size_t i = 0; i < owned.size(); ++i)
+      y[i] = owned[i] - mean / discretization_.length();
   }
 
   long

@@ -24,7 +24,7 @@ namespace crawler
     PositionForm &old_form        = *mesh_.position;
     const auto old_discretization = std::move(mesh_.discretization);
     build(old_discretization->adapted(run_->changes));
-    y_ = mesh_transfer(numerics_.degree).transfer(old_form, run_->accepted.y, *mesh_.position);
+    y_ = transferred(old_form, run_->accepted.y, *mesh_.position);
     if (run_->accepted.time == 0. && !scene_.is_plain())
       mesh_.assembler->set_initial_state(y_);
     const double old_time = run_->accepted.time;

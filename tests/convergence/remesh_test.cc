@@ -50,7 +50,6 @@ namespace
     const Scene scene          = parameters.create_scene();
     auto part                  = std::make_unique<OnMesh>(
       scene, parameters.time, std::make_unique<Discretization>(MPI_COMM_WORLD, 1., n_cells, degree));
-    const MeshTransfer transfer(part->mesh->element());
     std::vector<double> y(part->form->n_owned(), 0.);
     Count count;
     double time = 0., size = first_step;
@@ -74,7 +73,7 @@ namespace
       const auto change = count.mesh_changes++ % 2 == 0 ? CellChange::divide : CellChange::join;
       auto next         = std::make_unique<OnMesh>(
         scene, parameters.time, part->mesh->adapted(std::vector<CellChange>(part->mesh->n_cells(), change)));
-      y    = transfer.transfer(*part->form, y, *next->form);
+      y    = transferred(*part->form, y, *next->form);
       part = std::move(next);
       time = outcome.time;
       size = name == "bdf" ? std::min(outcome.step_size, first_step) : outcome.step_size;

@@ -105,6 +105,12 @@ namespace crawler
     {
       return n_local() - (has_left_neighbour() ? 1 : 0);
     }
+    /// Own part of an array over the unknowns of all ranks.
+    std::span<const double>
+    owned_part(const std::span<const double> all) const
+    {
+      return all.subspan(first_cell_ * element_.degree + (has_left_neighbour() ? 1 : 0), n_owned());
+    }
     bool
     has_left_neighbour() const
     {
