@@ -3,6 +3,7 @@
 #include <crawler/mesh/reference_element.h>
 
 #include <map>
+#include <stdexcept>
 
 namespace crawler
 {
@@ -64,6 +65,8 @@ namespace crawler
     : degree(degree)
     , n(degree + 1)
   {
+    if (degree < 1 || degree > highest_degree)
+      throw std::logic_error("degrees 1 to 8 are compiled");
     const QuadratureRule lobatto = gauss_lobatto_rule(n), gauss = gauss_rule(n), inner = gauss_rule(degree);
     nodes           = lobatto.points;
     node_weights    = lobatto.weights;
