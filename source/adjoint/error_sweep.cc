@@ -51,10 +51,10 @@ namespace crawler
     }
 
     /// One backward sweep.
-    class Sweep
+    class ErrorSweep
     {
     public:
-      explicit Sweep(const RecordedRun &run)
+      explicit ErrorSweep(const RecordedRun &run)
         : run_(run)
         , method_(with_more_stages(run.method))
         , adjoint_(run.natural, method_)
@@ -241,6 +241,6 @@ namespace crawler
   std::optional<SweptErrors>
   sweep_errors(const RecordedRun &run)
   {
-    return Sweep(run).compute();
+    return ErrorSweep(run).compute();
   }
 } // namespace crawler
