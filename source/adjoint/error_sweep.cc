@@ -79,11 +79,11 @@ namespace crawler
       {
         result_.of_steps.resize(steps_.n_steps());
         result_.of_cells.resize(setup_.n_cells);
-        const auto start = adjoint_.solve(
+        const bool is_solved = adjoint_.solve(
           steps_,
           adjoint_.gradient_of_displacement(),
           [this](const std::size_t step, const std::span<const double> mu, const auto &) { look(step, mu); });
-        if (!start || lost_)
+        if (!is_solved || lost_)
           return std::nullopt;
         const double L = run_.units.length;
         for (double &error : result_.of_steps)

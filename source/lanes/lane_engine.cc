@@ -66,6 +66,18 @@ namespace crawler
     }
   } // namespace
 
+  bool
+  LawHost::laws(unsigned int, const LanePoints &)
+  {
+    return false;
+  }
+
+  double
+  LawHost::cell_laws(double, const double *, const double *, const double *, CellLaws<double> &)
+  {
+    return 0.;
+  }
+
   const char *
   forced_instruction_set()
   {

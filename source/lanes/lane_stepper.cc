@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace crawler
 {
@@ -64,8 +65,7 @@ namespace crawler
     bad_friction_.reset();
     lane_step_ = {};
     end_.reset();
-    host_ = {this, take, stress, accepted, done, looks_inside_, laws, cell_laws_ ? cell_laws : nullptr};
-    single_engine().start(setup_, host_, memory_.get());
+    single_engine().start(setup_, *this, memory_.get());
   }
 
   const Step *
@@ -96,61 +96,54 @@ namespace crawler
   }
 
   bool
-  LaneStepper::take(void *context, unsigned int, LaneJob &job)
+  LaneStepper::take(unsigned int, LaneJob &job)
   {
-    auto &self         = *static_cast<LaneStepper *>(context);
-    const bool is_next = !self.started_;
-    self.started_      = true;
-    job                = self.job_;
-    return is_next;
+    job = job_;
+    return !std::exchange(started_, true);
   }
 
   void
-  LaneStepper::stress(void *context, unsigned int, const double t, double *m)
+  LaneStepper::stress(unsigned int, const double t, double *m)
   {
-    auto &self = *static_cast<LaneStepper *>(context);
-    self.stress_->values(t, {m, self.tables_.points.size()});
+    stress_->values(t, {m, tables_.points.size()});
   }
 
   bool
-  LaneStepper::laws(void *context, unsigned int, const LanePoints &points)
+  LaneStepper::laws(unsigned int, const LanePoints &points)
   {
-    return static_cast<LaneStepper *>(context)->laws_->evaluate(points);
+    return laws_->evaluate(points);
   }
 
   double
   LaneStepper::cell_laws(
-    void *context, const double t, const double *m, const double *w, const double *rate, CellLaws<double> &at_cells)
+    const double t, const double *m, const double *w, const double *rate, CellLaws<double> &at_cells)
   {
-    auto &self          = *static_cast<LaneStepper *>(context);
-    StretchLaws &laws   = *self.cell_laws_;
-    const std::size_t n = self.tables_.points.size();
-    const long bad      = laws.evaluate(t, {w, n}, {rate, n}, m);
+    const std::size_t n = tables_.points.size();
+    const long bad      = cell_laws_->evaluate(t, {w, n}, {rate, n}, m);
     // Power laws fail only where the stretch is lost.
-    if (bad >= 0 && w[bad] > 0. && !self.scene_.has_power_law())
-      self.bad_friction_ = {w[bad], laws.friction[static_cast<std::size_t>(bad)]};
-    at_cells                = laws.at_cells();
-    const bool may_be_empty = self.scene_.friction_exponent() < 0.;
+    if (bad >= 0 && w[bad] > 0. && !scene_.has_power_law())
+      bad_friction_ = {w[bad], cell_laws_->friction[static_cast<std::size_t>(bad)]};
+    at_cells                = cell_laws_->at_cells();
+    const bool may_be_empty = scene_.friction_exponent() < 0.;
     return bad >= 0 ? -1. : may_be_empty ? 1. : *std::min_element(w, w + n);
   }
 
   bool
-  LaneStepper::accepted(void *context, unsigned int, const LaneStep &step)
+  LaneStepper::accepted(unsigned int, const LaneStep &step)
   {
-    auto &self      = *static_cast<LaneStepper *>(context);
-    self.lane_step_ = step;
-    self.step_      = {step.time, step.size, step.number, step.is_output_time, step.rejected, step.newton_iterations};
-    self.has_step_  = true;
-    std::copy_n(step.y, self.y_.size(), self.y_.begin());
-    if (self.stage_rates)
-      self.show_rates();
+    lane_step_ = step;
+    step_      = {step.time, step.size, step.number, step.is_output_time, step.rejected, step.newton_iterations};
+    has_step_  = true;
+    std::copy_n(step.y, y_.size(), y_.begin());
+    if (stage_rates)
+      show_rates();
     return true;
   }
 
   void
-  LaneStepper::done(void *context, unsigned int, const LaneOutcome &outcome)
+  LaneStepper::done(unsigned int, const LaneOutcome &outcome)
   {
-    TimeOutcome &end      = static_cast<LaneStepper *>(context)->end_.emplace();
+    TimeOutcome &end      = end_.emplace();
     end.status            = outcome.status == LaneOutcome::finished ? Status::finished : Status::failed;
     end.reason            = outcome.status == LaneOutcome::gave_up ? gave_up : "";
     end.time              = outcome.time;

@@ -48,7 +48,7 @@ namespace crawler
   namespace
   {
     /// Hands the runs of one method out to the lanes and makes results of their data.
-    class Batch
+    class Batch : private LaneHost
     {
     public:
       using Results = std::vector<std::optional<SimulationResult>>;
@@ -70,6 +70,7 @@ namespace crawler
         , sampler_(tables_.setup, Recorder::n_pieces)
         , extremes_(tables_)
       {
+        look_inside = options.energy_balance;
       }
 
       /// Computes the runs; returns false if interrupted.
@@ -77,9 +78,8 @@ namespace crawler
       compute(const LaneEngine &engine)
       {
         lanes_.resize(engine.lanes);
-        const LaneHost host = {this, next, stress, accepted, done, options_.energy_balance, laws};
-        const auto memory   = lane_storage(engine.memory(tables_.setup));
-        engine.start(tables_.setup, host, memory.get());
+        const auto memory = lane_storage(engine.memory(tables_.setup));
+        engine.start(tables_.setup, *this, memory.get());
         while (engine.advance(tables_.setup, memory.get()))
           ;
         return !interrupted_;
@@ -110,21 +110,13 @@ namespace crawler
         std::size_t n_stress_calls = 0;
       };
 
-      static Batch &
-      self(void *context)
+      bool
+      take(const unsigned int l, LaneJob &job) override
       {
-        return *static_cast<Batch *>(context);
-      }
-
-      static bool
-      next(void *context, const unsigned int l, LaneJob &job)
-      {
-        Batch &batch = self(context);
-        if (batch.next_ == batch.members_.size() || batch.interrupted_)
+        if (next_ == members_.size() || interrupted_)
           return false;
-        Lane &lane = batch.lanes_[l];
-        lane.run   = batch.members_[batch.next_++];
-        batch.start(lane, job);
+        lanes_[l].run = members_[next_++];
+        start(lanes_[l], job);
         return true;
       }
 
@@ -182,10 +174,10 @@ namespace crawler
           lane.end_feedback = feedback->at({0., 1.});
       }
 
-      static bool
-      laws(void *context, const unsigned int l, const LanePoints &points)
+      bool
+      laws(const unsigned int l, const LanePoints &points) override
       {
-        return self(context).lanes_[l].laws->evaluate(points);
+        return lanes_[l].laws->evaluate(points);
       }
 
       /// Starts the record of a run from rest.
@@ -216,12 +208,11 @@ namespace crawler
       }
 
       /// Supplies m, asked for at the start of a run or segment, and then in all stages of each step that is tried.
-      static void
-      stress(void *context, const unsigned int l, const double t, double *m)
+      void
+      stress(const unsigned int l, const double t, double *m) override
       {
-        Batch &batch        = self(context);
-        Lane &lane          = batch.lanes_[l];
-        const std::size_t n = batch.tables_.points.size(), stages = batch.tableau_.n;
+        Lane &lane          = lanes_[l];
+        const std::size_t n = tables_.points.size(), stages = tableau_.n;
         lane.stress->values(lane.segments.inside(t) * lane.units.time, lane.m);
         if (lane.units.force != 1.)
           for (double &value : lane.m)
@@ -259,15 +250,14 @@ namespace crawler
         });
       }
 
-      static bool
-      accepted(void *context, const unsigned int l, const LaneStep &step)
+      bool
+      accepted(const unsigned int l, const LaneStep &step) override
       {
-        Batch &batch = self(context);
-        Lane &lane   = batch.lanes_[l];
-        if (!batch.interrupted_ && batch.keep_going_ && !batch.keep_going_())
-          batch.interrupted_ = true;
+        Lane &lane = lanes_[l];
+        if (!interrupted_ && keep_going_ && !keep_going_())
+          interrupted_ = true;
         // A run that is stopped in its last step is finished to the engine.
-        lane.given_up = batch.interrupted_ || !batch.look_at_step(lane, step);
+        lane.given_up = interrupted_ || !look_at_step(lane, step);
         return !lane.given_up && !lane.recorder->cycles_repeat();
       }
 
@@ -323,13 +313,12 @@ namespace crawler
           lane.recorder->see_friction(step.size, stage.abs_friction, std::abs(stage.net_friction));
       }
 
-      static void
-      done(void *context, const unsigned int l, const LaneOutcome &outcome)
+      void
+      done(const unsigned int l, const LaneOutcome &outcome) override
       {
-        Batch &batch = self(context);
-        Lane &lane   = batch.lanes_[l];
+        Lane &lane = lanes_[l];
         if ((outcome.status == LaneOutcome::finished || lane.recorder->cycles_repeat()) && !lane.given_up)
-          batch.results_[lane.run] = batch.result_of(lane, outcome);
+          results_[lane.run] = result_of(lane, outcome);
       }
 
       SimulationResult

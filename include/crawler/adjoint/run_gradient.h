@@ -54,7 +54,7 @@ namespace crawler
 
   /**
    * Derivatives of the displacement and of the works by numbers of the scene, by the discrete adjoint of one run
-   * (lanes/adjoint_lanes.h; doc/numerics.md, "Sensitivities"): exact for its mesh and steps but for round-off and the
+   * (lanes/adjoint_sweep.h; doc/numerics.md, "Sensitivities"): exact for its mesh and steps but for round-off and the
    * differences by which dF/dp is found at the points, of fourth order.
    *
    * They are in [unit of the quantity/unit of p], with one sweep for each quantity of a list (the speed comes with the
