@@ -94,13 +94,11 @@ namespace crawler
   void
   Assembler::find_piece_ends(const unsigned int n_pieces)
   {
-    std::vector<double> ends, in_cells;
+    std::vector<double> ends;
     for (unsigned int i = 0; i <= n_pieces; ++i)
       ends.push_back(discretization_.length() * i / n_pieces);
-    piece_ends_ = {n_pieces, 0, discretization_.own_places(ends), {}};
-    for (const CellPlace &place : piece_ends_.places)
-      in_cells.push_back(place.x);
-    piece_ends_.shape = interpolation_matrix(discretization_.element().nodes, in_cells);
+    piece_ends_       = {n_pieces, 0, discretization_.own_places(ends), {}};
+    piece_ends_.shape = interpolation_matrix(discretization_.element().nodes, in_cells(piece_ends_.places));
     const auto &left  = discretization_.cell_left();
     while (piece_ends_.first <= n_pieces && !left.empty() && ends[piece_ends_.first] < left.front())
       ++piece_ends_.first;

@@ -157,6 +157,15 @@ namespace crawler
   }
 
   std::vector<double>
+  Discretization::points_of(const std::vector<CellPlace> &places) const
+  {
+    std::vector<double> points;
+    for (const auto &[cell, x] : places)
+      points.push_back(cell_left_[cell] + x * cell_size_[cell]);
+    return points;
+  }
+
+  std::vector<double>
   Discretization::gather(const std::span<const double> own) const
   {
     if (n_ranks_ == 1)

@@ -142,6 +142,9 @@ namespace crawler
     /// Material coordinates [length] of @p places (0 to 1) in the own cells, cell by cell.
     std::vector<double>
     points(const std::vector<double> &places) const;
+    /// Those of @p places in own cells, numbered as by own_places().
+    std::vector<double>
+    points_of(const std::vector<CellPlace> &places) const;
 
     /// Completes a local array from the owned values of all ranks (collective). Returns @p owned itself where nothing
     /// is missing; else fills and returns @p buffer.
