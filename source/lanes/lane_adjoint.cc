@@ -77,7 +77,7 @@ namespace crawler
     : scene_(scene)
     , tables_owner_(lane_tables(method))
     , tables_(*tables_owner_)
-    , memory_(lane_storage(single_engine().adjoint_memory(tables_.setup)))
+    , memory_(single_engine().adjoint_memory(tables_.setup))
   {
     if (!scene.is_plain())
       laws_.emplace(scene, tables_.points);
@@ -108,7 +108,7 @@ namespace crawler
     if (laws_)
       laws_->set(job);
     const LanePast past = record.past(gradient.data(), static_cast<bool>(source));
-    return single_engine().adjoint(tables_.setup, *this, job, past, memory_.get());
+    return single_engine().adjoint(tables_.setup, *this, job, past, memory_.data());
   }
 
   void

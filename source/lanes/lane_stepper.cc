@@ -28,7 +28,7 @@ namespace crawler
     }
     else if (!scene.is_plain())
       laws_.emplace(scene, tables_.points);
-    memory_ = lane_storage(single_engine().memory(setup_));
+    memory_.resize(single_engine().memory(setup_));
     for (unsigned int i = 0; i < tableau_.n; ++i)
       stage_places_.push_back(tableau_.c[i]);
   }
@@ -65,7 +65,7 @@ namespace crawler
     bad_friction_.reset();
     lane_step_ = {};
     end_.reset();
-    single_engine().start(setup_, *this, memory_.get());
+    single_engine().start(setup_, *this, memory_.data());
   }
 
   const Step *
@@ -73,7 +73,7 @@ namespace crawler
   {
     has_step_ = false;
     while (!has_step_ && !end_)
-      single_engine().advance(setup_, memory_.get());
+      single_engine().advance(setup_, memory_.data());
     return has_step_ ? &step_ : nullptr;
   }
 

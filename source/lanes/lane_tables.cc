@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
-#include <new>
 
 namespace crawler
 {
@@ -96,23 +94,6 @@ namespace crawler
     if (known.size() == max_kept)
       known.clear();
     return known[method] = std::make_shared<LaneTables>(method);
-  }
-
-  void
-  LaneStorageFree::operator()(double *memory) const
-  {
-    std::free(memory);
-  }
-
-  LaneStorage
-  lane_storage(const std::size_t n)
-  {
-    const std::size_t bytes = (n * sizeof(double) + 63) / 64 * 64;
-    LaneStorage memory(static_cast<double *>(std::aligned_alloc(64, bytes)));
-    if (!memory)
-      throw std::bad_alloc();
-    std::fill_n(memory.get(), bytes / sizeof(double), 0.);
-    return memory;
   }
 
   bool

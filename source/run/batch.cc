@@ -78,9 +78,9 @@ namespace crawler
       compute(const LaneEngine &engine)
       {
         lanes_.resize(engine.lanes);
-        const auto memory = lane_storage(engine.memory(tables_.setup));
-        engine.start(tables_.setup, *this, memory.get());
-        while (engine.advance(tables_.setup, memory.get()))
+        LaneStorage memory(engine.memory(tables_.setup));
+        engine.start(tables_.setup, *this, memory.data());
+        while (engine.advance(tables_.setup, memory.data()))
           ;
         return !interrupted_;
       }

@@ -106,8 +106,8 @@ namespace
     {
       generic::LaneMemory sizes(nullptr);
       system.lay_out(sizes);
-      memory = lane_storage(sizes.size());
-      generic::LaneMemory pieces(memory.get());
+      memory.resize(sizes.size());
+      generic::LaneMemory pieces(memory.data());
       system.lay_out(pieces);
     }
 
