@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
-#include <crawler/lanes/forced_instruction_set.h>
 #include <crawler/lanes/lane_engine.h>
 
 #include <fmt/format.h>

@@ -261,4 +261,9 @@ namespace crawler
   /// Engines for an instruction set ("baseline", "avx2", "avx512") if the processor has it, else null: for comparisons.
   const LaneEngine *
   batch_engine(const char *instruction_set);
+
+  /// Instruction set that the environment variable CRAWLER_INSTRUCTION_SET requests for all lanes ("baseline", "avx2",
+  /// "avx512"), else null. Throws InputError if there is no such set, or if this processor does not have it.
+  const char *
+  forced_instruction_set();
 } // namespace crawler
