@@ -11,6 +11,22 @@
 
 namespace crawler
 {
+  namespace
+  {
+    /// Outcome, without a status, of a body that has come so far.
+    TimeOutcome
+    outcome_at(const LaneProgress &progress)
+    {
+      TimeOutcome outcome;
+      outcome.time              = progress.t;
+      outcome.step_size         = progress.next;
+      outcome.steps             = progress.steps;
+      outcome.rejected_steps    = progress.rejected;
+      outcome.newton_iterations = progress.newton;
+      return outcome;
+    }
+  } // namespace
+
   LaneStepper::LaneStepper(const Scene &scene, const LaneMethod &method)
     : scene_(scene)
     , tables_owner_(lane_tables(method))
@@ -61,6 +77,8 @@ namespace crawler
             .old_z          = goes_on_ ? old_z_.data() : nullptr};
     if (laws_)
       laws_->set(job_);
+    if (!goes_on_)
+      progress_ = {.t = course_.start, .next = course_.initial_step};
     started_ = goes_on_ = false;
     bad_friction_.reset();
     lane_step_ = {};
@@ -80,19 +98,7 @@ namespace crawler
   TimeOutcome
   LaneStepper::outcome()
   {
-    if (end_)
-      return *end_;
-    TimeOutcome so_far;
-    so_far.time      = course_.start;
-    so_far.step_size = course_.initial_step;
-    if (lane_step_.progress == nullptr)
-      return so_far;
-    so_far.time              = lane_step_.time;
-    so_far.step_size         = lane_step_.next_size;
-    so_far.steps             = lane_step_.number;
-    so_far.rejected_steps    = lane_step_.rejected;
-    so_far.newton_iterations = lane_step_.newton_iterations;
-    return so_far;
+    return end_ ? *end_ : outcome_at(progress_);
   }
 
   bool
@@ -132,7 +138,8 @@ namespace crawler
   LaneStepper::accepted(unsigned int, const LaneStep &step)
   {
     lane_step_ = step;
-    step_      = {step.time, step.size, step.number, step.is_output_time, step.rejected, step.newton_iterations};
+    progress_  = *step.progress;
+    step_      = {step.time, step.size, progress_.steps, step.is_output_time, progress_.rejected, progress_.newton};
     has_step_  = true;
     std::copy_n(step.y, y_.size(), y_.begin());
     if (stage_rates)
@@ -143,24 +150,16 @@ namespace crawler
   void
   LaneStepper::done(unsigned int, const LaneOutcome &outcome)
   {
-    TimeOutcome &end      = end_.emplace();
-    end.status            = outcome.status == LaneOutcome::finished ? Status::finished : Status::failed;
-    end.reason            = outcome.status == LaneOutcome::gave_up ? gave_up : "";
-    end.time              = outcome.time;
-    end.step_size         = outcome.step_size;
-    end.steps             = outcome.steps;
-    end.rejected_steps    = outcome.rejected;
-    end.newton_iterations = outcome.newton_iterations;
+    end_         = outcome_at(*outcome.progress);
+    end_->status = outcome.status == LaneOutcome::finished ? Status::finished : Status::failed;
+    end_->reason = outcome.status == LaneOutcome::gave_up ? gave_up : "";
   }
 
   bool
   LaneStepper::exchange(Archive &archive)
   {
     if (!archive.reads())
-    {
-      progress_ = *lane_step_.progress;
       old_z_.assign(lane_step_.z, lane_step_.z + tableau_.n * y_.size());
-    }
     archive(progress_, old_z_);
     goes_on_ = archive.reads();
     return true;

@@ -326,10 +326,10 @@ namespace crawler
       {
         SimulationResult &result      = lane.recorder->result;
         result.time.status            = Status::finished;
-        result.time.step_size         = outcome.step_size;
-        result.time.steps             = outcome.steps;
-        result.time.rejected_steps    = outcome.rejected;
-        result.time.newton_iterations = outcome.newton_iterations;
+        result.time.step_size         = outcome.progress->next;
+        result.time.steps             = outcome.progress->steps;
+        result.time.rejected_steps    = outcome.progress->rejected;
+        result.time.newton_iterations = outcome.progress->newton;
         result.displacement           = outcome.displacement;
         result.most_cells             = tables_.setup.n_cells;
         result.mesh = {result.most_cells, tables_.setup.degree, result.most_cells * tables_.setup.degree + 1, false};

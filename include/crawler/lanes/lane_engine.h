@@ -63,8 +63,9 @@ namespace crawler
   struct LaneProgress
   {
     bool has_old = false, just_rejected = false;
-    bool is_retry = false; ///< the guess is a step's failed try
-    double t = 0., h = 1., next = 1., old_h = 1.;
+    bool is_retry = false;                ///< the guess is a step's failed try
+    double t      = 0.;                   ///< time of the last accepted state
+    double h = 1., next = 1., old_h = 1.; ///< sizes of the present step, the next and the last one
     double rate = 0., known_rate = 1., last_correction = 0.;
     unsigned int steps = 0, rejected = 0, failures = 0, all_failures = 0, output_time = 0, limit = 0;
     unsigned int first_step = 0; ///< steps before the last start
@@ -134,9 +135,6 @@ namespace crawler
   struct LaneStep
   {
     double time, size;
-    double next_size;
-    unsigned int number, rejected;
-    unsigned long newton_iterations;
     bool is_output_time;
     std::size_t stride;
     const double *y;         ///< [unknowns] displacement
@@ -155,10 +153,8 @@ namespace crawler
       stopped, ///< stopped by the host, or at max_steps
       gave_up  ///< given up for a reason that only the full path can tell
     } status;
-    double time, step_size; ///< time of the last accepted state; step that would follow
-    unsigned int steps, rejected;
-    unsigned long newton_iterations;
-    double displacement; ///< int u ds at that time
+    const LaneProgress *progress;
+    double displacement; ///< int u ds in the last accepted state
   };
 
   /// Host that evaluates the laws that the engine leaves to it: those that its bodies need. Lanes are numbered 0 to

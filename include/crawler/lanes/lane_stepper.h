@@ -88,8 +88,8 @@ namespace crawler
     Course course_;
     LaneJob job_;
     bool started_ = false, goes_on_ = false, has_step_ = false;
-    LaneProgress progress_; ///< progress of a run that continues; the last step's stages:
-    std::vector<double> old_z_;
+    LaneProgress progress_;     ///< progress at the last accepted state
+    std::vector<double> old_z_; ///< stages of the last step of a run that continues
     std::vector<double> y_, rate_;
     LaneStep lane_step_;
     Step step_;

@@ -210,10 +210,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       const bool go_on = host_->accepted(l,
                                          {lane.t,
                                           lane.h,
-                                          lane.next,
-                                          lane.steps,
-                                          lane.rejected,
-                                          lane.newton,
                                           is_output_time,
                                           lanes,
                                           reinterpret_cast<const double *>(step_.states.y) + l,
@@ -237,14 +233,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     end(const int l, const LaneOutcome::Status status)
     {
       const Lane &lane = step_.bodies[l];
-      host_->done(l,
-                  {status,
-                   lane.t,
-                   lane.next,
-                   lane.steps,
-                   lane.rejected,
-                   lane.newton,
-                   get_lane(step_.system.integral(step_.states.y), l)});
+      host_->done(l, {status, &lane, get_lane(step_.system.integral(step_.states.y), l)});
       step_.bodies[l].busy = false;
     }
 
