@@ -75,18 +75,17 @@ namespace crawler
 
   LaneAdjoint::LaneAdjoint(const Scene &scene, const LaneMethod &method)
     : scene_(scene)
-    , tables_owner_(lane_tables(method))
-    , tables_(*tables_owner_)
-    , memory_(single_engine().adjoint_memory(tables_.setup))
+    , tables_(lane_tables(method))
+    , memory_(single_engine().adjoint_memory(tables_->setup))
   {
     if (!scene.is_plain())
-      laws_.emplace(scene, tables_.points);
+      laws_.emplace(scene, tables_->points);
   }
 
   std::vector<double>
   LaneAdjoint::gradient_of_displacement() const
   {
-    const LaneSetup &setup = tables_.setup;
+    const LaneSetup &setup = tables_->setup;
     const std::size_t n    = setup.degree + 1;
     std::vector<double> gradient(setup.n_cells * setup.degree + 1, 0.);
     for (std::size_t c = 0; c < setup.n_cells; ++c)
@@ -108,14 +107,14 @@ namespace crawler
     if (laws_)
       laws_->set(job);
     const LanePast past = record.past(gradient.data(), static_cast<bool>(source));
-    return single_engine().adjoint(tables_.setup, *this, job, past, memory_.data());
+    return single_engine().adjoint(tables_->setup, *this, job, past, memory_.data());
   }
 
   void
   LaneAdjoint::step(const unsigned int step, const double *mu, const double *zeta)
   {
-    const std::size_t n = tables_.setup.n_cells * tables_.setup.degree + 1;
-    (*see_)(step, {mu, tables_.setup.n_stages * n}, {zeta, zeta != nullptr ? n : 0});
+    const std::size_t n = tables_->setup.n_cells * tables_->setup.degree + 1;
+    (*see_)(step, {mu, tables_->setup.n_stages * n}, {zeta, zeta != nullptr ? n : 0});
   }
 
   void

@@ -29,21 +29,20 @@ namespace crawler
 
   LaneStepper::LaneStepper(const Scene &scene, const LaneMethod &method)
     : scene_(scene)
-    , tables_owner_(lane_tables(method))
-    , tables_(*tables_owner_)
-    , setup_(tables_.setup)
+    , tables_(lane_tables(method))
+    , setup_(tables_->setup)
     , tableau_(radau_tableau(method.n_stages))
-    , stress_(scene.active_stress->at(tables_.points))
+    , stress_(scene.active_stress->at(tables_->points))
   {
     if (method.is_stretch)
     {
       setup_.stretch   = stretch_method(scene, method.other_rule);
       setup_.direction = scene.ground.direction;
       if (!scene.is_plain())
-        cell_laws_.emplace(scene, tables_.points);
+        cell_laws_.emplace(scene, tables_->points);
     }
     else if (!scene.is_plain())
-      laws_.emplace(scene, tables_.points);
+      laws_.emplace(scene, tables_->points);
     memory_.resize(single_engine().memory(setup_));
     for (unsigned int i = 0; i < tableau_.n; ++i)
       stage_places_.push_back(tableau_.c[i]);
@@ -111,7 +110,7 @@ namespace crawler
   void
   LaneStepper::stress(unsigned int, const double t, double *m)
   {
-    stress_->values(t, {m, tables_.points.size()});
+    stress_->values(t, {m, tables_->points.size()});
   }
 
   bool
@@ -124,7 +123,7 @@ namespace crawler
   LaneStepper::cell_laws(
     const double t, const double *m, const double *w, const double *rate, CellLaws<double> &at_cells)
   {
-    const std::size_t n = tables_.points.size();
+    const std::size_t n = tables_->points.size();
     const long bad      = cell_laws_->evaluate(t, {w, n}, {rate, n}, m);
     // Power laws fail only where the stretch is lost.
     if (bad >= 0 && w[bad] > 0. && !scene_.has_power_law())

@@ -59,16 +59,15 @@ namespace crawler
             const Simulation::Options &options,
             const std::function<bool()> &keep_going,
             Results &results)
-        : tables_owner_(lane_tables(method))
-        , tables_(*tables_owner_)
+        : tables_(lane_tables(method))
         , tableau_(radau_tableau(method.n_stages))
         , runs_(runs)
         , members_(members)
         , options_(options)
         , keep_going_(keep_going)
         , results_(results)
-        , sampler_(tables_.setup, Recorder::n_pieces)
-        , extremes_(tables_)
+        , sampler_(tables_->setup, Recorder::n_pieces)
+        , extremes_(*tables_)
       {
         look_inside = options.energy_balance;
       }
@@ -78,9 +77,9 @@ namespace crawler
       compute(const LaneEngine &engine)
       {
         lanes_.resize(engine.lanes);
-        LaneStorage memory(engine.memory(tables_.setup));
-        engine.start(tables_.setup, *this, memory.data());
-        while (engine.advance(tables_.setup, memory.data()))
+        LaneStorage memory(engine.memory(tables_->setup));
+        engine.start(tables_->setup, *this, memory.data());
+        while (engine.advance(tables_->setup, memory.data()))
           ;
         return !interrupted_;
       }
@@ -129,7 +128,7 @@ namespace crawler
         lane.segments            = TimeSegments(*scene.active_stress, scene.end_time);
         lane.limits              = in_units(numerics, lane.units).step_limits;
         start_record(lane, scene, numerics.tolerance / lane.units.length);
-        std::vector<double> points = tables_.points;
+        std::vector<double> points = tables_->points;
         for (double &s : points)
           s *= lane.units.length;
         points.push_back(0.);
@@ -168,7 +167,7 @@ namespace crawler
         if (scene.is_plain())
           return;
         lane.scene.emplace(in_units(scene, lane.units, &lane.segments));
-        lane.laws.emplace(*lane.scene, tables_.points);
+        lane.laws.emplace(*lane.scene, tables_->points);
         lane.laws->set(job);
         if (const StretchFeedback *feedback = lane.scene->active_stress->feedback())
           lane.end_feedback = feedback->at({0., 1.});
@@ -188,7 +187,7 @@ namespace crawler
         if (runs_[lane.run].cycles)
           options.cycles = runs_[lane.run].cycles;
         lane.recorder.emplace(scene, lane.units, options, tolerance, /*may_search=*/false);
-        lane.recorder->set_smallest_cell(tables_.smallest_size());
+        lane.recorder->set_smallest_cell(tables_->smallest_size());
         lane.output_times = lane.segments.breaks();
         lane.output_times.push_back(1.);
         lane.restarts.assign(lane.output_times.size(), 1);
@@ -212,7 +211,7 @@ namespace crawler
       stress(const unsigned int l, const double t, double *m) override
       {
         Lane &lane          = lanes_[l];
-        const std::size_t n = tables_.points.size(), stages = tableau_.n;
+        const std::size_t n = tables_->points.size(), stages = tableau_.n;
         lane.stress->values(lane.segments.inside(t) * lane.units.time, lane.m);
         if (lane.units.force != 1.)
           for (double &value : lane.m)
@@ -331,16 +330,15 @@ namespace crawler
         result.time.rejected_steps    = outcome.progress->rejected;
         result.time.newton_iterations = outcome.progress->newton;
         result.displacement           = outcome.displacement;
-        result.most_cells             = tables_.setup.n_cells;
-        result.mesh = {result.most_cells, tables_.setup.degree, result.most_cells * tables_.setup.degree + 1, false};
+        result.most_cells             = tables_->setup.n_cells;
+        result.mesh = {result.most_cells, tables_->setup.degree, result.most_cells * tables_->setup.degree + 1, false};
         result.integrator = runs_[lane.run].time->integrator == "automatic" ? runs_[lane.run].numerics->integrator
                                                                             : runs_[lane.run].time->integrator;
         result.engine     = "fused";
         return lane.recorder->finish();
       }
 
-      const std::shared_ptr<const LaneTables> tables_owner_;
-      const LaneTables &tables_;
+      const std::shared_ptr<const LaneTables> tables_;
       const RadauTableau &tableau_;
       const std::span<const BatchRun> runs_;
       const std::vector<std::size_t> &members_; ///< numbers of the runs

@@ -75,7 +75,7 @@ namespace crawler
     const LaneTables &
     tables() const
     {
-      return tables_;
+      return *tables_;
     }
 
     /// Gradient [unknowns] of the mean displacement by the last state.
@@ -103,8 +103,7 @@ namespace crawler
     laws(unsigned int lane, const LanePoints &points) override;
 
     const Scene &scene_;
-    const std::shared_ptr<const LaneTables> tables_owner_;
-    const LaneTables &tables_;
+    const std::shared_ptr<const LaneTables> tables_;
     std::optional<HostLaws> laws_;
     LaneStorage memory_;
     const Seer *see_      = nullptr; ///< of the present solve, as the source

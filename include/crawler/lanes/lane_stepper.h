@@ -47,7 +47,7 @@ namespace crawler
     const LaneTables &
     tables() const
     {
-      return tables_;
+      return *tables_;
     }
 
     /// Stretch and friction where a friction law was not positive, since begin(); nothing if all were.
@@ -74,8 +74,7 @@ namespace crawler
     show_rates();
 
     const Scene &scene_;
-    const std::shared_ptr<const LaneTables> tables_owner_;
-    const LaneTables &tables_;
+    const std::shared_ptr<const LaneTables> tables_;
     LaneSetup setup_;
     std::optional<HostLaws> laws_;         ///< laws of a general body in the position form
     std::optional<StretchLaws> cell_laws_; ///< laws in the stretch form
