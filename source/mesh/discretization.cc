@@ -12,37 +12,21 @@ namespace crawler
   /// mesh and need no triangulation.
   struct Discretization::Mesh
   {
-    /// The ends of the cells of the first mesh.
-    std::vector<double>
-    all_ends() const
-    {
-      std::vector<double> all = ends;
-      for (unsigned int c = 0; ends.empty() && c < n_coarse_cells; ++c)
-        all.push_back(c * coarse_size(c));
-      if (ends.empty())
-        all.push_back(length);
-      return all;
-    }
-
     /// The cells from left to right.
     std::vector<Cell>
     cells() const
     {
+      const double size = length / n_coarse_cells;
       std::vector<Cell> result;
       result.reserve(n_coarse_cells);
       for (unsigned int c = 0; c < n_coarse_cells; ++c)
-        result.push_back({ends.empty() ? c * coarse_size(c) : ends[c], coarse_size(c), 0, false});
+        result.push_back(ends.empty() ? Cell{c * size, size, 0, false}
+                                      : Cell{ends[c], ends[c + 1] - ends[c], 0, false});
       return triangulation ? triangulation->cells(result) : result;
     }
 
-    double
-    coarse_size(const unsigned int c) const
-    {
-      return ends.empty() ? length / n_coarse_cells : ends[c + 1] - ends[c];
-    }
-
     const double length;
-    const unsigned int n_ranks, n_coarse_cells;
+    const unsigned int n_coarse_cells;
     const std::vector<double> ends               = {};      ///< of the coarse cells; empty if these have one size
     std::unique_ptr<Triangulation> triangulation = nullptr; ///< made when the mesh is first adapted
   };
@@ -51,7 +35,7 @@ namespace crawler
                                  const double length,
                                  const unsigned int n_cells,
                                  const unsigned int degree)
-    : Discretization(communicator, length, degree, std::make_shared<Mesh>(Mesh{length, size_of(communicator), n_cells}))
+    : Discretization(communicator, length, degree, std::make_shared<Mesh>(Mesh{length, n_cells}))
   {
   }
 
@@ -60,8 +44,7 @@ namespace crawler
         communicator,
         cell_ends.back(),
         degree,
-        std::make_shared<Mesh>(
-          Mesh{cell_ends.back(), size_of(communicator), static_cast<unsigned int>(cell_ends.size() - 1), cell_ends}))
+        std::make_shared<Mesh>(Mesh{cell_ends.back(), static_cast<unsigned int>(cell_ends.size() - 1), cell_ends}))
   {
   }
 
@@ -73,7 +56,7 @@ namespace crawler
     , length_(length)
     , element_(reference_element(degree))
     , rank_(rank_of(communicator))
-    , n_ranks_(mesh->n_ranks)
+    , n_ranks_(size_of(communicator))
     , mesh_(std::move(mesh))
   {
     set_cells(mesh_->cells());
@@ -102,7 +85,13 @@ namespace crawler
   {
     const unsigned int n = n_cells();
     if (!mesh_->triangulation)
-      mesh_->triangulation = create_triangulation(communicator_, mesh_->all_ends());
+    {
+      std::vector<double> ends;
+      for (const Cell &cell : cells_)
+        ends.push_back(cell.left);
+      ends.push_back(length_);
+      mesh_->triangulation = create_triangulation(communicator_, ends);
+    }
     if (mesh_->triangulation->n_cells() != n)
       throw std::logic_error("only the latest of a sequence of meshes can be adapted");
 
