@@ -16,8 +16,6 @@ namespace crawler
   {
   }
 
-  Assembler::~Assembler() = default;
-
   void
   Assembler::sum_over_ranks(CellIntegrals &sum) const
   {

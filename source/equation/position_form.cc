@@ -59,8 +59,6 @@ namespace crawler
   {
   }
 
-  PositionForm::~PositionForm() = default;
-
   CellInput
   PositionForm::input(const double t, const ConstVector u, const ConstVector v)
   {
@@ -314,16 +312,22 @@ namespace crawler
   bool
   PositionForm::velocity(const double t, const ConstVector u, const Vector v)
   {
-    if (!mass_)
-      mass_ = std::make_unique<BlockTridiagonalMatrix<double>>(discretization_);
     if (!residual(t, u, {}, v))
       return false;
     for (double &value : v)
       value = -value;
-    mass(t, u, {}, *mass_);
+    return solve_with_mass(t, u, {}, v);
+  }
+
+  bool
+  PositionForm::solve_with_mass(const double t, const ConstVector u, const ConstVector v, const Vector x)
+  {
+    if (!mass_)
+      mass_ = std::make_unique<BlockTridiagonalMatrix<double>>(discretization_);
+    mass(t, u, v, *mass_);
     if (!mass_->factorize())
       return false;
-    mass_->solve(v, v);
+    mass_->solve(x, x);
     return true;
   }
 

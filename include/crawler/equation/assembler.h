@@ -46,7 +46,7 @@ namespace crawler
     using Vector      = std::span<double>;
     using ConstVector = std::span<const double>;
 
-    virtual ~Assembler();
+    virtual ~Assembler()         = default;
     Assembler(const Assembler &) = delete;
 
     /// Number of unknowns of this rank, and of all ranks.
