@@ -65,7 +65,7 @@ namespace crawler
         , cells_(setup_)
         , fine_(setup_, more_points)
         , bubbles_(setup_.degree, fine_.places())
-        , slopes_(interpolation_matrix(tableau_.c, tableau_.c, 1))
+        , slopes_(interpolation_matrix(tableau_.c, tableau_.c, /*derivative=*/true))
         , forces_(run.scene, run.scene, cells_.points())
         , fine_forces_(run.scene, run.scene, fine_.points())
         , n_bubbles_(setup_.n_cells * Bubbles::n)

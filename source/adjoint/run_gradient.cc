@@ -237,7 +237,7 @@ namespace crawler
           if (x < -round_off || x > 1. + round_off)
             continue;
           std::vector<double> slopes =
-            interpolation_matrix(reference_element(setup_.degree).nodes, {std::clamp(x, 0., 1.)}, 1);
+            interpolation_matrix(reference_element(setup_.degree).nodes, {std::clamp(x, 0., 1.)}, /*derivative=*/true);
           double strain = 0.;
           for (std::size_t j = 0; j < slopes.size(); ++j)
           {

@@ -7,7 +7,8 @@ namespace crawler
     : assembler_(assembler)
     , places_(places)
     , values_(interpolation_matrix(assembler.discretization().element().nodes, in_cells(places)))
-    , derivatives_(interpolation_matrix(assembler.discretization().element().nodes, in_cells(places), 1))
+    , derivatives_(
+        interpolation_matrix(assembler.discretization().element().nodes, in_cells(places), /*derivative=*/true))
     , sliding_(assembler.scene(), assembler.discretization().points_of(places))
     , force_(assembler.scene(), assembler.discretization().points_of(places))
     , elsewhere_(assembler.scene(), assembler.discretization(), assembler.discretization().points_of(places))

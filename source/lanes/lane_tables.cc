@@ -19,7 +19,7 @@ namespace crawler
       sample_places_.insert(sample_places_.begin(), 0.);
       sample_places_.push_back(1.);
     }
-    samples_                    = interpolation_matrix(element_.nodes, sample_places_, 1);
+    samples_                    = interpolation_matrix(element_.nodes, sample_places_, /*derivative=*/true);
     const RadauTableau &tableau = radau_tableau(method.n_stages);
     const bool uniform          = method.cell_ends.empty();
     for (unsigned int c = 0; c < method.n_cells; ++c)

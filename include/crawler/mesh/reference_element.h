@@ -55,7 +55,5 @@ namespace crawler
 
   /// Values of the Lagrange polynomials through @p nodes, or of their derivatives, at @p points: [points][nodes].
   std::vector<double>
-  interpolation_matrix(const std::vector<double> &nodes,
-                       const std::vector<double> &points,
-                       unsigned int derivative = 0);
+  interpolation_matrix(const std::vector<double> &nodes, const std::vector<double> &points, bool derivative = false);
 } // namespace crawler
