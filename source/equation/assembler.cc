@@ -16,19 +16,6 @@ namespace crawler
   {
   }
 
-  void
-  Assembler::sum_over_ranks(CellIntegrals &sum) const
-  {
-    static_assert(sizeof(CellIntegrals) % sizeof(double) == 0);
-    if (discretization_.n_ranks() > 1)
-      MPI_Allreduce(MPI_IN_PLACE,
-                    &sum,
-                    sizeof(CellIntegrals) / sizeof(double),
-                    MPI_DOUBLE,
-                    MPI_SUM,
-                    discretization_.communicator());
-  }
-
   double
   Assembler::root_mean_square(const ConstVector y) const
   {
@@ -39,8 +26,7 @@ namespace crawler
     for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
       for (unsigned int i = 0; i < element.n; ++i)
         sum += discretization_.cell_size()[c] * element.node_weights[i] * std::pow(local[c * element.degree + i], 2);
-    if (discretization_.n_ranks() > 1)
-      MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
+    discretization_.sum_over_ranks({&sum, 1});
     return std::sqrt(sum / discretization_.length());
   }
 
@@ -114,13 +100,7 @@ namespace crawler
       for (unsigned int i = 0; i < n; ++i)
         values[piece_ends_.first + e] +=
           piece_ends_.shape[e * n + i] * u[static_cast<std::size_t>(piece_ends_.places[e].cell) * q + i];
-    if (discretization_.n_ranks() > 1)
-      MPI_Allreduce(MPI_IN_PLACE,
-                    values.data(),
-                    static_cast<int>(values.size()),
-                    MPI_DOUBLE,
-                    MPI_SUM,
-                    discretization_.communicator());
+    discretization_.sum_over_ranks(values);
     return values;
   }
 } // namespace crawler

@@ -49,8 +49,7 @@ namespace crawler
       power -= m[0] * v.front();
     if (d.n_local() > 0 && !d.has_right_neighbour())
       power += m[1] * v.back();
-    if (d.n_ranks() > 1)
-      MPI_Allreduce(MPI_IN_PLACE, &power, 1, MPI_DOUBLE, MPI_SUM, d.communicator());
+    d.sum_over_ranks({&power, 1});
     return power;
   }
 } // namespace crawler

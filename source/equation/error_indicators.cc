@@ -42,8 +42,7 @@ namespace crawler
       sums[0] += h / (2. * element.degree - 1.) * (mode / smallest) * (mode / smallest);
       sums[1] += h * strain;
     }
-    if (discretization_.n_ranks() > 1)
-      MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
+    discretization_.sum_over_ranks(sums);
     return {sums[0], sums[1]};
   }
 

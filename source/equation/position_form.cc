@@ -338,7 +338,8 @@ namespace crawler
     CellInput in = input(t, u, v);
     evaluate_laws(t, u, in);
     kernels_.integrals(in, sum);
-    sum_over_ranks(sum);
+    static_assert(sizeof(sum) % sizeof(double) == 0);
+    discretization_.sum_over_ranks({reinterpret_cast<double *>(&sum), sizeof(sum) / sizeof(double)});
     return sum;
   }
 } // namespace crawler

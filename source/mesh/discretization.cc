@@ -154,6 +154,13 @@ namespace crawler
     return points;
   }
 
+  void
+  Discretization::sum_over_ranks(const std::span<double> values) const
+  {
+    if (n_ranks_ > 1)
+      MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, communicator_);
+  }
+
   std::vector<double>
   Discretization::gather(const std::span<const double> own) const
   {

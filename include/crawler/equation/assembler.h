@@ -165,10 +165,6 @@ namespace crawler
   protected:
     Assembler(const Scene &scene, const Discretization &discretization);
 
-    /// Sums over all ranks.
-    void
-    sum_over_ranks(CellIntegrals &sum) const;
-
     const Scene &scene_;
     const Discretization &discretization_;
     std::function<BadLaw(const Units &)> describe_bad_law_;

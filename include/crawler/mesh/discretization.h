@@ -155,6 +155,10 @@ namespace crawler
     void
     add_to_owned(std::span<const double> local, std::span<double> owned) const;
 
+    /// Sums each of these values over all ranks (collective).
+    void
+    sum_over_ranks(std::span<double> values) const;
+
     /// Concatenates all ranks' parts of a distributed array, in rank order, on all ranks (collective).
     std::vector<double>
     gather(std::span<const double> own) const;
