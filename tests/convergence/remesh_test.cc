@@ -23,14 +23,14 @@ namespace
     OnMesh(const Scene &scene, const TimeParameters &time, std::unique_ptr<Discretization> discretization)
       : mesh(std::move(discretization))
       , form(create_position_form(scene, *mesh))
-      , stepper(MPI_COMM_WORLD, *form, time)
+      , stepper(petsc_stepper(MPI_COMM_WORLD, *form, time))
     {
       form->keep_stresses(integrator(time.integrator).n_stages);
     }
 
     std::unique_ptr<Discretization> mesh;
     std::unique_ptr<PositionForm> form;
-    PetscStepper stepper;
+    std::unique_ptr<Stepper> stepper;
   };
 
   /// What a run took, its interruptions included.
@@ -55,11 +55,11 @@ namespace
     double time = 0., size = first_step;
     for (;;)
     {
-      part->stepper.begin(y, {time, {1.}, tolerance, size, {}});
-      for (const Step *step = part->stepper.next(); step != nullptr && step->number < steps_on_a_mesh;)
-        step = part->stepper.next();
-      y.assign(part->stepper.state().begin(), part->stepper.state().end());
-      const TimeOutcome outcome = part->stepper.outcome();
+      part->stepper->begin(y, {time, {1.}, tolerance, size, {}});
+      for (const Step *step = part->stepper->next(); step != nullptr && step->number < steps_on_a_mesh;)
+        step = part->stepper->next();
+      y.assign(part->stepper->state().begin(), part->stepper->state().end());
+      const TimeOutcome outcome = part->stepper->outcome();
       count.steps += outcome.steps;
       count.rejected += outcome.rejected_steps;
       count.newton_iterations += outcome.newton_iterations;
