@@ -12,7 +12,7 @@ set(CRAWLER_READING "$<$<CONFIG:Release>:-Og;-fno-unroll-loops;-fno-unroll-all-l
 # and so do those whose names for inner things are those of their neighbours.
 function(crawler_compile_together)
   set(alone accuracy/choose_numerics accuracy/graded_choice accuracy/mesh_family accuracy/moving_fronts
-    accuracy/shared_choice adjoint/run_gradient)
+    accuracy/shared_choice)
   set(together 8)
   foreach(source ${ARGN})
     get_filename_component(source ${source} ABSOLUTE)

@@ -18,49 +18,13 @@ namespace crawler
     {
       throw InputError(what + ", " CRAWLER_LEFT_OUT, entry);
     }
-
-    constexpr const char *petsc =
-      "this run needs PETSc's time integration (a step that the fused engine does not take, as "
-      "before an inversion, an adaptive mesh or a coupling of distant places)";
   }
 
-  struct PetscStepper::Implementation
+  std::unique_ptr<Stepper>
+  petsc_stepper(MPI_Comm, ImplicitSystem &, const TimeParameters &)
   {
-  };
-  PetscStepper::PetscStepper(MPI_Comm, ImplicitSystem &, const TimeParameters &)
-  {
-    refuse(petsc);
-  }
-  PetscStepper::~PetscStepper() = default;
-  void
-  PetscStepper::begin(ConstVector, const Course &)
-  {
-    refuse(petsc);
-  }
-  const Step *
-  PetscStepper::next()
-  {
-    refuse(petsc);
-  }
-  Stepper::ConstVector
-  PetscStepper::state() const
-  {
-    refuse(petsc);
-  }
-  TimeOutcome
-  PetscStepper::outcome()
-  {
-    refuse(petsc);
-  }
-  void
-  PetscStepper::interpolate(double, Vector)
-  {
-    refuse(petsc);
-  }
-  bool
-  PetscStepper::exchange(Archive &)
-  {
-    refuse(petsc);
+    refuse("this run needs PETSc's time integration (a step that the fused engine does not take, as before an "
+           "inversion, an adaptive mesh or a coupling of distant places)");
   }
 
   std::string

@@ -24,7 +24,7 @@ namespace crawler
     weights_                         = gauss.weights;
     const std::vector<double> &nodes = reference_element(setup.degree).nodes;
     values_                          = interpolation_matrix(nodes, places_);
-    slopes_                          = interpolation_matrix(nodes, places_, 1);
+    slopes_                          = interpolation_matrix(nodes, places_, /*derivative=*/true);
     double left                      = 0.;
     for (std::size_t c = 0; c < setup.n_cells; left += setup.sizes[c++])
       for (const double place : places_)

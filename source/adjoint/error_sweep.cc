@@ -55,10 +55,10 @@ namespace crawler
     }
 
     /// One backward sweep.
-    class Sweep
+    class ErrorSweep
     {
     public:
-      explicit Sweep(const RecordedRun &run)
+      explicit ErrorSweep(const RecordedRun &run)
         : run_(run)
         , method_(with_more_stages(run.method))
         , adjoint_(run.natural, method_)
@@ -69,7 +69,7 @@ namespace crawler
         , cells_(setup_)
         , fine_(setup_, more_points)
         , bubbles_(setup_.degree, fine_.places())
-        , slopes_(interpolation_matrix(tableau_.c, tableau_.c, 1))
+        , slopes_(interpolation_matrix(tableau_.c, tableau_.c, /*derivative=*/true))
         , forces_(run.scene, run.scene, cells_.points())
         , fine_forces_(run.scene, run.scene, fine_.points())
         , n_bubbles_(setup_.n_cells * Bubbles::n)
@@ -83,11 +83,11 @@ namespace crawler
       {
         result_.of_steps.resize(steps_.n_steps());
         result_.of_cells.resize(setup_.n_cells);
-        const auto start = adjoint_.solve(
+        const bool is_solved = adjoint_.solve(
           steps_,
           adjoint_.gradient_of_displacement(),
           [this](const std::size_t step, const std::span<const double> mu, const auto &) { look(step, mu); });
-        if (!start || lost_)
+        if (!is_solved || lost_)
           return std::nullopt;
         const double L = run_.units.length;
         for (double &error : result_.of_steps)
@@ -245,6 +245,6 @@ namespace crawler
   std::optional<SweptErrors>
   sweep_errors(const RecordedRun &run)
   {
-    return Sweep(run).compute();
+    return ErrorSweep(run).compute();
   }
 } // namespace crawler

@@ -7,15 +7,6 @@
 
 namespace crawler
 {
-  namespace
-  {
-    LaneMethod
-    method_of(const Scene &natural, const TimeParameters &time, const Numerics &numerics)
-    {
-      return batch_method(natural, time, numerics).value();
-    }
-  } // namespace
-
   bool
   RecordedRun::is_possible(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
   {
@@ -34,7 +25,7 @@ namespace crawler
     , units(natural_units(scene))
     , segments(*scene.active_stress, scene.end_time)
     , natural(in_units(scene, units, &segments))
-    , method(method_of(natural, time, in_units(numerics, units)))
+    , method(batch_method(natural, time, in_units(numerics, units)).value())
   {
     const SimulationResult result =
       Simulation(MPI_COMM_SELF, scene, time, numerics)

@@ -86,14 +86,14 @@ namespace crawler
     }
 
     /// Sweeps: a backward one for each quantity, and one that assembles their results.
-    class Sweep
+    class GradientSweep
     {
     public:
-      Sweep(const RecordedRun &run,
-            const std::span<const Variation> variations,
-            const std::span<const Quantity> quantities,
-            const std::span<const StretchPlace> stretches,
-            LocalSensitivity &local)
+      GradientSweep(const RecordedRun &run,
+                    const std::span<const Variation> variations,
+                    const std::span<const Quantity> quantities,
+                    const std::span<const StretchPlace> stretches,
+                    LocalSensitivity &local)
         : run_(run)
         , local_(local)
         , adjoint_(run.natural, run.method)
@@ -237,7 +237,7 @@ namespace crawler
           if (x < -round_off || x > 1. + round_off)
             continue;
           std::vector<double> slopes =
-            interpolation_matrix(reference_element(setup_.degree).nodes, {std::clamp(x, 0., 1.)}, 1);
+            interpolation_matrix(reference_element(setup_.degree).nodes, {std::clamp(x, 0., 1.)}, /*derivative=*/true);
           double strain = 0.;
           for (std::size_t j = 0; j < slopes.size(); ++j)
           {
@@ -529,24 +529,19 @@ namespace crawler
            BreakMap(breaks_in_time_of(scene), breaks_in_time_of(other)).is_good();
   }
 
-  RunGradient::RunGradient(const RecordedRun &run)
-    : run_(run)
+  RunGradient
+  gradient_of(const RecordedRun &run,
+              const std::span<const Variation> variations,
+              const std::span<const Quantity> quantities,
+              const std::span<const StretchPlace> stretches)
   {
-  }
-
-  std::vector<Derivatives>
-  RunGradient::derivatives(const std::span<const Variation> variations,
-                           const std::span<const Quantity> quantities,
-                           const std::span<const StretchPlace> stretches)
-  {
-    Sweep sweep(run_, variations, quantities, stretches, local_);
+    RunGradient result;
+    GradientSweep sweep(run, variations, quantities, stretches, result.local);
     sweep.make();
-    std::vector<Derivatives> result;
-    of_stretches_.clear();
     for (std::size_t i = 0; i < variations.size(); ++i)
     {
-      result.push_back(sweep.derivatives(i, variations[i]));
-      of_stretches_.push_back(sweep.of_stretches(i, variations[i]));
+      result.quantities.push_back(sweep.derivatives(i, variations[i]));
+      result.stretches.push_back(sweep.of_stretches(i, variations[i]));
     }
     return result;
   }

@@ -8,7 +8,7 @@
 #include <crawler/base/plain_numbers.h>
 #include <crawler/base/process.h>
 #include <crawler/base/standard_output.h>
-#include <crawler/lanes/forced_instruction_set.h>
+#include <crawler/lanes/lane_engine.h>
 #include <crawler/studies/core/python.h>
 #include <crawler/time/failure.h>
 

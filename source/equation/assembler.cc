@@ -16,33 +16,17 @@ namespace crawler
   {
   }
 
-  Assembler::~Assembler() = default;
-
-  void
-  Assembler::sum_over_ranks(CellIntegrals &sum) const
-  {
-    static_assert(sizeof(CellIntegrals) % sizeof(double) == 0);
-    if (discretization_.n_ranks() > 1)
-      MPI_Allreduce(MPI_IN_PLACE,
-                    &sum,
-                    sizeof(CellIntegrals) / sizeof(double),
-                    MPI_DOUBLE,
-                    MPI_SUM,
-                    discretization_.communicator());
-  }
-
   double
   Assembler::root_mean_square(const ConstVector y) const
   {
     std::vector<double> buffer;
-    const auto local                = discretization_.to_local<double>(displacement(y), buffer);
+    const auto local                = discretization_.to_local(displacement(y), buffer);
     const ReferenceElement &element = discretization_.element();
     double sum                      = 0.;
     for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
       for (unsigned int i = 0; i < element.n; ++i)
         sum += discretization_.cell_size()[c] * element.node_weights[i] * std::pow(local[c * element.degree + i], 2);
-    if (discretization_.n_ranks() > 1)
-      MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
+    discretization_.sum_over_ranks({&sum, 1});
     return std::sqrt(sum / discretization_.length());
   }
 
@@ -60,7 +44,7 @@ namespace crawler
     const auto &element  = discretization_.element();
     const unsigned int q = element.degree;
     std::vector<double> buffer;
-    const auto local = discretization_.to_local<double>(displacement(y), buffer);
+    const auto local = discretization_.to_local(displacement(y), buffer);
     std::vector<double> strain(static_cast<std::size_t>(discretization_.n_local_cells()) * q, 0.);
     for (std::size_t c = 0; c < discretization_.n_local_cells(); ++c)
       for (unsigned int p = 0; p < q; ++p)
@@ -94,13 +78,11 @@ namespace crawler
   void
   Assembler::find_piece_ends(const unsigned int n_pieces)
   {
-    std::vector<double> ends, in_cells;
+    std::vector<double> ends;
     for (unsigned int i = 0; i <= n_pieces; ++i)
       ends.push_back(discretization_.length() * i / n_pieces);
-    piece_ends_ = {n_pieces, 0, discretization_.own_places(ends), {}};
-    for (const CellPlace &place : piece_ends_.places)
-      in_cells.push_back(place.x);
-    piece_ends_.shape = interpolation_matrix(discretization_.element().nodes, in_cells);
+    piece_ends_       = {n_pieces, 0, discretization_.own_places(ends), {}};
+    piece_ends_.shape = interpolation_matrix(discretization_.element().nodes, in_cells(piece_ends_.places));
     const auto &left  = discretization_.cell_left();
     while (piece_ends_.first <= n_pieces && !left.empty() && ends[piece_ends_.first] < left.front())
       ++piece_ends_.first;
@@ -111,20 +93,14 @@ namespace crawler
   {
     if (piece_ends_.n_pieces != n_pieces)
       find_piece_ends(n_pieces);
-    const auto u         = discretization_.to_local<double>(displacement(y), u_local_);
+    const auto u         = discretization_.to_local(displacement(y), u_local_);
     const unsigned int n = discretization_.element().n, q = discretization_.element().degree;
     std::vector<double> values(n_pieces + 1, 0.);
     for (std::size_t e = 0; e < piece_ends_.places.size(); ++e)
       for (unsigned int i = 0; i < n; ++i)
         values[piece_ends_.first + e] +=
           piece_ends_.shape[e * n + i] * u[static_cast<std::size_t>(piece_ends_.places[e].cell) * q + i];
-    if (discretization_.n_ranks() > 1)
-      MPI_Allreduce(MPI_IN_PLACE,
-                    values.data(),
-                    static_cast<int>(values.size()),
-                    MPI_DOUBLE,
-                    MPI_SUM,
-                    discretization_.communicator());
+    discretization_.sum_over_ranks(values);
     return values;
   }
 } // namespace crawler

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace crawler
 {
@@ -135,25 +134,7 @@ namespace crawler
   const CellKernels &
   cell_kernels(const unsigned int degree)
   {
-    switch (degree)
-    {
-      case 1:
-        return Kernels<1>::table;
-      case 2:
-        return Kernels<2>::table;
-      case 3:
-        return Kernels<3>::table;
-      case 4:
-        return Kernels<4>::table;
-      case 5:
-        return Kernels<5>::table;
-      case 6:
-        return Kernels<6>::table;
-      case 7:
-        return Kernels<7>::table;
-      case 8:
-        return Kernels<8>::table;
-    }
-    throw std::logic_error("degrees 1 to 8 are compiled");
+    return for_degree(
+      degree, [](const auto q) -> const auto & { return Kernels<q>::table; });
   }
 } // namespace crawler

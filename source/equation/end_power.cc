@@ -11,7 +11,11 @@ namespace crawler
   {
     if (assembler.has_known_ends())
       return;
-    sampler_  = GeneralSampler::at_ends(assembler);
+    // At the left end of the first and the right end of the last of this rank's cells.
+    std::vector<CellPlace> places;
+    if (const unsigned int n_cells = assembler.discretization().n_local_cells(); n_cells > 0)
+      places = {{0, 0.}, {n_cells - 1, 1.}};
+    sampler_  = std::make_unique<GeneralSampler>(assembler, places);
     feedback_ = assembler.scene().active_stress->feedback()->at({0., assembler.scene().body.length});
   }
 
@@ -45,8 +49,7 @@ namespace crawler
       power -= m[0] * v.front();
     if (d.n_local() > 0 && !d.has_right_neighbour())
       power += m[1] * v.back();
-    if (d.n_ranks() > 1)
-      MPI_Allreduce(MPI_IN_PLACE, &power, 1, MPI_DOUBLE, MPI_SUM, d.communicator());
+    d.sum_over_ranks({&power, 1});
     return power;
   }
 } // namespace crawler

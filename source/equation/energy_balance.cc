@@ -34,14 +34,11 @@ namespace crawler
   EnergyBalance
   EnergyBalance::scaled(const double unit) const
   {
-    return {stress_work * unit,
-            dissipation * unit,
-            positive_work * unit,
-            exchanged_work * unit,
-            end_work * unit,
-            elastic_energy * unit,
-            transfer_loss * unit,
-            initial_energy * unit};
+    EnergyBalance result = *this;
+    for (const auto energy : energies())
+      result.*energy *= unit;
+    result.initial_energy *= unit;
+    return result;
   }
 
   EnergyBalance

@@ -20,7 +20,7 @@ namespace crawler
   Resolution
   PositionForm::resolution(const ConstVector y)
   {
-    const auto local    = discretization_.to_local<double>(displacement(y), u_local_);
+    const auto local    = discretization_.to_local(displacement(y), u_local_);
     const auto &element = discretization_.element();
     double sums[2]      = {0., 0.};
     // Stretches are polynomials of degree q - 1 in a cell.
@@ -42,8 +42,7 @@ namespace crawler
       sums[0] += h / (2. * element.degree - 1.) * (mode / smallest) * (mode / smallest);
       sums[1] += h * strain;
     }
-    if (discretization_.n_ranks() > 1)
-      MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
+    discretization_.sum_over_ranks(sums);
     return {sums[0], sums[1]};
   }
 

@@ -137,10 +137,8 @@ namespace crawler
       for (double &value : values)
         value += 1.;
     };
-    if (near_places_)
-      near_places_->interpolate(discretization_.gather(own), near);
-    if (sensors_)
-      sensors_->mean(discretization_.gather(own), near);
+    if (near_places_ || sensors_)
+      near_strain(own, near);
     to_stretch(near);
     if (delay_ == 0.)
       return;
@@ -166,11 +164,11 @@ namespace crawler
   }
 
   void
-  StretchElsewhere::change_of_near(const std::span<const double> own_change, const std::span<double> change) const
+  StretchElsewhere::near_strain(const std::span<const double> own, const std::span<double> strain) const
   {
     if (sensors_)
-      sensors_->mean(discretization_.gather(own_change), change);
+      sensors_->mean(discretization_.gather(own), strain);
     else
-      near_places_->interpolate(discretization_.gather(own_change), change);
+      near_places_->interpolate(discretization_.gather(own), strain);
   }
 } // namespace crawler

@@ -74,13 +74,13 @@ namespace crawler
     const ReferenceElement &element = discretization_.element();
     const unsigned int n = element.n, q = element.degree;
     std::vector<double> change(far.by_near.size()), local(discretization_.n_local(), 0.), owned(result.size());
-    elsewhere_.change_of_near(stretch_coefficients(x), change);
+    elsewhere_.near_strain(stretch_coefficients(x), change);
     for (std::size_t c = 0; c < discretization_.n_local_cells(); ++c)
       for (unsigned int p = 0; p < n; ++p)
         for (unsigned int i = 0; i < n; ++i)
           local[c * q + i] +=
             element.weights[p] * far.by_near[c * n + p] * change[c * n + p] * element.derivatives[p * n + i];
-    discretization_.add_to_owned<double>(local, owned);
+    discretization_.add_to_owned(local, owned);
     for (std::size_t i = 0; i < result.size(); ++i)
       result[i] += owned[i];
   }
@@ -128,20 +128,12 @@ namespace crawler
   bool
   GeneralPositionForm::velocity(const double t, const ConstVector u, const Vector v)
   {
-    if (!mass_)
-      mass_ = std::make_unique<BlockTridiagonalMatrix<double>>(discretization_);
     std::fill(v.begin(), v.end(), 0.);
     return newton_velocity(
       discretization_,
       v,
       [&](const ConstVector at, const Vector F) { return residual(t, u, at, F); },
-      [&](const ConstVector at, const Vector change) {
-        mass(t, u, at, *mass_);
-        if (!mass_->factorize())
-          return false;
-        mass_->solve(change, change);
-        return true;
-      });
+      [&](const ConstVector at, const Vector change) { return solve_with_mass(t, u, at, change); });
   }
 
   std::unique_ptr<PositionForm>

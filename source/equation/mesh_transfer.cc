@@ -51,38 +51,45 @@ namespace crawler
           sum += cells[c].size * element.node_weights[i] * u[c * element.degree + i];
       return sum;
     }
+
+    /// Matrices that carry the displacements of a cell over.
+    struct Matrices
+    {
+      explicit Matrices(const ReferenceElement &element)
+      {
+        const unsigned int n = element.n, q = element.degree;
+        for (const unsigned int which : {0u, 1u})
+          to_half[which] = interpolation_matrix(element.nodes, half(element.nodes, which));
+
+        // Joining: Legendre coefficients of the stretch over the whole cell.
+        to_joined.assign(n * (2 * q + 1), 0.);
+        for (unsigned int i = 0; i < n; ++i)
+          to_joined[i * (2 * q + 1)] = 1.; // u at the left end, plus the integral of the stretch
+        for (unsigned int k = 0; k < q; ++k)
+          for (const unsigned int which : {0u, 1u})
+            for (unsigned int p = 0; p < n; ++p)
+            {
+              const double x           = 0.5 * (element.points[p] + which);
+              const double coefficient = (2. * k + 1.) * 0.5 * element.weights[p] * std::legendre(k, 2. * x - 1.);
+              for (unsigned int i = 0; i < n; ++i)
+                for (unsigned int j = 0; j < n; ++j)
+                  to_joined[i * (2 * q + 1) + which * q + j] +=
+                    integrated_legendre(k, element.nodes[i]) * coefficient * 2. * element.derivatives[p * n + j];
+            }
+      }
+
+      std::vector<double> to_half[2]; ///< [n][n] from a cell's nodes to those of its left and right half
+      std::vector<double> to_joined;  ///< [n][2q+1] from the nodes of two halves to those of the cell
+    };
   } // namespace
 
-  MeshTransfer::MeshTransfer(const ReferenceElement &element)
-    : element_(element)
-  {
-    const unsigned int n = element.n, q = element.degree;
-    for (const unsigned int which : {0u, 1u})
-    {
-      u_half_[which] = interpolation_matrix(element.nodes, half(element.nodes, which));
-    }
-
-    // Joining: Legendre coefficients of the stretch over the whole cell.
-    u_join_.assign(n * (2 * q + 1), 0.);
-    for (unsigned int i = 0; i < n; ++i)
-      u_join_[i * (2 * q + 1)] = 1.; // u at the left end, plus the integral of the stretch
-    for (unsigned int k = 0; k < q; ++k)
-      for (const unsigned int which : {0u, 1u})
-        for (unsigned int p = 0; p < n; ++p)
-        {
-          const double x           = 0.5 * (element.points[p] + which);
-          const double coefficient = (2. * k + 1.) * 0.5 * element.weights[p] * std::legendre(k, 2. * x - 1.);
-          for (unsigned int i = 0; i < n; ++i)
-            for (unsigned int j = 0; j < n; ++j)
-              u_join_[i * (2 * q + 1) + which * q + j] +=
-                integrated_legendre(k, element.nodes[i]) * coefficient * 2. * element.derivatives[p * n + j];
-        }
-  }
-
   std::vector<double>
-  MeshTransfer::transfer(const PositionForm &from, const std::span<const double> y, const PositionForm &to) const
+  transferred(const PositionForm &from, const std::span<const double> y, const PositionForm &to)
   {
-    const unsigned int n = element_.n, q = element_.degree;
+    const ReferenceElement &element = to.discretization().element();
+    static std::map<unsigned int, const Matrices> known;
+    const Matrices &matrices = known.try_emplace(element.degree, element).first->second;
+    const unsigned int n = element.n, q = element.degree;
     const auto &old_cells = from.discretization().cells(), &new_cells = to.discretization().cells();
     const std::vector<double> u_old = from.discretization().gather(from.displacement(y));
     std::vector<double> u(new_cells.size() * q + 1);
@@ -99,7 +106,7 @@ namespace crawler
       else if (new_cells[c].level > old_cells[old].level)
       {
         for (const unsigned int which : {0u, 1u})
-          apply(u_half_[which], u_of, n, u_to + which * q, n);
+          apply(matrices.to_half[which], u_of, n, u_to + which * q, n);
         u_to[0]     = u_of[0];
         u_to[2 * q] = u_of[q];
         c += 2;
@@ -107,7 +114,7 @@ namespace crawler
       }
       else
       {
-        apply(u_join_, u_of, 2 * q + 1, u_to, n);
+        apply(matrices.to_joined, u_of, 2 * q + 1, u_to, n);
         u_to[0] = u_of[0];
         u_to[q] = u_of[2 * q];
         ++c;
@@ -115,24 +122,10 @@ namespace crawler
       }
     }
     const double missing =
-      (integral(u_old, old_cells, element_) - integral(u, new_cells, element_)) / to.discretization().length();
+      (integral(u_old, old_cells, element) - integral(u, new_cells, element)) / to.discretization().length();
     for (double &value : u)
       value += missing;
-
-    // Part of this rank.
-    const Discretization &d = to.discretization();
-    std::vector<double> result;
-    result.reserve(to.n_owned());
-    const auto first_cell = static_cast<std::ptrdiff_t>(d.first_cell()), cell_q = static_cast<std::ptrdiff_t>(q);
-    const auto first_node = u.begin() + first_cell * cell_q + (d.has_left_neighbour() ? 1 : 0);
-    result.insert(result.end(), first_node, first_node + static_cast<std::ptrdiff_t>(d.n_owned()));
-    return result;
-  }
-
-  const MeshTransfer &
-  mesh_transfer(const unsigned int degree)
-  {
-    static std::map<unsigned int, const MeshTransfer> transfers;
-    return transfers.try_emplace(degree, reference_element(degree)).first->second;
+    const auto owned = to.discretization().owned_part(u);
+    return {owned.begin(), owned.end()};
   }
 } // namespace crawler

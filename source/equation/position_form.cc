@@ -59,8 +59,6 @@ namespace crawler
   {
   }
 
-  PositionForm::~PositionForm() = default;
-
   CellInput
   PositionForm::input(const double t, const ConstVector u, const ConstVector v)
   {
@@ -69,8 +67,8 @@ namespace crawler
             &discretization_.element(),
             scene_.friction.get(),
             scene_.body.elastic_modulus,
-            discretization_.to_local<double>(u, u_local_).data(),
-            v.data() == nullptr ? nullptr : discretization_.to_local<double>(v, v_local_).data(),
+            discretization_.to_local(u, u_local_).data(),
+            v.data() == nullptr ? nullptr : discretization_.to_local(v, v_local_).data(),
             stress_at(t).data()};
   }
 
@@ -107,7 +105,7 @@ namespace crawler
   StretchRange
   PositionForm::stretch_range(const ConstVector y)
   {
-    const auto local          = discretization_.to_local<double>(displacement(y), u_local_);
+    const auto local          = discretization_.to_local(displacement(y), u_local_);
     const unsigned n          = discretization_.element().n;
     constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -165,11 +163,9 @@ namespace crawler
     if (!initial)
       return;
     // Displacement u: the integral of w - 1, from node to node by a Gauss formula, minus its mean.
-    const auto &element     = discretization_.element();
-    const auto &formula     = reference_element(ReferenceElement::highest_degree);
-    const unsigned int n    = element.n;
-    const std::size_t first = static_cast<std::size_t>(discretization_.first_cell()) * element.degree +
-                              (discretization_.has_left_neighbour() ? 1 : 0);
+    const auto &element  = discretization_.element();
+    const auto &formula  = reference_element(ReferenceElement::highest_degree);
+    const unsigned int n = element.n;
     std::vector<double> u(discretization_.n_unknowns(), 0.), places(formula.n), w(formula.n);
     double mean = 0.;
     for (std::size_t c = 0; c < discretization_.n_cells(); ++c)
@@ -192,8 +188,9 @@ namespace crawler
         mean += cell.size * element.node_weights[i] * here;
       }
     }
-    for (std::size_t i = 0; i < discretization_.n_owned(); ++i)
-      y[i] = u[first + i] - mean / discretization_.length();
+    const auto owned = discretization_.owned_part(u);
+    for (std::size_t i = 0; i < owned.size(); ++i)
+      y[i] = owned[i] - mean / discretization_.length();
   }
 
   long
@@ -219,7 +216,7 @@ namespace crawler
     if (bad < 0)
       bad = kernels_.residual(in, data);
     if (!one)
-      discretization_.add_to_owned<double>(F_local_, F);
+      discretization_.add_to_owned(F_local_, F);
 
     int any = bad >= 0;
     if (discretization_.n_ranks() > 1)
@@ -315,16 +312,22 @@ namespace crawler
   bool
   PositionForm::velocity(const double t, const ConstVector u, const Vector v)
   {
-    if (!mass_)
-      mass_ = std::make_unique<BlockTridiagonalMatrix<double>>(discretization_);
     if (!residual(t, u, {}, v))
       return false;
     for (double &value : v)
       value = -value;
-    mass(t, u, {}, *mass_);
+    return solve_with_mass(t, u, {}, v);
+  }
+
+  bool
+  PositionForm::solve_with_mass(const double t, const ConstVector u, const ConstVector v, const Vector x)
+  {
+    if (!mass_)
+      mass_ = std::make_unique<BlockTridiagonalMatrix<double>>(discretization_);
+    mass(t, u, v, *mass_);
     if (!mass_->factorize())
       return false;
-    mass_->solve(v, v);
+    mass_->solve(x, x);
     return true;
   }
 
@@ -335,7 +338,8 @@ namespace crawler
     CellInput in = input(t, u, v);
     evaluate_laws(t, u, in);
     kernels_.integrals(in, sum);
-    sum_over_ranks(sum);
+    static_assert(sizeof(sum) % sizeof(double) == 0);
+    discretization_.sum_over_ranks({reinterpret_cast<double *>(&sum), sizeof(sum) / sizeof(double)});
     return sum;
   }
 } // namespace crawler

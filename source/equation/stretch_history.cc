@@ -12,24 +12,19 @@ namespace crawler
                                const std::vector<double> &points)
     : q_(element.degree)
   {
-    std::vector<double> in_cells;
     for (const double s : points)
-    {
-      const auto [cell, x] = place_in(cells, s);
-      cells_.push_back(cell);
-      in_cells.push_back(x);
-    }
-    weights_ = interpolation_matrix(element.stretch_points, in_cells);
+      places_.push_back(place_in(cells, s));
+    weights_ = interpolation_matrix(element.stretch_points, in_cells(places_));
   }
 
   void
   StretchPlaces::interpolate(const std::span<const double> coefficients, const std::span<double> values) const
   {
-    for (std::size_t i = 0; i < cells_.size(); ++i)
+    for (std::size_t i = 0; i < places_.size(); ++i)
     {
       values[i] = 0.;
       for (unsigned int p = 0; p < q_; ++p)
-        values[i] += weights_[i * q_ + p] * coefficients[cells_[i] * q_ + p];
+        values[i] += weights_[i * q_ + p] * coefficients[places_[i].cell * q_ + p];
     }
   }
 

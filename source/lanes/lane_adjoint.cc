@@ -75,18 +75,17 @@ namespace crawler
 
   LaneAdjoint::LaneAdjoint(const Scene &scene, const LaneMethod &method)
     : scene_(scene)
-    , tables_owner_(lane_tables(method))
-    , tables_(*tables_owner_)
-    , memory_(lane_storage(single_engine().adjoint_memory(tables_.setup)))
+    , tables_(lane_tables(method))
+    , memory_(single_engine().adjoint_memory(tables_->setup))
   {
     if (!scene.is_plain())
-      laws_.emplace(scene, tables_.points);
+      laws_.emplace(scene, tables_->points);
   }
 
   std::vector<double>
   LaneAdjoint::gradient_of_displacement() const
   {
-    const LaneSetup &setup = tables_.setup;
+    const LaneSetup &setup = tables_->setup;
     const std::size_t n    = setup.degree + 1;
     std::vector<double> gradient(setup.n_cells * setup.degree + 1, 0.);
     for (std::size_t c = 0; c < setup.n_cells; ++c)
@@ -96,68 +95,37 @@ namespace crawler
     return gradient;
   }
 
-  std::optional<std::vector<double>>
+  bool
   LaneAdjoint::solve(const LaneRecord &record,
                      const std::vector<double> &gradient,
                      const Seer &see,
                      const Source &source)
   {
-    past_    = record.past(gradient.data(), static_cast<bool>(source));
-    started_ = false;
-    see_     = &see;
-    source_  = &source;
-    mu_.resize(tables_.setup.n_stages * gradient.size());
-    by_start_.resize(gradient.size());
-    const LaneAdjointHost host = {this, next, step, done, laws, sources};
-    single_engine().adjoint(tables_.setup, host, memory_.get());
-    return finished_ ? std::optional(by_start_) : std::nullopt;
+    see_    = &see;
+    source_ = &source;
+    LaneJob job{.k = scene_.body.elastic_modulus, .a = scene_.body.friction_exponent()};
+    if (laws_)
+      laws_->set(job);
+    const LanePast past = record.past(gradient.data(), static_cast<bool>(source));
+    return single_engine().adjoint(tables_->setup, *this, job, past, memory_.data());
+  }
+
+  void
+  LaneAdjoint::step(const unsigned int step, const double *mu, const double *zeta)
+  {
+    const std::size_t n = tables_->setup.n_cells * tables_->setup.degree + 1;
+    (*see_)(step, {mu, tables_->setup.n_stages * n}, {zeta, zeta != nullptr ? n : 0});
+  }
+
+  void
+  LaneAdjoint::sources(const unsigned int step, const LaneSources &sources)
+  {
+    (*source_)(step, sources);
   }
 
   bool
-  LaneAdjoint::next(void *context, unsigned int, LaneJob &job, LanePast &past)
+  LaneAdjoint::laws(unsigned int, const LanePoints &points)
   {
-    auto &self = *static_cast<LaneAdjoint *>(context);
-    if (self.started_)
-      return false;
-    self.started_ = true;
-    job.k         = self.scene_.body.elastic_modulus;
-    job.a         = self.scene_.body.friction_exponent();
-    if (self.laws_)
-      self.laws_->set(job);
-    past = self.past_;
-    return true;
-  }
-
-  void
-  LaneAdjoint::step(void *context, unsigned int, const LaneAdjointStep &step)
-  {
-    auto &self = *static_cast<LaneAdjoint *>(context);
-    for (std::size_t i = 0; i < self.mu_.size(); ++i)
-      self.mu_[i] = step.mu[i * step.stride];
-    self.zeta_.clear();
-    for (std::size_t i = 0; i < self.by_start_.size() && step.zeta != nullptr; ++i)
-      self.zeta_.push_back(step.zeta[i * step.stride]);
-    (*self.see_)(step.number, self.mu_, self.zeta_);
-  }
-
-  void
-  LaneAdjoint::sources(void *context, unsigned int, const unsigned int step, const LaneSources &sources)
-  {
-    (*static_cast<LaneAdjoint *>(context)->source_)(step, sources);
-  }
-
-  void
-  LaneAdjoint::done(void *context, unsigned int, const bool finished, const std::size_t stride, const double *by_start)
-  {
-    auto &self     = *static_cast<LaneAdjoint *>(context);
-    self.finished_ = finished;
-    for (std::size_t i = 0; i < self.by_start_.size(); ++i)
-      self.by_start_[i] = by_start[i * stride];
-  }
-
-  bool
-  LaneAdjoint::laws(void *context, unsigned int, const LanePoints &points)
-  {
-    return static_cast<LaneAdjoint *>(context)->laws_->evaluate(points);
+    return laws_->evaluate(points);
   }
 } // namespace crawler

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
-#include <crawler/lanes/forced_instruction_set.h>
 #include <crawler/lanes/lane_engine.h>
 
 #include <fmt/format.h>
@@ -65,6 +64,18 @@ namespace crawler
       return result;
     }
   } // namespace
+
+  bool
+  LawHost::laws(unsigned int, const LanePoints &)
+  {
+    return false;
+  }
+
+  double
+  LawHost::cell_laws(double, const double *, const double *, const double *, CellLaws<double> &)
+  {
+    return 0.;
+  }
 
   const char *
   forced_instruction_set()

@@ -7,27 +7,43 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace crawler
 {
+  namespace
+  {
+    /// Outcome, without a status, of a body that has come so far.
+    TimeOutcome
+    outcome_at(const LaneProgress &progress)
+    {
+      TimeOutcome outcome;
+      outcome.time              = progress.t;
+      outcome.step_size         = progress.next;
+      outcome.steps             = progress.steps;
+      outcome.rejected_steps    = progress.rejected;
+      outcome.newton_iterations = progress.newton;
+      return outcome;
+    }
+  } // namespace
+
   LaneStepper::LaneStepper(const Scene &scene, const LaneMethod &method)
     : scene_(scene)
-    , tables_owner_(lane_tables(method))
-    , tables_(*tables_owner_)
-    , setup_(tables_.setup)
+    , tables_(lane_tables(method))
+    , setup_(tables_->setup)
     , tableau_(radau_tableau(method.n_stages))
-    , stress_(scene.active_stress->at(tables_.points))
+    , stress_(scene.active_stress->at(tables_->points))
   {
     if (method.is_stretch)
     {
       setup_.stretch   = stretch_method(scene, method.other_rule);
       setup_.direction = scene.ground.direction;
       if (!scene.is_plain())
-        cell_laws_.emplace(scene, tables_.points);
+        cell_laws_.emplace(scene, tables_->points);
     }
     else if (!scene.is_plain())
-      laws_.emplace(scene, tables_.points);
-    memory_ = lane_storage(single_engine().memory(setup_));
+      laws_.emplace(scene, tables_->points);
+    memory_.resize(single_engine().memory(setup_));
     for (unsigned int i = 0; i < tableau_.n; ++i)
       stage_places_.push_back(tableau_.c[i]);
   }
@@ -60,12 +76,13 @@ namespace crawler
             .old_z          = goes_on_ ? old_z_.data() : nullptr};
     if (laws_)
       laws_->set(job_);
+    if (!goes_on_)
+      progress_ = {.t = course_.start, .next = course_.initial_step};
     started_ = goes_on_ = false;
     bad_friction_.reset();
     lane_step_ = {};
     end_.reset();
-    host_ = {this, take, stress, accepted, done, looks_inside_, laws, cell_laws_ ? cell_laws : nullptr};
-    single_engine().start(setup_, host_, memory_.get());
+    single_engine().start(setup_, *this, memory_.data());
   }
 
   const Step *
@@ -73,101 +90,75 @@ namespace crawler
   {
     has_step_ = false;
     while (!has_step_ && !end_)
-      single_engine().advance(setup_, memory_.get());
+      single_engine().advance(setup_, memory_.data());
     return has_step_ ? &step_ : nullptr;
   }
 
   TimeOutcome
   LaneStepper::outcome()
   {
-    if (end_)
-      return *end_;
-    TimeOutcome so_far;
-    so_far.time      = course_.start;
-    so_far.step_size = course_.initial_step;
-    if (lane_step_.progress == nullptr)
-      return so_far;
-    so_far.time              = lane_step_.time;
-    so_far.step_size         = lane_step_.next_size;
-    so_far.steps             = lane_step_.number;
-    so_far.rejected_steps    = lane_step_.rejected;
-    so_far.newton_iterations = lane_step_.newton_iterations;
-    return so_far;
+    return end_ ? *end_ : outcome_at(progress_);
   }
 
   bool
-  LaneStepper::take(void *context, unsigned int, LaneJob &job)
+  LaneStepper::take(unsigned int, LaneJob &job)
   {
-    auto &self         = *static_cast<LaneStepper *>(context);
-    const bool is_next = !self.started_;
-    self.started_      = true;
-    job                = self.job_;
-    return is_next;
+    job = job_;
+    return !std::exchange(started_, true);
   }
 
   void
-  LaneStepper::stress(void *context, unsigned int, const double t, double *m)
+  LaneStepper::stress(unsigned int, const double t, double *m)
   {
-    auto &self = *static_cast<LaneStepper *>(context);
-    self.stress_->values(t, {m, self.tables_.points.size()});
+    stress_->values(t, {m, tables_->points.size()});
   }
 
   bool
-  LaneStepper::laws(void *context, unsigned int, const LanePoints &points)
+  LaneStepper::laws(unsigned int, const LanePoints &points)
   {
-    return static_cast<LaneStepper *>(context)->laws_->evaluate(points);
+    return laws_->evaluate(points);
   }
 
   double
   LaneStepper::cell_laws(
-    void *context, const double t, const double *m, const double *w, const double *rate, CellLaws<double> &at_cells)
+    const double t, const double *m, const double *w, const double *rate, CellLaws<double> &at_cells)
   {
-    auto &self          = *static_cast<LaneStepper *>(context);
-    StretchLaws &laws   = *self.cell_laws_;
-    const std::size_t n = self.tables_.points.size();
-    const long bad      = laws.evaluate(t, {w, n}, {rate, n}, m);
+    const std::size_t n = tables_->points.size();
+    const long bad      = cell_laws_->evaluate(t, {w, n}, {rate, n}, m);
     // Power laws fail only where the stretch is lost.
-    if (bad >= 0 && w[bad] > 0. && !self.scene_.has_power_law())
-      self.bad_friction_ = {w[bad], laws.friction[static_cast<std::size_t>(bad)]};
-    at_cells                = laws.at_cells();
-    const bool may_be_empty = self.scene_.friction_exponent() < 0.;
+    if (bad >= 0 && w[bad] > 0. && !scene_.has_power_law())
+      bad_friction_ = {w[bad], cell_laws_->friction[static_cast<std::size_t>(bad)]};
+    at_cells                = cell_laws_->at_cells();
+    const bool may_be_empty = scene_.friction_exponent() < 0.;
     return bad >= 0 ? -1. : may_be_empty ? 1. : *std::min_element(w, w + n);
   }
 
   bool
-  LaneStepper::accepted(void *context, unsigned int, const LaneStep &step)
+  LaneStepper::accepted(unsigned int, const LaneStep &step)
   {
-    auto &self      = *static_cast<LaneStepper *>(context);
-    self.lane_step_ = step;
-    self.step_      = {step.time, step.size, step.number, step.is_output_time, step.rejected, step.newton_iterations};
-    self.has_step_  = true;
-    std::copy_n(step.y, self.y_.size(), self.y_.begin());
-    if (self.stage_rates)
-      self.show_rates();
+    lane_step_ = step;
+    progress_  = *step.progress;
+    step_      = {step.time, step.size, progress_.steps, step.is_output_time, progress_.rejected, progress_.newton};
+    has_step_  = true;
+    std::copy_n(step.y, y_.size(), y_.begin());
+    if (stage_rates)
+      show_rates();
     return true;
   }
 
   void
-  LaneStepper::done(void *context, unsigned int, const LaneOutcome &outcome)
+  LaneStepper::done(unsigned int, const LaneOutcome &outcome)
   {
-    TimeOutcome &end      = static_cast<LaneStepper *>(context)->end_.emplace();
-    end.status            = outcome.status == LaneOutcome::finished ? Status::finished : Status::failed;
-    end.reason            = outcome.status == LaneOutcome::gave_up ? gave_up : "";
-    end.time              = outcome.time;
-    end.step_size         = outcome.step_size;
-    end.steps             = outcome.steps;
-    end.rejected_steps    = outcome.rejected;
-    end.newton_iterations = outcome.newton_iterations;
+    end_         = outcome_at(*outcome.progress);
+    end_->status = outcome.status == LaneOutcome::finished ? Status::finished : Status::failed;
+    end_->reason = outcome.status == LaneOutcome::gave_up ? gave_up : "";
   }
 
   bool
   LaneStepper::exchange(Archive &archive)
   {
     if (!archive.reads())
-    {
-      progress_ = *lane_step_.progress;
       old_z_.assign(lane_step_.z, lane_step_.z + tableau_.n * y_.size());
-    }
     archive(progress_, old_z_);
     goes_on_ = archive.reads();
     return true;

@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
-#include <new>
 
 namespace crawler
 {
@@ -21,7 +19,7 @@ namespace crawler
       sample_places_.insert(sample_places_.begin(), 0.);
       sample_places_.push_back(1.);
     }
-    samples_                    = interpolation_matrix(element_.nodes, sample_places_, 1);
+    samples_                    = interpolation_matrix(element_.nodes, sample_places_, /*derivative=*/true);
     const RadauTableau &tableau = radau_tableau(method.n_stages);
     const bool uniform          = method.cell_ends.empty();
     for (unsigned int c = 0; c < method.n_cells; ++c)
@@ -96,23 +94,6 @@ namespace crawler
     if (known.size() == max_kept)
       known.clear();
     return known[method] = std::make_shared<LaneTables>(method);
-  }
-
-  void
-  LaneStorageFree::operator()(double *memory) const
-  {
-    std::free(memory);
-  }
-
-  LaneStorage
-  lane_storage(const std::size_t n)
-  {
-    const std::size_t bytes = (n * sizeof(double) + 63) / 64 * 64;
-    LaneStorage memory(static_cast<double *>(std::aligned_alloc(64, bytes)));
-    if (!memory)
-      throw std::bad_alloc();
-    std::fill_n(memory.get(), bytes / sizeof(double), 0.);
-    return memory;
   }
 
   bool

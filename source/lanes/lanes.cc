@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Compiled once for each instruction set; CRAWLER_INSTRUCTION_SET names it and CRAWLER_PACK is the widest pack.
-#include <crawler/lanes/adjoint_lanes.h>
+#include <crawler/lanes/adjoint_sweep.h>
 #include <crawler/lanes/radau_lanes.h>
 
 namespace crawler::CRAWLER_INSTRUCTION_SET
@@ -29,9 +29,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 
     template <typename Pack>
     void
-    start(const LaneSetup &setup, const LaneHost &host, double *memory)
+    start(const LaneSetup &setup, LaneHost &host, double *memory)
     {
-      with_engine<Pack>(setup, [&](auto *lanes) { lanes->start(setup, host, memory); });
+      with_engine<Pack>(setup, [&](auto *lanes) { lanes->start(setup, &host, memory); });
     }
 
     template <typename Pack>
@@ -42,25 +42,20 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                                [memory](auto *lanes) { return reinterpret_cast<decltype(lanes)>(memory)->advance(); });
     }
 
-    template <typename Pack>
     std::size_t
     adjoint_memory(const LaneSetup &setup)
     {
-      return setup.n_stages == 3   ? AdjointLanes<Pack, 3>::memory(setup)
-             : setup.n_stages == 5 ? AdjointLanes<Pack, 5>::memory(setup)
-                                   : AdjointLanes<Pack, 7>::memory(setup);
+      return setup.n_stages == 3   ? AdjointSweep<3>::memory(setup)
+             : setup.n_stages == 5 ? AdjointSweep<5>::memory(setup)
+                                   : AdjointSweep<7>::memory(setup);
     }
 
-    template <typename Pack>
-    void
-    adjoint(const LaneSetup &setup, const LaneAdjointHost &host, double *memory)
+    bool
+    adjoint(const LaneSetup &setup, LaneAdjointHost &host, const LaneJob &job, const LanePast &past, double *memory)
     {
-      if (setup.n_stages == 3)
-        AdjointLanes<Pack, 3>(setup, host, memory).run();
-      else if (setup.n_stages == 5)
-        AdjointLanes<Pack, 5>(setup, host, memory).run();
-      else
-        AdjointLanes<Pack, 7>(setup, host, memory).run();
+      return setup.n_stages == 3   ? AdjointSweep<3>(setup, &host, memory).run(job, past)
+             : setup.n_stages == 5 ? AdjointSweep<5>(setup, &host, memory).run(job, past)
+                                   : AdjointSweep<7>(setup, &host, memory).run(job, past);
     }
 
 #define CRAWLER_TEXT(name) CRAWLER_TEXT_OF(name)
@@ -71,8 +66,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                                    memory<Pack>,
                                    start<Pack>,
                                    advance<Pack>,
-                                   adjoint_memory<Pack>,
-                                   adjoint<Pack>};
+                                   adjoint_memory,
+                                   adjoint};
   } // namespace
 
   extern const LaneEngine batch, single;

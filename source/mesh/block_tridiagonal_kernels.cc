@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/mesh/block_tridiagonal_kernels.h>
 #include <crawler/mesh/block_tridiagonal_loops.h>
-
-#include <stdexcept>
+#include <crawler/mesh/reference_element.h>
 
 namespace crawler
 {
@@ -60,26 +59,8 @@ namespace crawler
   const BlockTridiagonalKernels<Number> &
   block_tridiagonal_kernels(const unsigned int degree)
   {
-    switch (degree)
-    {
-      case 1:
-        return Kernels<Number, 1>::table;
-      case 2:
-        return Kernels<Number, 2>::table;
-      case 3:
-        return Kernels<Number, 3>::table;
-      case 4:
-        return Kernels<Number, 4>::table;
-      case 5:
-        return Kernels<Number, 5>::table;
-      case 6:
-        return Kernels<Number, 6>::table;
-      case 7:
-        return Kernels<Number, 7>::table;
-      case 8:
-        return Kernels<Number, 8>::table;
-    }
-    throw std::logic_error("degrees 1 to 8 are compiled");
+    return for_degree(
+      degree, [](const auto q) -> const auto & { return Kernels<Number, q>::table; });
   }
 
   template const BlockTridiagonalKernels<double> &

@@ -33,11 +33,11 @@ namespace crawler
                                            const std::span<Number> y) const requires std::is_same_v<Number, double>
   {
     const auto &d    = *discretization_;
-    const auto local = d.template to_local<Number>(x, x_local_);
+    const auto local = d.to_local(x, x_local_);
     local_.assign(d.n_local(), 0.);
     block_tridiagonal_kernels<Number>(d.element().degree)
       .multiply(d.n_local_cells(), blocks_.data(), local.data(), local_.data());
-    d.template add_to_owned<Number>(local_, y);
+    d.add_to_owned(local_, y);
   }
 
   template <typename Number>

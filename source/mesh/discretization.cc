@@ -4,7 +4,6 @@
 #include <crawler/mesh/triangulation.h>
 
 #include <algorithm>
-#include <complex>
 #include <stdexcept>
 
 namespace crawler
@@ -13,37 +12,21 @@ namespace crawler
   /// mesh and need no triangulation.
   struct Discretization::Mesh
   {
-    /// The ends of the cells of the first mesh.
-    std::vector<double>
-    all_ends() const
-    {
-      std::vector<double> all = ends;
-      for (unsigned int c = 0; ends.empty() && c < n_coarse_cells; ++c)
-        all.push_back(c * coarse_size(c));
-      if (ends.empty())
-        all.push_back(length);
-      return all;
-    }
-
     /// The cells from left to right.
     std::vector<Cell>
     cells() const
     {
+      const double size = length / n_coarse_cells;
       std::vector<Cell> result;
       result.reserve(n_coarse_cells);
       for (unsigned int c = 0; c < n_coarse_cells; ++c)
-        result.push_back({ends.empty() ? c * coarse_size(c) : ends[c], coarse_size(c), 0, false});
+        result.push_back(ends.empty() ? Cell{c * size, size, 0, false}
+                                      : Cell{ends[c], ends[c + 1] - ends[c], 0, false});
       return triangulation ? triangulation->cells(result) : result;
     }
 
-    double
-    coarse_size(const unsigned int c) const
-    {
-      return ends.empty() ? length / n_coarse_cells : ends[c + 1] - ends[c];
-    }
-
     const double length;
-    const unsigned int n_ranks, n_coarse_cells;
+    const unsigned int n_coarse_cells;
     const std::vector<double> ends               = {};      ///< of the coarse cells; empty if these have one size
     std::unique_ptr<Triangulation> triangulation = nullptr; ///< made when the mesh is first adapted
   };
@@ -52,7 +35,7 @@ namespace crawler
                                  const double length,
                                  const unsigned int n_cells,
                                  const unsigned int degree)
-    : Discretization(communicator, length, degree, std::make_shared<Mesh>(Mesh{length, size_of(communicator), n_cells}))
+    : Discretization(communicator, length, degree, std::make_shared<Mesh>(Mesh{length, n_cells}))
   {
   }
 
@@ -61,8 +44,7 @@ namespace crawler
         communicator,
         cell_ends.back(),
         degree,
-        std::make_shared<Mesh>(
-          Mesh{cell_ends.back(), size_of(communicator), static_cast<unsigned int>(cell_ends.size() - 1), cell_ends}))
+        std::make_shared<Mesh>(Mesh{cell_ends.back(), static_cast<unsigned int>(cell_ends.size() - 1), cell_ends}))
   {
   }
 
@@ -74,7 +56,7 @@ namespace crawler
     , length_(length)
     , element_(reference_element(degree))
     , rank_(rank_of(communicator))
-    , n_ranks_(mesh->n_ranks)
+    , n_ranks_(size_of(communicator))
     , mesh_(std::move(mesh))
   {
     set_cells(mesh_->cells());
@@ -103,7 +85,13 @@ namespace crawler
   {
     const unsigned int n = n_cells();
     if (!mesh_->triangulation)
-      mesh_->triangulation = create_triangulation(communicator_, mesh_->all_ends());
+    {
+      std::vector<double> ends;
+      for (const Cell &cell : cells_)
+        ends.push_back(cell.left);
+      ends.push_back(length_);
+      mesh_->triangulation = create_triangulation(communicator_, ends);
+    }
     if (mesh_->triangulation->n_cells() != n)
       throw std::logic_error("only the latest of a sequence of meshes can be adapted");
 
@@ -158,6 +146,22 @@ namespace crawler
   }
 
   std::vector<double>
+  Discretization::points_of(const std::vector<CellPlace> &places) const
+  {
+    std::vector<double> points;
+    for (const auto &[cell, x] : places)
+      points.push_back(cell_left_[cell] + x * cell_size_[cell]);
+    return points;
+  }
+
+  void
+  Discretization::sum_over_ranks(const std::span<double> values) const
+  {
+    if (n_ranks_ > 1)
+      MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, communicator_);
+  }
+
+  std::vector<double>
   Discretization::gather(const std::span<const double> own) const
   {
     if (n_ranks_ == 1)
@@ -172,28 +176,16 @@ namespace crawler
     return all;
   }
 
-  template <typename Number>
-  std::span<const Number>
-  Discretization::to_local(const std::span<const Number> owned, std::vector<Number> &buffer) const
+  std::span<const double>
+  Discretization::to_local(const std::span<const double> owned, std::vector<double> &buffer) const
   {
     if (n_active_ranks_ == 1 || n_local() == 0)
       return owned;
-    Number from_left    = 0.;
-    constexpr int count = sizeof(Number) / sizeof(double);
-    const auto left     = has_left_neighbour() ? static_cast<int>(rank_) - 1 : MPI_PROC_NULL;
-    const auto right    = has_right_neighbour() ? static_cast<int>(rank_) + 1 : MPI_PROC_NULL;
-    MPI_Sendrecv(&owned.back(),
-                 count,
-                 MPI_DOUBLE,
-                 right,
-                 0,
-                 &from_left,
-                 count,
-                 MPI_DOUBLE,
-                 left,
-                 0,
-                 communicator_,
-                 MPI_STATUS_IGNORE);
+    double from_left = 0.;
+    const int left   = has_left_neighbour() ? static_cast<int>(rank_) - 1 : MPI_PROC_NULL;
+    const int right  = has_right_neighbour() ? static_cast<int>(rank_) + 1 : MPI_PROC_NULL;
+    MPI_Sendrecv(
+      &owned.back(), 1, MPI_DOUBLE, right, 0, &from_left, 1, MPI_DOUBLE, left, 0, communicator_, MPI_STATUS_IGNORE);
     if (!has_left_neighbour())
       return owned;
     buffer.resize(n_local());
@@ -202,9 +194,8 @@ namespace crawler
     return buffer;
   }
 
-  template <typename Number>
   void
-  Discretization::add_to_owned(const std::span<const Number> local, const std::span<Number> owned) const
+  Discretization::add_to_owned(const std::span<const double> local, const std::span<double> owned) const
   {
     if (n_local() == 0)
       return;
@@ -213,32 +204,13 @@ namespace crawler
       std::copy(local.begin() + (skip_first ? 1 : 0), local.end(), owned.begin());
     if (n_active_ranks_ == 1)
       return;
-    Number from_right   = 0.;
-    constexpr int count = sizeof(Number) / sizeof(double);
-    const auto left     = has_left_neighbour() ? static_cast<int>(rank_) - 1 : MPI_PROC_NULL;
-    const auto right    = has_right_neighbour() ? static_cast<int>(rank_) + 1 : MPI_PROC_NULL;
-    MPI_Sendrecv(local.data(),
-                 count,
-                 MPI_DOUBLE,
-                 left,
-                 1,
-                 &from_right,
-                 count,
-                 MPI_DOUBLE,
-                 right,
-                 1,
-                 communicator_,
-                 MPI_STATUS_IGNORE);
+    double from_right = 0.;
+    const int left    = has_left_neighbour() ? static_cast<int>(rank_) - 1 : MPI_PROC_NULL;
+    const int right   = has_right_neighbour() ? static_cast<int>(rank_) + 1 : MPI_PROC_NULL;
+    MPI_Sendrecv(
+      local.data(), 1, MPI_DOUBLE, left, 1, &from_right, 1, MPI_DOUBLE, right, 1, communicator_, MPI_STATUS_IGNORE);
     owned.back() += from_right;
   }
-
-  template std::span<const double>
-  Discretization::to_local(std::span<const double>, std::vector<double> &) const;
-  template std::span<const std::complex<double>>
-  Discretization::to_local(std::span<const std::complex<double>>, std::vector<std::complex<double>> &) const;
-  template void Discretization::add_to_owned(std::span<const double>, std::span<double>) const;
-  template void Discretization::add_to_owned(std::span<const std::complex<double>>,
-                                             std::span<std::complex<double>>) const;
 
   std::vector<CellPlace>
   Discretization::own_places(const std::vector<double> &points) const

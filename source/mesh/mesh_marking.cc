@@ -7,18 +7,6 @@
 
 namespace crawler
 {
-  std::vector<double>
-  all_indicators(const std::vector<double> &own, const Discretization &discretization)
-  {
-    if (discretization.n_ranks() == 1)
-      return own;
-    std::vector<double> all(discretization.n_cells(), 0.);
-    std::copy(own.begin(), own.end(), all.begin() + discretization.first_cell());
-    MPI_Allreduce(
-      MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, discretization.communicator());
-    return all;
-  }
-
   std::vector<CellChange>
   mark_for_division(const std::vector<double> &indicators, const Discretization &mesh, const MeshLimits &limits)
   {

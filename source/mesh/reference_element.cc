@@ -3,32 +3,26 @@
 #include <crawler/mesh/reference_element.h>
 
 #include <map>
+#include <stdexcept>
 
 namespace crawler
 {
   std::vector<double>
-  interpolation_matrix(const std::vector<double> &nodes,
-                       const std::vector<double> &points,
-                       const unsigned int derivative)
+  interpolation_matrix(const std::vector<double> &nodes, const std::vector<double> &points, const bool derivative)
   {
     std::vector<double> matrix;
     for (const double x : points)
       for (std::size_t i = 0; i < nodes.size(); ++i)
       {
-        double factorial = 1., scale = 1.;
-        std::vector<double> derivatives(derivative + 1, 0.); // divided by their factorials
-        derivatives[0] = 1.;
+        double value = 1., slope = 0., scale = 1.;
         for (std::size_t j = 0; j < nodes.size(); ++j)
           if (j != i)
           {
-            for (unsigned int k = derivative; k > 0; --k)
-              derivatives[k] = derivatives[k] * (x - nodes[j]) + derivatives[k - 1];
-            derivatives[0] *= x - nodes[j];
+            slope = slope * (x - nodes[j]) + value;
+            value *= x - nodes[j];
             scale *= nodes[i] - nodes[j];
           }
-        for (unsigned int k = 2; k <= derivative; ++k)
-          factorial *= k;
-        matrix.push_back(derivatives[derivative] * (factorial * (1. / scale)));
+        matrix.push_back((derivative ? slope : value) * (1. / scale));
       }
     return matrix;
   }
@@ -64,6 +58,8 @@ namespace crawler
     : degree(degree)
     , n(degree + 1)
   {
+    if (degree < 1 || degree > highest_degree)
+      throw std::logic_error("degrees 1 to 8 are compiled");
     const QuadratureRule lobatto = gauss_lobatto_rule(n), gauss = gauss_rule(n), inner = gauss_rule(degree);
     nodes           = lobatto.points;
     node_weights    = lobatto.weights;
@@ -72,14 +68,14 @@ namespace crawler
     stretch_points  = inner.points;
     stretch_weights = inner.weights;
     values          = interpolation_matrix(nodes, points);
-    derivatives     = interpolation_matrix(nodes, points, 1);
+    derivatives     = interpolation_matrix(nodes, points, /*derivative=*/true);
     stiffness.assign(n * n, 0.);
     for (unsigned int p = 0; p < n; ++p)
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j < n; ++j)
           stiffness[i * n + j] += weights[p] * derivatives[p * n + i] * derivatives[p * n + j];
 
-    stretch_derivatives = interpolation_matrix(nodes, stretch_points, 1);
+    stretch_derivatives = interpolation_matrix(nodes, stretch_points, /*derivative=*/true);
     integrate_points    = integration_matrix(points, points);
   }
 

@@ -12,15 +12,6 @@ namespace crawler
 {
   namespace
   {
-    std::vector<double>
-    places(const std::vector<CellPlace> &points)
-    {
-      std::vector<double> x;
-      for (const auto &point : points)
-        x.push_back(point.x);
-      return x;
-    }
-
     /// Throws NonfiniteStress on all ranks if a value of any rank is not finite.
     void
     require_finite(const std::vector<double> &m, const double t, const Discretization &discretization)
@@ -36,12 +27,10 @@ namespace crawler
     : assembler_(assembler)
     , units_(units)
     , points_(std::move(points))
-    , values_(interpolation_matrix(assembler.discretization().element().nodes, places(points_)))
-    , stretch_(assembler.discretization().element(), places(points_))
+    , values_(interpolation_matrix(assembler.discretization().element().nodes, in_cells(points_)))
+    , stretch_(assembler.discretization().element(), in_cells(points_))
   {
-    const Discretization &d = assembler.discretization();
-    for (const CellPlace &point : points_)
-      coordinates_.push_back(d.cell_left()[point.cell] + point.x * d.cell_size()[point.cell]);
+    coordinates_ = assembler.discretization().points_of(points_);
     if (assembler.scene().is_plain())
       stress_ = assembler.scene().active_stress->at(coordinates_);
     else
@@ -62,8 +51,8 @@ namespace crawler
   FieldSampler::sample(const double t, const std::span<const double> y, const std::span<const double> v)
   {
     const Discretization &d            = assembler_.discretization();
-    const auto u_local                 = d.to_local<double>(assembler_.displacement(y), u_local_);
-    const auto v_local                 = d.to_local<double>(v, v_local_);
+    const auto u_local                 = d.to_local(assembler_.displacement(y), u_local_);
+    const auto v_local                 = d.to_local(v, v_local_);
     const std::vector<double> slopes   = assembler_.stretch_slopes(y);
     const std::vector<double> friction = assembler_.node_friction(t, y, v);
     const auto cells                   = assembler_.stretch(y);

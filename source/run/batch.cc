@@ -48,7 +48,7 @@ namespace crawler
   namespace
   {
     /// Hands the runs of one method out to the lanes and makes results of their data.
-    class Batch
+    class Batch : private LaneHost
     {
     public:
       using Results = std::vector<std::optional<SimulationResult>>;
@@ -59,17 +59,17 @@ namespace crawler
             const Simulation::Options &options,
             const std::function<bool()> &keep_going,
             Results &results)
-        : tables_owner_(lane_tables(method))
-        , tables_(*tables_owner_)
+        : tables_(lane_tables(method))
         , tableau_(radau_tableau(method.n_stages))
         , runs_(runs)
         , members_(members)
         , options_(options)
         , keep_going_(keep_going)
         , results_(results)
-        , sampler_(tables_.setup, Recorder::n_pieces)
-        , extremes_(tables_)
+        , sampler_(tables_->setup, Recorder::n_pieces)
+        , extremes_(*tables_)
       {
+        look_inside = options.energy_balance;
       }
 
       /// Computes the runs; returns false if interrupted.
@@ -77,10 +77,9 @@ namespace crawler
       compute(const LaneEngine &engine)
       {
         lanes_.resize(engine.lanes);
-        const LaneHost host = {this, next, stress, accepted, done, options_.energy_balance, laws};
-        const auto memory   = lane_storage(engine.memory(tables_.setup));
-        engine.start(tables_.setup, host, memory.get());
-        while (engine.advance(tables_.setup, memory.get()))
+        LaneStorage memory(engine.memory(tables_->setup));
+        engine.start(tables_->setup, *this, memory.data());
+        while (engine.advance(tables_->setup, memory.data()))
           ;
         return !interrupted_;
       }
@@ -110,21 +109,13 @@ namespace crawler
         std::size_t n_stress_calls = 0;
       };
 
-      static Batch &
-      self(void *context)
+      bool
+      take(const unsigned int l, LaneJob &job) override
       {
-        return *static_cast<Batch *>(context);
-      }
-
-      static bool
-      next(void *context, const unsigned int l, LaneJob &job)
-      {
-        Batch &batch = self(context);
-        if (batch.next_ == batch.members_.size() || batch.interrupted_)
+        if (next_ == members_.size() || interrupted_)
           return false;
-        Lane &lane = batch.lanes_[l];
-        lane.run   = batch.members_[batch.next_++];
-        batch.start(lane, job);
+        lanes_[l].run = members_[next_++];
+        start(lanes_[l], job);
         return true;
       }
 
@@ -137,7 +128,7 @@ namespace crawler
         lane.segments            = TimeSegments(*scene.active_stress, scene.end_time);
         lane.limits              = in_units(numerics, lane.units).step_limits;
         start_record(lane, scene, numerics.tolerance / lane.units.length);
-        std::vector<double> points = tables_.points;
+        std::vector<double> points = tables_->points;
         for (double &s : points)
           s *= lane.units.length;
         points.push_back(0.);
@@ -176,16 +167,16 @@ namespace crawler
         if (scene.is_plain())
           return;
         lane.scene.emplace(in_units(scene, lane.units, &lane.segments));
-        lane.laws.emplace(*lane.scene, tables_.points);
+        lane.laws.emplace(*lane.scene, tables_->points);
         lane.laws->set(job);
         if (const StretchFeedback *feedback = lane.scene->active_stress->feedback())
           lane.end_feedback = feedback->at({0., 1.});
       }
 
-      static bool
-      laws(void *context, const unsigned int l, const LanePoints &points)
+      bool
+      laws(const unsigned int l, const LanePoints &points) override
       {
-        return self(context).lanes_[l].laws->evaluate(points);
+        return lanes_[l].laws->evaluate(points);
       }
 
       /// Starts the record of a run from rest.
@@ -196,7 +187,7 @@ namespace crawler
         if (runs_[lane.run].cycles)
           options.cycles = runs_[lane.run].cycles;
         lane.recorder.emplace(scene, lane.units, options, tolerance, /*may_search=*/false);
-        lane.recorder->set_smallest_cell(tables_.smallest_size());
+        lane.recorder->set_smallest_cell(tables_->smallest_size());
         lane.output_times = lane.segments.breaks();
         lane.output_times.push_back(1.);
         lane.restarts.assign(lane.output_times.size(), 1);
@@ -216,12 +207,11 @@ namespace crawler
       }
 
       /// Supplies m, asked for at the start of a run or segment, and then in all stages of each step that is tried.
-      static void
-      stress(void *context, const unsigned int l, const double t, double *m)
+      void
+      stress(const unsigned int l, const double t, double *m) override
       {
-        Batch &batch        = self(context);
-        Lane &lane          = batch.lanes_[l];
-        const std::size_t n = batch.tables_.points.size(), stages = batch.tableau_.n;
+        Lane &lane          = lanes_[l];
+        const std::size_t n = tables_->points.size(), stages = tableau_.n;
         lane.stress->values(lane.segments.inside(t) * lane.units.time, lane.m);
         if (lane.units.force != 1.)
           for (double &value : lane.m)
@@ -259,15 +249,14 @@ namespace crawler
         });
       }
 
-      static bool
-      accepted(void *context, const unsigned int l, const LaneStep &step)
+      bool
+      accepted(const unsigned int l, const LaneStep &step) override
       {
-        Batch &batch = self(context);
-        Lane &lane   = batch.lanes_[l];
-        if (!batch.interrupted_ && batch.keep_going_ && !batch.keep_going_())
-          batch.interrupted_ = true;
+        Lane &lane = lanes_[l];
+        if (!interrupted_ && keep_going_ && !keep_going_())
+          interrupted_ = true;
         // A run that is stopped in its last step is finished to the engine.
-        lane.given_up = batch.interrupted_ || !batch.look_at_step(lane, step);
+        lane.given_up = interrupted_ || !look_at_step(lane, step);
         return !lane.given_up && !lane.recorder->cycles_repeat();
       }
 
@@ -323,13 +312,12 @@ namespace crawler
           lane.recorder->see_friction(step.size, stage.abs_friction, std::abs(stage.net_friction));
       }
 
-      static void
-      done(void *context, const unsigned int l, const LaneOutcome &outcome)
+      void
+      done(const unsigned int l, const LaneOutcome &outcome) override
       {
-        Batch &batch = self(context);
-        Lane &lane   = batch.lanes_[l];
+        Lane &lane = lanes_[l];
         if ((outcome.status == LaneOutcome::finished || lane.recorder->cycles_repeat()) && !lane.given_up)
-          batch.results_[lane.run] = batch.result_of(lane, outcome);
+          results_[lane.run] = result_of(lane, outcome);
       }
 
       SimulationResult
@@ -337,21 +325,20 @@ namespace crawler
       {
         SimulationResult &result      = lane.recorder->result;
         result.time.status            = Status::finished;
-        result.time.step_size         = outcome.step_size;
-        result.time.steps             = outcome.steps;
-        result.time.rejected_steps    = outcome.rejected;
-        result.time.newton_iterations = outcome.newton_iterations;
+        result.time.step_size         = outcome.progress->next;
+        result.time.steps             = outcome.progress->steps;
+        result.time.rejected_steps    = outcome.progress->rejected;
+        result.time.newton_iterations = outcome.progress->newton;
         result.displacement           = outcome.displacement;
-        result.most_cells             = tables_.setup.n_cells;
-        result.mesh = {result.most_cells, tables_.setup.degree, result.most_cells * tables_.setup.degree + 1, false};
+        result.most_cells             = tables_->setup.n_cells;
+        result.mesh = {result.most_cells, tables_->setup.degree, result.most_cells * tables_->setup.degree + 1, false};
         result.integrator = runs_[lane.run].time->integrator == "automatic" ? runs_[lane.run].numerics->integrator
                                                                             : runs_[lane.run].time->integrator;
         result.engine     = "fused";
         return lane.recorder->finish();
       }
 
-      const std::shared_ptr<const LaneTables> tables_owner_;
-      const LaneTables &tables_;
+      const std::shared_ptr<const LaneTables> tables_;
       const RadauTableau &tableau_;
       const std::span<const BatchRun> runs_;
       const std::vector<std::size_t> &members_; ///< numbers of the runs

@@ -249,7 +249,7 @@ namespace crawler
     run_->goes_on      = false;
     run_->lane_samples = can_sample_lanes();
     if (integrators_.lanes)
-      integrators_.lanes->look_inside(run_->lane_samples);
+      integrators_.lanes->look_inside = run_->lane_samples;
     Stepper &stepper    = *integrators_.present;
     stepper.stage_rates = nullptr;
     if (mesh_.velocity->keeps_rates() || run_->output_times.next() < HUGE_VAL)

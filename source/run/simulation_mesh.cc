@@ -24,7 +24,7 @@ namespace crawler
     PositionForm &old_form        = *mesh_.position;
     const auto old_discretization = std::move(mesh_.discretization);
     build(old_discretization->adapted(run_->changes));
-    y_ = mesh_transfer(numerics_.degree).transfer(old_form, run_->accepted.y, *mesh_.position);
+    y_ = transferred(old_form, run_->accepted.y, *mesh_.position);
     if (run_->accepted.time == 0. && !scene_.is_plain())
       mesh_.assembler->set_initial_state(y_);
     const double old_time = run_->accepted.time;
@@ -86,7 +86,7 @@ namespace crawler
   bool
   Simulation::mesh_is_good(const Step &step, const std::span<const double> y)
   {
-    run_->indicators = all_indicators(mesh_.position->error_indicators(step.time, y, v_), *mesh_.discretization);
+    run_->indicators = mesh_.discretization->gather(mesh_.position->error_indicators(step.time, y, v_));
     const double sum = std::accumulate(run_->indicators.begin(), run_->indicators.end(), 0.);
     run_->changes.clear();
     if (sum > numerics_.mesh.tolerance)

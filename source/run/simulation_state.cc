@@ -112,7 +112,7 @@ namespace crawler
       return;
     if (!is_adaptive() && mesh_.velocity->compute(step.time, step.size, y, v_))
     {
-      const auto indicators = all_indicators(mesh_.position->error_indicators(step.time, y, v_), *mesh_.discretization);
+      const auto indicators = mesh_.discretization->gather(mesh_.position->error_indicators(step.time, y, v_));
       result.largest_indicator =
         std::max(result.largest_indicator, std::accumulate(indicators.begin(), indicators.end(), 0.));
     }

@@ -32,7 +32,7 @@ namespace crawler
       if (mesh_.position == nullptr)
         throw std::logic_error("the stretch form is for the fused engine");
       if (!integrators_.petsc)
-        integrators_.petsc = std::make_unique<PetscStepper>(communicator_, *mesh_.position, time_);
+        integrators_.petsc = petsc_stepper(communicator_, *mesh_.position, time_);
       integrators_.present = integrators_.petsc.get();
     }
   }

@@ -35,544 +35,544 @@ namespace crawler
       MPI_Comm duplicate = MPI_COMM_NULL;
       petsc(PetscCommDuplicate(communicator, &duplicate, nullptr));
     }
+
+    class PetscStepper : public Stepper
+    {
+    public:
+      PetscStepper(MPI_Comm communicator, ImplicitSystem &system, const TimeParameters &parameters)
+        : system_(system)
+        , parameters_(parameters)
+      {
+        keep_duplicate(communicator);
+        Vec vec = nullptr;
+        petsc(VecCreate(communicator, &vec));
+        solution_.reset(vec);
+        petsc(VecSetSizes(vec, static_cast<PetscInt>(system_.n_owned()), PETSC_DECIDE));
+        petsc(VecSetType(vec, VECSTANDARD));
+        PetscInt n = 0;
+        petsc(VecGetSize(vec, &n));
+        n_unknowns_ = static_cast<std::size_t>(n);
+        petsc(VecDuplicate(solution_.get(), &vec));
+        residual_.reset(vec);
+        Mat mat          = nullptr;
+        const auto local = static_cast<PetscInt>(system_.n_owned());
+        petsc(MatCreateShell(communicator, local, local, PETSC_DECIDE, PETSC_DECIDE, this, &mat));
+        jacobian_.reset(mat);
+        petsc(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<ShellOperation>(multiply)));
+
+        petsc(register_radau());
+        TS stepper = nullptr;
+        petsc(TSCreate(communicator, &stepper));
+        ts_.reset(stepper);
+        petsc(TSSetApplicationContext(stepper, this));
+        petsc(TSSetIFunction(stepper, residual_.get(), function, this));
+        petsc(TSSetIJacobian(stepper, mat, mat, jacobian_function, this));
+        petsc(TSSetSolution(stepper, solution_.get()));
+        set_options();
+      }
+
+
+      void
+      begin(const ConstVector start, const Course &course) override
+      {
+        TS stepper              = ts_.get();
+        ends_                   = course.ends;
+        next_end_               = 0;
+        step_                   = {};
+        end_                    = std::nullopt;
+        refused_at_             = -1.;
+        nonfinite_at_           = -1.;
+        limits_                 = course.limits;
+        limit_                  = 0;
+        underflow_              = false;
+        tolerance_              = user_tolerance_.value_or(course.tolerance);
+        const double first_step = user_step_.value_or(course.initial_step);
+        fixed_step_             = parameters_.step_control == StepControl::fixed ? first_step : 0.;
+        last_correction_        = 0.;
+        convergence_constant_   = std::numeric_limits<double>::infinity();
+        double time             = course.start;
+        if (goes_on_)
+        {
+          (*goes_on_)(time, next_end_, limit_, refused_at_, nonfinite_at_);
+          goes_on_->require(next_end_ < ends_.size() && limit_ <= limits_.size(), "the next step");
+        }
+        y_.assign(start.begin(), start.end());
+        {
+          const WriteAccess access(solution_.get());
+          std::copy(start.begin(), start.end(), access.span.begin());
+        }
+        if (!system_.solves_exactly())
+          use_krylov_method();
+        petsc(TSSetTolerances(stepper, tolerance_, nullptr, relative_tolerance_, nullptr));
+        petsc(TSSetTime(stepper, time));
+        petsc(TSSetStepNumber(stepper, 0));
+        ts_->reject = ts_->snes_its = ts_->ksp_its = 0;
+        petsc(TSSetMaxTime(stepper, ends_.back()));
+        petsc(TSSetTimeStep(stepper, first_step));
+        petsc(TSRestartStep(stepper));
+        if (goes_on_)
+          radau_exchange(stepper, *goes_on_);
+        goes_on_.reset();
+        show();
+      }
+
+      const Step *
+      next() override
+      {
+        if (end_)
+          return nullptr;
+        choose_step();
+        const PetscErrorCode code = make_step();
+        guarded_.rethrow();
+        TSConvergedReason reason;
+        petsc(TSGetConvergedReason(ts_.get(), &reason));
+        const Step *const made = code == 0 && reason >= 0 ? arrive() : nullptr;
+        if (made == nullptr)
+          end_ = failure(code);
+        else if (next_end_ == ends_.size())
+        {
+          end_         = counts();
+          end_->status = Status::finished;
+        }
+        else if (reason == TS_CONVERGED_ITS)
+        {
+          end_          = counts();
+          end_->status  = Status::stopped;
+          end_->reason  = "step_limit";
+          end_->message = "the maximum number of steps was reached";
+        }
+        if (made != nullptr)
+          show();
+        if (end_)
+          petsc(PetscObjectViewFromOptions(reinterpret_cast<PetscObject>(ts_.get()), nullptr, "-ts_view"));
+        return made;
+      }
+
+      ConstVector
+      state() const override
+      {
+        return y_;
+      }
+
+      TimeOutcome
+      outcome() override
+      {
+        return end_ ? *end_ : counts();
+      }
+
+      /// Exchanges the state; only the radau methods can.
+      bool
+      exchange(Archive &archive) override
+      {
+        if (stage_places_.empty())
+          return false;
+        if (archive.reads())
+        {
+          std::string bytes;
+          archive(bytes);
+          goes_on_.emplace(std::move(bytes));
+          return true;
+        }
+        Archive own;
+        own(ts_->ptime, next_end_, limit_, refused_at_, nonfinite_at_);
+        radau_exchange(ts_.get(), own);
+        std::string bytes = own.bytes();
+        archive(bytes);
+        return true;
+      }
+
+      void
+      interpolate(const double time, const Vector result) override
+      {
+        if (!interpolated_)
+        {
+          Vec vec = nullptr;
+          petsc(VecDuplicate(solution_.get(), &vec));
+          interpolated_.reset(vec);
+        }
+        // Times outside of the step are refused by PETSc, even by a last bit: it takes the start of a step as its end
+        // less its size.
+        const double from = ts_->ptime_prev, to = ts_->ptime;
+        const double inside = std::clamp(time, from, to);
+        const bool is_there = std::abs(inside - time) <= 1e-12 * std::abs(to);
+        petsc(TSInterpolate(ts_.get(), is_there ? inside : time, interpolated_.get()));
+        const ReadAccess access(interpolated_.get());
+        std::copy(access.span.begin(), access.span.end(), result.begin());
+      }
+
+    private:
+      /// Sets the choices of the program, then the user's options after "--".
+      void
+      set_options()
+      {
+        const Integrator &method = integrator(parameters_.integrator);
+        TS stepper               = ts_.get();
+        petsc(TSSetOptionsPrefix(stepper, parameters_.petsc_prefix.c_str()));
+        petsc(TSSetProblemType(stepper, TS_NONLINEAR));
+        petsc(TSSetType(stepper, method.petsc_type.c_str()));
+        if (method.petsc_type == "bdf")
+          petsc(TSBDFSetOrder(stepper, static_cast<PetscInt>(parameters_.order)));
+        if (method.petsc_type == radau_type)
+          radau_set_stages(stepper, method.n_stages);
+        TSAdapt adapt = nullptr;
+        petsc(TSGetAdapt(stepper, &adapt));
+        petsc(TSAdaptSetType(adapt, parameters_.step_control == StepControl::fixed ? TSADAPTNONE : TSADAPTBASIC));
+        if (method.petsc_type == radau_type)
+          petsc(TSAdaptSetClip(adapt, radau::min_change, radau::max_change));
+        petsc(TSSetExactFinalTime(stepper, TS_EXACTFINALTIME_STEPOVER)); // choose_step() sets the ends of steps
+        petsc(TSSetMaxSNESFailures(stepper, -1));
+        petsc(TSSetMaxStepRejections(stepper, 30));
+        petsc(TSSetErrorIfStepFails(stepper, PETSC_FALSE));
+        petsc(TSSetMaxSteps(stepper, static_cast<PetscInt>(parameters_.max_steps)));
+
+        set_newton();
+        apply_user_options();
+      }
+
+      /// Newton's method with exact elimination.
+      void
+      set_newton()
+      {
+        TS stepper                 = ts_.get();
+        SNES snes                  = nullptr;
+        SNESLineSearch line_search = nullptr;
+        KSP ksp                    = nullptr;
+        PC pc                      = nullptr;
+        petsc(TSGetSNES(stepper, &snes));
+        petsc(SNESSetType(snes, SNESNEWTONLS));
+        petsc(SNESGetLineSearch(snes, &line_search));
+        petsc(SNESLineSearchSetType(line_search, SNESLINESEARCHBASIC));
+        // No tolerance of the correction: a line search that fails after a small one would count as converged.
+        petsc(
+          SNESSetTolerances(snes, PETSC_DEFAULT, PETSC_DEFAULT, /*correction=*/0., /*iterations=*/10, PETSC_DEFAULT));
+        petsc(SNESSetConvergenceTest(snes, newton_converged, this, nullptr));
+        petsc(SNESGetKSP(snes, &ksp));
+        petsc(KSPSetType(ksp, KSPPREONLY)); // the elimination is exact
+        petsc(KSPSetPCSide(ksp, PC_RIGHT));
+        petsc(KSPGetPC(ksp, &pc));
+        petsc(PCSetType(pc, PCSHELL));
+        petsc(PCShellSetContext(pc, this));
+        petsc(PCShellSetName(pc, "block-tridiagonal elimination"));
+        petsc(PCShellSetSetUp(pc, set_up_preconditioner));
+        petsc(PCShellSetApply(pc, precondition));
+      }
+
+      /// Applies the user's options after "--"; the integrator must be among those offered.
+      void
+      apply_user_options()
+      {
+        TS stepper          = ts_.get();
+        PetscErrorCode code = 0;
+        std::string words;
+        {
+          PetscErrorWords error;
+          code  = TSSetFromOptions(stepper);
+          words = error.text;
+        }
+        if (code != 0)
+          throw InputError("PETSc refuses an option after \"--\": " + words);
+
+        // Options that begin() resets each time.
+        const auto option = [&](const char *option_name) {
+          PetscReal value = 0.;
+          PetscBool found = PETSC_FALSE;
+          petsc(PetscOptionsGetReal(nullptr, parameters_.petsc_prefix.c_str(), option_name, &value, &found));
+          return found ? std::optional<double>(value) : std::nullopt;
+        };
+        user_tolerance_     = option("-ts_atol");
+        user_step_          = option("-ts_dt");
+        relative_tolerance_ = option("-ts_rtol").value_or(0.);
+        if (option("-ts_max_time"))
+          throw InputError(
+            "the PETSc option -ts_max_time is refused: Time/End time is expected to say when the run ends");
+
+        TSType type = nullptr;
+        petsc(TSGetType(stepper, &type));
+        std::string name = type;
+        if (name == radau_type)
+        {
+          stage_places_ = radau_set_system(stepper, &system_, &guarded_).c;
+          name += " " + std::to_string(2 * stage_places_.size() - 1);
+        }
+        if (is_offered(name))
+          return;
+        const std::string reason = reason_against(name);
+        throw InputError("the PETSc integrator \"" + name + "\" (option -ts_type) is refused: " +
+                         (reason.empty() ? "it is not tested for a mass matrix that depends on the state" : reason) +
+                         "; \"bdf\" or \"radau\" is expected");
+      }
+
+      /// Makes the elimination a right preconditioner, so that residuals are the true ones.
+      void
+      use_krylov_method()
+      {
+        constexpr double relative_tolerance_of_krylov = 1e-6;
+        PetscBool chosen                              = PETSC_FALSE;
+        petsc(PetscOptionsHasName(nullptr, parameters_.petsc_prefix.c_str(), "-ksp_type", &chosen));
+        if (chosen)
+          return;
+        KSP ksp = nullptr;
+        petsc(SNESGetKSP(ts_->snes, &ksp));
+        petsc(KSPSetType(ksp, KSPGMRES));
+        petsc(KSPSetPCSide(ksp, PC_RIGHT));
+        petsc(KSPSetTolerances(ksp, relative_tolerance_of_krylov, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
+      }
+
+      static PetscErrorCode
+      function(TS ts, const PetscReal t, Vec y, Vec y_dot, Vec F, void *context)
+      {
+        auto &self                = *static_cast<PetscStepper *>(context);
+        bool accepted             = true;
+        const PetscErrorCode code = self.guarded_([&]() {
+          const ReadAccess y_access(y), y_dot_access(y_dot);
+          const WriteAccess F_access(F);
+          if (self.stage_rates)
+            self.stage_rates(t, y_dot_access.span);
+          accepted   = self.system_.residual(t, y_access.span, y_dot_access.span, F_access.span);
+          double sum = 0.;
+          for (const double value : F_access.span)
+            sum += value;
+          if (accepted && !std::isfinite(sum))
+            self.nonfinite_at_ = t;
+        });
+        if (code == 0 && !accepted)
+        {
+          self.refused_at_ = t;
+          return SNESSetFunctionDomainError(ts->snes);
+        }
+        return code;
+      }
+
+      static PetscErrorCode
+      jacobian_function(TS, const PetscReal t, Vec y, Vec y_dot, const PetscReal shift, Mat A, Mat, void *context)
+      {
+        auto &self                = *static_cast<PetscStepper *>(context);
+        const PetscErrorCode code = self.guarded_([&]() {
+          const ReadAccess y_access(y), y_dot_access(y_dot);
+          self.jacobian_ok_ = self.system_.setup_jacobian(t, y_access.span, y_dot_access.span, shift);
+        });
+        if (code != 0)
+          return code;
+        MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY); // tells PETSc that the matrix has changed
+        return MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY);
+      }
+
+      static PetscErrorCode
+      multiply(Mat A, Vec x, Vec y)
+      {
+        auto &self = context_of<PetscStepper>(A);
+        return self.guarded_([&]() {
+          const ReadAccess x_access(x);
+          const WriteAccess y_access(y);
+          self.system_.jacobian_vmult(x_access.span, y_access.span);
+        });
+      }
+
+      static PetscErrorCode
+      set_up_preconditioner(PC pc)
+      {
+        return PCSetFailedReason(pc,
+                                 context_of<PetscStepper>(pc).jacobian_ok_ ? PC_NOERROR : PC_FACTOR_NUMERIC_ZEROPIVOT);
+      }
+
+      static PetscErrorCode
+      precondition(PC pc, Vec x, Vec y)
+      {
+        auto &self = context_of<PetscStepper>(pc);
+        return self.guarded_([&]() {
+          const ReadAccess x_access(x);
+          const WriteAccess y_access(y);
+          self.system_.solve_with_jacobian(x_access.span, y_access.span);
+        });
+      }
+
+      /**
+       * Convergence test of Newton's method, which converges quadratically with an exact Jacobian: after a correction d
+       * the remaining error is about C d^2. C is taken from the last solve that needed two corrections; before the
+       * first, two are made.
+       */
+      static PetscErrorCode
+      newton_converged(SNES,
+                       const PetscInt it,
+                       const PetscReal x_norm,
+                       const PetscReal dx_norm,
+                       const PetscReal F_norm,
+                       SNESConvergedReason *reason,
+                       void *context)
+      {
+        auto &self = *static_cast<PetscStepper *>(context);
+        *reason    = SNES_CONVERGED_ITERATING;
+        if (!std::isfinite(F_norm) || !std::isfinite(dx_norm))
+        {
+          *reason = newton_not_finite;
+          return 0;
+        }
+        if (it == 0)
+        {
+          if (F_norm == 0.)
+            *reason = SNES_CONVERGED_FNORM_ABS;
+          return 0;
+        }
+        // Norms in units of the admissible error.
+        const double rms = 1. / std::sqrt(static_cast<double>(self.n_unknowns_));
+        const double d = dx_norm / self.tolerance_ * rms, rounding = 1e-15 * (x_norm / self.tolerance_) * rms;
+        if (it >= 2 && self.last_correction_ > 0.)
+          self.convergence_constant_ = d / (self.last_correction_ * self.last_correction_);
+        self.last_correction_ = d;
+        const bool small      = d <= newton_fraction || self.convergence_constant_ * d * d <= predicted_fraction;
+        if (small || d <= rounding)
+          *reason = SNES_CONVERGED_SNORM_RELATIVE;
+        return 0;
+      }
+
+      /// Shortens the step so that it, or the next one, ends at a required time.
+      void
+      choose_step()
+      {
+        double size = fixed_step_;
+        if (fixed_step_ == 0.)
+          size = admitted_step(
+            limits_.data(), static_cast<unsigned int>(limits_.size()), limit_, ts_->ptime, ts_->time_step);
+        const double remaining = ends_[next_end_] - ts_->ptime;
+        if (size >= remaining * (1. - 1e-9))
+          size = remaining;
+        else if (fixed_step_ == 0. && size > 0.5 * remaining)
+          size = 0.5 * remaining;
+        petsc(TSSetTimeStep(ts_.get(), size));
+      }
+
+      /// Makes a step; errors are returned as codes, not printed.
+      PetscErrorCode
+      make_step()
+      {
+        petsc(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
+        const PetscErrorCode code = TSStep(ts_.get());
+        petsc(PetscPopErrorHandler());
+        return code;
+      }
+
+      /// Completes an accepted step; null if there was none.
+      const Step *
+      arrive()
+      {
+        double time           = ts_->ptime;
+        const double previous = ts_->ptime_prev;
+        const bool is_end =
+          std::abs(time - ends_[next_end_]) <= 1e-13 * std::max(ends_[next_end_] - previous, ends_[next_end_]);
+        if (is_end)
+        {
+          time = ends_[next_end_++];
+          petsc(TSSetTime(ts_.get(), time));
+        }
+        const double size = time - previous;
+        if (!(size > 4. * std::numeric_limits<double>::epsilon() * time))
+        {
+          underflow_ = true; // shorter steps do not help, and `size` cannot be a divisor
+          return nullptr;
+        }
+        const TimeOutcome so_far = counts();
+        step_                    = {time, size, so_far.steps, is_end, so_far.rejected_steps, so_far.newton_iterations};
+        const ReadAccess access(solution_.get());
+        std::copy(access.span.begin(), access.span.end(), y_.begin());
+        return &step_;
+      }
+
+      /// Shows the state to the monitors of PETSc's options.
+      void
+      show()
+      {
+        petsc(TSMonitor(ts_.get(), ts_->steps, ts_->ptime, solution_.get()));
+      }
+
+      TimeOutcome
+      counts() const
+      {
+        TimeOutcome result;
+        result.time              = ts_->ptime;
+        result.step_size         = ts_->time_step;
+        result.steps             = static_cast<unsigned int>(ts_->steps);
+        result.rejected_steps    = static_cast<unsigned int>(ts_->reject);
+        result.newton_iterations = static_cast<unsigned long>(ts_->snes_its);
+        result.linear_iterations = static_cast<unsigned long>(ts_->ksp_its);
+        return result;
+      }
+
+      /// Names the failure that PETSc reports.
+      TimeOutcome
+      failure(const PetscErrorCode code)
+      {
+        TimeOutcome result = counts();
+        SNESConvergedReason newton_reason;
+        SNESGetConvergedReason(ts_->snes, &newton_reason);
+        // Refused states and residuals count if their times were close: they made the steps small. Each rank knows its
+        // own.
+        double latest[2] = {refused_at_, nonfinite_at_};
+        MPI_Allreduce(
+          MPI_IN_PLACE, latest, 2, MPI_DOUBLE, MPI_MAX, PetscObjectComm(reinterpret_cast<PetscObject>(ts_.get())));
+        const double close  = result.time - 1e-6 * parameters_.end_time;
+        result.status       = Status::failed;
+        result.domain_error = latest[0] >= close;
+        const auto named    = [&](const char *reason, const std::string &message) {
+          result.reason  = reason;
+          result.message = message;
+          return result;
+        };
+        if (code != 0)
+        {
+          const char *text = nullptr;
+          PetscErrorMessage(code, &text, nullptr);
+          return named("petsc_error",
+                       std::string("PETSc stopped with the error: ") + (text != nullptr ? text : "unknown"));
+        }
+        if (latest[1] >= close)
+          return named("nonfinite", "the residual is not a finite number");
+        if (newton_reason == SNES_DIVERGED_LINEAR_SOLVE)
+          return named("linear_failed", "the linear system of Newton's method is singular or could not be solved");
+        if (underflow_ || result.step_size < 1e-13 * parameters_.end_time)
+          return named("step_underflow", "the step size fell below the resolution of the time");
+        if (newton_reason < 0)
+          return named("newton_diverged",
+                       std::string("Newton's method did not converge (") + SNESConvergedReasons[newton_reason] + ")");
+        return named("rejection_limit", "a step was rejected too many times: its error stays above the tolerance");
+      }
+
+      ImplicitSystem &system_;
+      const TimeParameters parameters_;
+
+      PetscOwner<Vec> solution_, residual_;
+      PetscOwner<Vec> interpolated_;
+      PetscOwner<Mat> jacobian_;
+      PetscOwner<TS> ts_;
+
+      // Values since begin().
+      std::vector<double> ends_; ///< of the course
+      std::size_t next_end_ = 0;
+      double tolerance_     = 0.;
+      double fixed_step_    = 0.;
+      Step step_{};
+      std::vector<double> y_;          ///< state after `step`
+      std::optional<TimeOutcome> end_; ///< outcome, once the course has ended
+      std::optional<Archive> goes_on_; ///< where begin() is to continue from
+      bool jacobian_ok_    = true;
+      double refused_at_   = -1.; ///< time of the last refused state
+      double nonfinite_at_ = -1.; ///< time of the last residual that was not finite
+      std::span<const StepLimit> limits_;
+      unsigned int limit_ = 0;                           ///< number of the present limit
+      bool underflow_     = false;                       ///< a step is below the resolution of the time
+      std::optional<double> user_tolerance_, user_step_; ///< options -ts_atol and -ts_dt
+      double relative_tolerance_   = 0.;                 ///< option -ts_rtol
+      double convergence_constant_ = std::numeric_limits<double>::infinity();
+      double last_correction_      = 0.;
+      std::size_t n_unknowns_      = 0;
+      PetscGuard guarded_;
+    };
   } // namespace
 
-  struct PetscStepper::Implementation
+
+  std::unique_ptr<Stepper>
+  petsc_stepper(MPI_Comm communicator, ImplicitSystem &system, const TimeParameters &parameters)
   {
-    PetscStepper &owner;
-    ImplicitSystem &system;
-    const TimeParameters parameters;
-
-    PetscOwner<Vec> solution, residual;
-    PetscOwner<Vec> interpolated;
-    PetscOwner<Mat> jacobian;
-    PetscOwner<TS> ts;
-
-    // Values since begin().
-    std::vector<double> ends; ///< of the course
-    std::size_t next_end = 0;
-    double tolerance     = 0.;
-    double fixed_step    = 0.;
-    Step step{};
-    std::vector<double> y;          ///< state after `step`
-    std::optional<TimeOutcome> end; ///< outcome, once the course has ended
-    std::optional<Archive> goes_on; ///< where begin() is to continue from
-    bool jacobian_ok    = true;
-    double refused_at   = -1.; ///< time of the last refused state
-    double nonfinite_at = -1.; ///< time of the last residual that was not finite
-    std::span<const StepLimit> limits;
-    unsigned int limit = 0;                          ///< number of the present limit
-    bool underflow     = false;                      ///< a step is below the resolution of the time
-    std::optional<double> user_tolerance, user_step; ///< options -ts_atol and -ts_dt
-    double relative_tolerance   = 0.;                ///< option -ts_rtol
-    double convergence_constant = std::numeric_limits<double>::infinity();
-    double last_correction      = 0.;
-    std::size_t n_unknowns      = 0;
-    PetscGuard guarded;
-
-    Implementation(PetscStepper &owner, MPI_Comm communicator, ImplicitSystem &system, const TimeParameters &parameters)
-      : owner(owner)
-      , system(system)
-      , parameters(parameters)
-    {
-      keep_duplicate(communicator);
-      Vec vec = nullptr;
-      petsc(VecCreate(communicator, &vec));
-      solution.reset(vec);
-      petsc(VecSetSizes(vec, static_cast<PetscInt>(system.n_owned()), PETSC_DECIDE));
-      petsc(VecSetType(vec, VECSTANDARD));
-      PetscInt n = 0;
-      petsc(VecGetSize(vec, &n));
-      n_unknowns = static_cast<std::size_t>(n);
-      petsc(VecDuplicate(solution.get(), &vec));
-      residual.reset(vec);
-      Mat mat          = nullptr;
-      const auto local = static_cast<PetscInt>(system.n_owned());
-      petsc(MatCreateShell(communicator, local, local, PETSC_DECIDE, PETSC_DECIDE, this, &mat));
-      jacobian.reset(mat);
-      petsc(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<ShellOperation>(multiply)));
-
-      petsc(register_radau());
-      TS stepper = nullptr;
-      petsc(TSCreate(communicator, &stepper));
-      ts.reset(stepper);
-      petsc(TSSetApplicationContext(stepper, this));
-      petsc(TSSetIFunction(stepper, residual.get(), function, this));
-      petsc(TSSetIJacobian(stepper, mat, mat, jacobian_function, this));
-      petsc(TSSetSolution(stepper, solution.get()));
-      set_options();
-    }
-
-    /// Sets the choices of the program, then the user's options after "--".
-    void
-    set_options()
-    {
-      const Integrator &method = integrator(parameters.integrator);
-      TS stepper               = ts.get();
-      petsc(TSSetOptionsPrefix(stepper, parameters.petsc_prefix.c_str()));
-      petsc(TSSetProblemType(stepper, TS_NONLINEAR));
-      petsc(TSSetType(stepper, method.petsc_type.c_str()));
-      if (method.petsc_type == "bdf")
-        petsc(TSBDFSetOrder(stepper, static_cast<PetscInt>(parameters.order)));
-      if (method.petsc_type == radau_type)
-        radau_set_stages(stepper, method.n_stages);
-      TSAdapt adapt = nullptr;
-      petsc(TSGetAdapt(stepper, &adapt));
-      petsc(TSAdaptSetType(adapt, parameters.step_control == StepControl::fixed ? TSADAPTNONE : TSADAPTBASIC));
-      if (method.petsc_type == radau_type)
-        petsc(TSAdaptSetClip(adapt, radau::min_change, radau::max_change));
-      petsc(TSSetExactFinalTime(stepper, TS_EXACTFINALTIME_STEPOVER)); // choose_step() sets the ends of steps
-      petsc(TSSetMaxSNESFailures(stepper, -1));
-      petsc(TSSetMaxStepRejections(stepper, 30));
-      petsc(TSSetErrorIfStepFails(stepper, PETSC_FALSE));
-      petsc(TSSetMaxSteps(stepper, static_cast<PetscInt>(parameters.max_steps)));
-
-      set_newton();
-      apply_user_options();
-    }
-
-    /// Newton's method with exact elimination.
-    void
-    set_newton()
-    {
-      TS stepper                 = ts.get();
-      SNES snes                  = nullptr;
-      SNESLineSearch line_search = nullptr;
-      KSP ksp                    = nullptr;
-      PC pc                      = nullptr;
-      petsc(TSGetSNES(stepper, &snes));
-      petsc(SNESSetType(snes, SNESNEWTONLS));
-      petsc(SNESGetLineSearch(snes, &line_search));
-      petsc(SNESLineSearchSetType(line_search, SNESLINESEARCHBASIC));
-      // No tolerance of the correction: a line search that fails after a small one would count as converged.
-      petsc(SNESSetTolerances(snes, PETSC_DEFAULT, PETSC_DEFAULT, /*correction=*/0., /*iterations=*/10, PETSC_DEFAULT));
-      petsc(SNESSetConvergenceTest(snes, newton_converged, this, nullptr));
-      petsc(SNESGetKSP(snes, &ksp));
-      petsc(KSPSetType(ksp, KSPPREONLY)); // the elimination is exact
-      petsc(KSPSetPCSide(ksp, PC_RIGHT));
-      petsc(KSPGetPC(ksp, &pc));
-      petsc(PCSetType(pc, PCSHELL));
-      petsc(PCShellSetContext(pc, this));
-      petsc(PCShellSetName(pc, "block-tridiagonal elimination"));
-      petsc(PCShellSetSetUp(pc, set_up_preconditioner));
-      petsc(PCShellSetApply(pc, precondition));
-    }
-
-    /// Applies the user's options after "--"; the integrator must be among those offered.
-    void
-    apply_user_options()
-    {
-      TS stepper          = ts.get();
-      PetscErrorCode code = 0;
-      std::string words;
-      {
-        PetscErrorWords error;
-        code  = TSSetFromOptions(stepper);
-        words = error.text;
-      }
-      if (code != 0)
-        throw InputError("PETSc refuses an option after \"--\": " + words);
-
-      // Options that begin() resets each time.
-      const auto option = [&](const char *option_name) {
-        PetscReal value = 0.;
-        PetscBool found = PETSC_FALSE;
-        petsc(PetscOptionsGetReal(nullptr, parameters.petsc_prefix.c_str(), option_name, &value, &found));
-        return found ? std::optional<double>(value) : std::nullopt;
-      };
-      user_tolerance     = option("-ts_atol");
-      user_step          = option("-ts_dt");
-      relative_tolerance = option("-ts_rtol").value_or(0.);
-      if (option("-ts_max_time"))
-        throw InputError(
-          "the PETSc option -ts_max_time is refused: Time/End time is expected to say when the run ends");
-
-      TSType type = nullptr;
-      petsc(TSGetType(stepper, &type));
-      std::string name = type;
-      if (name == radau_type)
-      {
-        owner.stage_places_ = radau_set_system(stepper, &system, &guarded).c;
-        name += " " + std::to_string(2 * owner.stage_places_.size() - 1);
-      }
-      if (is_offered(name))
-        return;
-      const std::string reason = reason_against(name);
-      throw InputError("the PETSc integrator \"" + name + "\" (option -ts_type) is refused: " +
-                       (reason.empty() ? "it is not tested for a mass matrix that depends on the state" : reason) +
-                       "; \"bdf\" or \"radau\" is expected");
-    }
-
-    /// Makes the elimination a right preconditioner, so that residuals are the true ones.
-    void
-    use_krylov_method()
-    {
-      constexpr double relative_tolerance_of_krylov = 1e-6;
-      PetscBool chosen                              = PETSC_FALSE;
-      petsc(PetscOptionsHasName(nullptr, parameters.petsc_prefix.c_str(), "-ksp_type", &chosen));
-      if (chosen)
-        return;
-      KSP ksp = nullptr;
-      petsc(SNESGetKSP(ts->snes, &ksp));
-      petsc(KSPSetType(ksp, KSPGMRES));
-      petsc(KSPSetPCSide(ksp, PC_RIGHT));
-      petsc(KSPSetTolerances(ksp, relative_tolerance_of_krylov, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
-    }
-
-    static PetscErrorCode
-    function(TS ts, const PetscReal t, Vec y, Vec y_dot, Vec F, void *context)
-    {
-      auto &self                = *static_cast<Implementation *>(context);
-      bool accepted             = true;
-      const PetscErrorCode code = self.guarded([&]() {
-        const ReadAccess y_access(y), y_dot_access(y_dot);
-        const WriteAccess F_access(F);
-        if (self.owner.stage_rates)
-          self.owner.stage_rates(t, y_dot_access.span);
-        accepted   = self.system.residual(t, y_access.span, y_dot_access.span, F_access.span);
-        double sum = 0.;
-        for (const double value : F_access.span)
-          sum += value;
-        if (accepted && !std::isfinite(sum))
-          self.nonfinite_at = t;
-      });
-      if (code == 0 && !accepted)
-      {
-        self.refused_at = t;
-        return SNESSetFunctionDomainError(ts->snes);
-      }
-      return code;
-    }
-
-    static PetscErrorCode
-    jacobian_function(TS, const PetscReal t, Vec y, Vec y_dot, const PetscReal shift, Mat A, Mat, void *context)
-    {
-      auto &self                = *static_cast<Implementation *>(context);
-      const PetscErrorCode code = self.guarded([&]() {
-        const ReadAccess y_access(y), y_dot_access(y_dot);
-        self.jacobian_ok = self.system.setup_jacobian(t, y_access.span, y_dot_access.span, shift);
-      });
-      if (code != 0)
-        return code;
-      MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY); // tells PETSc that the matrix has changed
-      return MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY);
-    }
-
-    static PetscErrorCode
-    multiply(Mat A, Vec x, Vec y)
-    {
-      auto &self = context_of<Implementation>(A);
-      return self.guarded([&]() {
-        const ReadAccess x_access(x);
-        const WriteAccess y_access(y);
-        self.system.jacobian_vmult(x_access.span, y_access.span);
-      });
-    }
-
-    static PetscErrorCode
-    set_up_preconditioner(PC pc)
-    {
-      return PCSetFailedReason(pc,
-                               context_of<Implementation>(pc).jacobian_ok ? PC_NOERROR : PC_FACTOR_NUMERIC_ZEROPIVOT);
-    }
-
-    static PetscErrorCode
-    precondition(PC pc, Vec x, Vec y)
-    {
-      auto &self = context_of<Implementation>(pc);
-      return self.guarded([&]() {
-        const ReadAccess x_access(x);
-        const WriteAccess y_access(y);
-        self.system.solve_with_jacobian(x_access.span, y_access.span);
-      });
-    }
-
-    /**
-     * Convergence test of Newton's method, which converges quadratically with an exact Jacobian: after a correction d
-     * the remaining error is about C d^2. C is taken from the last solve that needed two corrections; before the first,
-     * two are made.
-     */
-    static PetscErrorCode
-    newton_converged(SNES,
-                     const PetscInt it,
-                     const PetscReal x_norm,
-                     const PetscReal dx_norm,
-                     const PetscReal F_norm,
-                     SNESConvergedReason *reason,
-                     void *context)
-    {
-      auto &self = *static_cast<Implementation *>(context);
-      *reason    = SNES_CONVERGED_ITERATING;
-      if (!std::isfinite(F_norm) || !std::isfinite(dx_norm))
-      {
-        *reason = newton_not_finite;
-        return 0;
-      }
-      if (it == 0)
-      {
-        if (F_norm == 0.)
-          *reason = SNES_CONVERGED_FNORM_ABS;
-        return 0;
-      }
-      // Norms in units of the admissible error.
-      const double rms = 1. / std::sqrt(static_cast<double>(self.n_unknowns));
-      const double d = dx_norm / self.tolerance * rms, rounding = 1e-15 * (x_norm / self.tolerance) * rms;
-      if (it >= 2 && self.last_correction > 0.)
-        self.convergence_constant = d / (self.last_correction * self.last_correction);
-      self.last_correction = d;
-      const bool small     = d <= newton_fraction || self.convergence_constant * d * d <= predicted_fraction;
-      if (small || d <= rounding)
-        *reason = SNES_CONVERGED_SNORM_RELATIVE;
-      return 0;
-    }
-
-    /// Shortens the step so that it, or the next one, ends at a required time.
-    void
-    choose_step()
-    {
-      double size = fixed_step;
-      if (fixed_step == 0.)
-        size = admitted_step(limits.data(), static_cast<unsigned int>(limits.size()), limit, ts->ptime, ts->time_step);
-      const double remaining = ends[next_end] - ts->ptime;
-      if (size >= remaining * (1. - 1e-9))
-        size = remaining;
-      else if (fixed_step == 0. && size > 0.5 * remaining)
-        size = 0.5 * remaining;
-      petsc(TSSetTimeStep(ts.get(), size));
-    }
-
-    /// Makes a step; errors are returned as codes, not printed.
-    PetscErrorCode
-    make_step()
-    {
-      petsc(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
-      const PetscErrorCode code = TSStep(ts.get());
-      petsc(PetscPopErrorHandler());
-      return code;
-    }
-
-    /// Completes an accepted step; null if there was none.
-    const Step *
-    arrive()
-    {
-      double time           = ts->ptime;
-      const double previous = ts->ptime_prev;
-      const bool is_end =
-        std::abs(time - ends[next_end]) <= 1e-13 * std::max(ends[next_end] - previous, ends[next_end]);
-      if (is_end)
-      {
-        time = ends[next_end++];
-        petsc(TSSetTime(ts.get(), time));
-      }
-      const double size = time - previous;
-      if (!(size > 4. * std::numeric_limits<double>::epsilon() * time))
-      {
-        underflow = true; // shorter steps do not help, and `size` cannot be a divisor
-        return nullptr;
-      }
-      const TimeOutcome so_far = counts();
-      step                     = {time, size, so_far.steps, is_end, so_far.rejected_steps, so_far.newton_iterations};
-      const ReadAccess access(solution.get());
-      std::copy(access.span.begin(), access.span.end(), y.begin());
-      return &step;
-    }
-
-    /// Shows the state to the monitors of PETSc's options.
-    void
-    show()
-    {
-      petsc(TSMonitor(ts.get(), ts->steps, ts->ptime, solution.get()));
-    }
-
-    TimeOutcome
-    counts() const
-    {
-      TimeOutcome result;
-      result.time              = ts->ptime;
-      result.step_size         = ts->time_step;
-      result.steps             = static_cast<unsigned int>(ts->steps);
-      result.rejected_steps    = static_cast<unsigned int>(ts->reject);
-      result.newton_iterations = static_cast<unsigned long>(ts->snes_its);
-      result.linear_iterations = static_cast<unsigned long>(ts->ksp_its);
-      return result;
-    }
-
-    /// Names the failure that PETSc reports.
-    TimeOutcome
-    failure(const PetscErrorCode code)
-    {
-      TimeOutcome result = counts();
-      SNESConvergedReason newton_reason;
-      SNESGetConvergedReason(ts->snes, &newton_reason);
-      // Refused states and residuals count if their times were close: they made the steps small. Each rank knows its
-      // own.
-      double latest[2] = {refused_at, nonfinite_at};
-      MPI_Allreduce(
-        MPI_IN_PLACE, latest, 2, MPI_DOUBLE, MPI_MAX, PetscObjectComm(reinterpret_cast<PetscObject>(ts.get())));
-      const double close  = result.time - 1e-6 * parameters.end_time;
-      result.status       = Status::failed;
-      result.domain_error = latest[0] >= close;
-      const auto named    = [&](const char *reason, const std::string &message) {
-        result.reason  = reason;
-        result.message = message;
-        return result;
-      };
-      if (code != 0)
-      {
-        const char *text = nullptr;
-        PetscErrorMessage(code, &text, nullptr);
-        return named("petsc_error",
-                     std::string("PETSc stopped with the error: ") + (text != nullptr ? text : "unknown"));
-      }
-      if (latest[1] >= close)
-        return named("nonfinite", "the residual is not a finite number");
-      if (newton_reason == SNES_DIVERGED_LINEAR_SOLVE)
-        return named("linear_failed", "the linear system of Newton's method is singular or could not be solved");
-      if (underflow || result.step_size < 1e-13 * parameters.end_time)
-        return named("step_underflow", "the step size fell below the resolution of the time");
-      if (newton_reason < 0)
-        return named("newton_diverged",
-                     std::string("Newton's method did not converge (") + SNESConvergedReasons[newton_reason] + ")");
-      return named("rejection_limit", "a step was rejected too many times: its error stays above the tolerance");
-    }
-  };
-
-  PetscStepper::PetscStepper(MPI_Comm communicator, ImplicitSystem &system, const TimeParameters &parameters)
-    : implementation_(std::make_unique<Implementation>(*this, communicator, system, parameters))
-  {
-  }
-
-  PetscStepper::~PetscStepper() = default;
-
-  void
-  PetscStepper::begin(const ConstVector y, const Course &course)
-  {
-    Implementation &self      = *implementation_;
-    TS ts                     = self.ts.get();
-    self.ends                 = course.ends;
-    self.next_end             = 0;
-    self.step                 = {};
-    self.end                  = std::nullopt;
-    self.refused_at           = -1.;
-    self.nonfinite_at         = -1.;
-    self.limits               = course.limits;
-    self.limit                = 0;
-    self.underflow            = false;
-    self.tolerance            = self.user_tolerance.value_or(course.tolerance);
-    const double first_step   = self.user_step.value_or(course.initial_step);
-    self.fixed_step           = self.parameters.step_control == StepControl::fixed ? first_step : 0.;
-    self.last_correction      = 0.;
-    self.convergence_constant = std::numeric_limits<double>::infinity();
-    double time               = course.start;
-    if (self.goes_on)
-    {
-      (*self.goes_on)(time, self.next_end, self.limit, self.refused_at, self.nonfinite_at);
-      self.goes_on->require(self.next_end < self.ends.size() && self.limit <= self.limits.size(), "the next step");
-    }
-    self.y.assign(y.begin(), y.end());
-    {
-      const WriteAccess access(self.solution.get());
-      std::copy(y.begin(), y.end(), access.span.begin());
-    }
-    if (!self.system.solves_exactly())
-      self.use_krylov_method();
-    petsc(TSSetTolerances(ts, self.tolerance, nullptr, self.relative_tolerance, nullptr));
-    petsc(TSSetTime(ts, time));
-    petsc(TSSetStepNumber(ts, 0));
-    ts->reject = ts->snes_its = ts->ksp_its = 0;
-    petsc(TSSetMaxTime(ts, self.ends.back()));
-    petsc(TSSetTimeStep(ts, first_step));
-    petsc(TSRestartStep(ts));
-    if (self.goes_on)
-      radau_exchange(ts, *self.goes_on);
-    self.goes_on.reset();
-    self.show();
-  }
-
-  const Step *
-  PetscStepper::next()
-  {
-    Implementation &self = *implementation_;
-    if (self.end)
-      return nullptr;
-    self.choose_step();
-    const PetscErrorCode code = self.make_step();
-    self.guarded.rethrow();
-    TSConvergedReason reason;
-    petsc(TSGetConvergedReason(self.ts.get(), &reason));
-    const Step *const made = code == 0 && reason >= 0 ? self.arrive() : nullptr;
-    if (made == nullptr)
-      self.end = self.failure(code);
-    else if (self.next_end == self.ends.size())
-    {
-      self.end         = self.counts();
-      self.end->status = Status::finished;
-    }
-    else if (reason == TS_CONVERGED_ITS)
-    {
-      self.end          = self.counts();
-      self.end->status  = Status::stopped;
-      self.end->reason  = "step_limit";
-      self.end->message = "the maximum number of steps was reached";
-    }
-    if (made != nullptr)
-      self.show();
-    if (self.end)
-      petsc(PetscObjectViewFromOptions(reinterpret_cast<PetscObject>(self.ts.get()), nullptr, "-ts_view"));
-    return made;
-  }
-
-  Stepper::ConstVector
-  PetscStepper::state() const
-  {
-    return implementation_->y;
-  }
-
-  TimeOutcome
-  PetscStepper::outcome()
-  {
-    return implementation_->end ? *implementation_->end : implementation_->counts();
-  }
-
-  bool
-  PetscStepper::exchange(Archive &archive)
-  {
-    Implementation &self = *implementation_;
-    if (stage_places_.empty())
-      return false;
-    if (archive.reads())
-    {
-      std::string bytes;
-      archive(bytes);
-      self.goes_on.emplace(std::move(bytes));
-      return true;
-    }
-    Archive own;
-    own(self.ts->ptime, self.next_end, self.limit, self.refused_at, self.nonfinite_at);
-    radau_exchange(self.ts.get(), own);
-    std::string bytes = own.bytes();
-    archive(bytes);
-    return true;
-  }
-
-  void
-  PetscStepper::interpolate(const double time, const Vector y)
-  {
-    if (!implementation_->interpolated)
-    {
-      Vec vec = nullptr;
-      petsc(VecDuplicate(implementation_->solution.get(), &vec));
-      implementation_->interpolated.reset(vec);
-    }
-    // Times outside of the step are refused by PETSc, even by a last bit: it takes the start of a step as its end less
-    // its size.
-    TS ts             = implementation_->ts.get();
-    const double from = ts->ptime_prev, to = ts->ptime;
-    const double inside = std::clamp(time, from, to);
-    const bool is_there = std::abs(inside - time) <= 1e-12 * std::abs(to);
-    petsc(TSInterpolate(ts, is_there ? inside : time, implementation_->interpolated.get()));
-    const ReadAccess access(implementation_->interpolated.get());
-    std::copy(access.span.begin(), access.span.end(), y.begin());
+    return std::make_unique<PetscStepper>(communicator, system, parameters);
   }
 
   std::string

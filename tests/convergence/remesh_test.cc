@@ -23,14 +23,14 @@ namespace
     OnMesh(const Scene &scene, const TimeParameters &time, std::unique_ptr<Discretization> discretization)
       : mesh(std::move(discretization))
       , form(create_position_form(scene, *mesh))
-      , stepper(MPI_COMM_WORLD, *form, time)
+      , stepper(petsc_stepper(MPI_COMM_WORLD, *form, time))
     {
       form->keep_stresses(integrator(time.integrator).n_stages);
     }
 
     std::unique_ptr<Discretization> mesh;
     std::unique_ptr<PositionForm> form;
-    PetscStepper stepper;
+    std::unique_ptr<Stepper> stepper;
   };
 
   /// What a run took, its interruptions included.
@@ -50,17 +50,16 @@ namespace
     const Scene scene          = parameters.create_scene();
     auto part                  = std::make_unique<OnMesh>(
       scene, parameters.time, std::make_unique<Discretization>(MPI_COMM_WORLD, 1., n_cells, degree));
-    const MeshTransfer transfer(part->mesh->element());
     std::vector<double> y(part->form->n_owned(), 0.);
     Count count;
     double time = 0., size = first_step;
     for (;;)
     {
-      part->stepper.begin(y, {time, {1.}, tolerance, size, {}});
-      for (const Step *step = part->stepper.next(); step != nullptr && step->number < steps_on_a_mesh;)
-        step = part->stepper.next();
-      y.assign(part->stepper.state().begin(), part->stepper.state().end());
-      const TimeOutcome outcome = part->stepper.outcome();
+      part->stepper->begin(y, {time, {1.}, tolerance, size, {}});
+      for (const Step *step = part->stepper->next(); step != nullptr && step->number < steps_on_a_mesh;)
+        step = part->stepper->next();
+      y.assign(part->stepper->state().begin(), part->stepper->state().end());
+      const TimeOutcome outcome = part->stepper->outcome();
       count.steps += outcome.steps;
       count.rejected += outcome.rejected_steps;
       count.newton_iterations += outcome.newton_iterations;
@@ -74,7 +73,7 @@ namespace
       const auto change = count.mesh_changes++ % 2 == 0 ? CellChange::divide : CellChange::join;
       auto next         = std::make_unique<OnMesh>(
         scene, parameters.time, part->mesh->adapted(std::vector<CellChange>(part->mesh->n_cells(), change)));
-      y    = transfer.transfer(*part->form, y, *next->form);
+      y    = transferred(*part->form, y, *next->form);
       part = std::move(next);
       time = outcome.time;
       size = name == "bdf" ? std::min(outcome.step_size, first_step) : outcome.step_size;

@@ -97,7 +97,7 @@ namespace
     const RecordedRun run(scene, time, numerics(scene), {});
     const Variation variation = {{{&near[0], &near[1], &near[2], &near[3]}}, step};
     EXPECT_TRUE(have_similar_breaks(scene, near.front())) << entry;
-    Both both = {RunGradient(run).derivatives({&variation, 1}, all_quantities).front(), {}, numbers[1]};
+    Both both = {gradient_of(run, {&variation, 1}, all_quantities).quantities.front(), {}, numbers[1]};
     for (std::size_t i = 0; i < all_quantities.size(); ++i)
       both.differences[i] = jumps ? (numbers[2][i] - numbers[1][i]) / (2. * step)
                                   : fourth_order(numbers[0][i], numbers[1][i], numbers[2][i], numbers[3][i], step);
@@ -138,7 +138,7 @@ namespace
   std::optional<double>
   derivative(const RecordedRun &run, const Variation &variation)
   {
-    return RunGradient(run).derivatives({&variation, 1}, {{Quantity::displacement}}).front().front();
+    return gradient_of(run, {&variation, 1}, {{Quantity::displacement}}).quantities.front().front();
   }
 
   const test::Settings wave = test::set("c = 1.3; chi = 0.3");
@@ -237,7 +237,7 @@ TEST(RunGradient, ToOneSide)
                                   {{{&scenes[4], &scenes[5], &scenes[6], &scenes[7]}}, step, true},
                                   {{{&scenes[3], &scenes[2], &scenes[1], &scenes[0]}}, -step, true}};
   const RecordedRun run(scene, time, numerics_for(scene, "radau 9", 6, 1e-8), {});
-  const auto derivatives = RunGradient(run).derivatives(variations, all_quantities);
+  const auto derivatives = gradient_of(run, variations, all_quantities).quantities;
   for (const std::size_t one_sided : {1, 2})
     for (std::size_t i = 0; i < all_quantities.size(); ++i)
       EXPECT_NEAR(*derivatives[one_sided][i],
@@ -286,18 +286,17 @@ TEST(RunGradient, LocalSensitivitiesAddUp)
                                   {{{&gamma[0], &gamma[1], &gamma[2], &gamma[3]}}, step}};
   const Numerics numerics      = numerics_for(own, "radau 9", 8, 1e-10);
   const RecordedRun run(own, time, numerics, {});
-  RunGradient gradient(run);
-  const auto derivatives = gradient.derivatives(variations, {{Quantity::displacement}});
+  const RunGradient gradient = gradient_of(run, variations, {{Quantity::displacement}});
   const LaneTables tables({6, 8, 5});
   double by_k = 0., by_gamma = 0.;
   for (std::size_t p = 0; p < tables.points.size(); ++p)
   {
     const double ds = tables.setup.sizes[p / 7] * tables.setup.weights[p % 7];
-    by_k += ds * gradient.local().elastic_modulus[p];
-    by_gamma += ds * gradient.local().friction[p];
+    by_k += ds * gradient.local.elastic_modulus[p];
+    by_gamma += ds * gradient.local.friction[p];
   }
-  EXPECT_NEAR(by_k, *derivatives[0][0], 1e-9 * std::abs(*derivatives[0][0]));
-  EXPECT_NEAR(by_gamma, *derivatives[1][0], 1e-9 * std::abs(*derivatives[1][0]));
+  EXPECT_NEAR(by_k, *gradient.quantities[0][0], 1e-9 * std::abs(*gradient.quantities[0][0]));
+  EXPECT_NEAR(by_gamma, *gradient.quantities[1][0], 1e-9 * std::abs(*gradient.quantities[1][0]));
 }
 
 /// The stretch at a place and a time, between stages and right behind the start of a step, too.
@@ -330,12 +329,11 @@ TEST(RunGradient, OfStretches)
     seen.push_back(static_cast<const Kymograph &>(*observers.front()).rows().stretch);
     ASSERT_EQ(seen.back().size(), times.size());
   }
-  const Variation variation = {{{&near[0], &near[1], &near[2], &near[3]}}, step};
-  RunGradient gradient(run);
-  gradient.derivatives({&variation, 1}, {}, places);
+  const Variation variation  = {{{&near[0], &near[1], &near[2], &near[3]}}, step};
+  const RunGradient gradient = gradient_of(run, {&variation, 1}, {}, places);
   for (std::size_t i = 0; i < places.size(); ++i)
   {
     const double exact = fourth_order(seen[0][i], seen[1][i], seen[2][i], seen[3][i], step);
-    EXPECT_NEAR(gradient.of_stretches()[0][i].value(), exact, 2e-6 * std::abs(exact)) << times[i];
+    EXPECT_NEAR(gradient.stretches[0][i].value(), exact, 2e-6 * std::abs(exact)) << times[i];
   }
 }

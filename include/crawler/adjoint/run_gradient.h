@@ -39,50 +39,35 @@ namespace crawler
     double value; ///< tells the sides of a jump apart
   };
 
-  /// Derivatives by one number; some may be missing, see RunGradient.
+  /// Derivatives by one number; some may be missing, see gradient_of().
   using Derivatives = std::array<std::optional<double>, all_quantities.size()>;
+
+  /// Derivatives of a run by some numbers, and what comes with them.
+  struct RunGradient
+  {
+    std::vector<Derivatives> quantities; ///< [variation]
+    /// [variation][stretch], each on the polynomial of a step. At an extreme this is the derivative of the extreme,
+    /// too.
+    std::vector<std::vector<std::optional<double>>> stretches;
+    LocalSensitivity local; ///< of the displacement, if that was requested
+  };
 
   /**
    * Derivatives of the displacement and of the works by numbers of the scene, by the discrete adjoint of one run
-   * (lanes/adjoint_lanes.h; doc/numerics.md, "Sensitivities"): exact for its mesh and steps but for round-off and the
+   * (lanes/adjoint_sweep.h; doc/numerics.md, "Sensitivities"): exact for its mesh and steps but for round-off and the
    * differences by which dF/dp is found at the points, of fourth order.
+   *
+   * They are in [unit of the quantity/unit of p], with one sweep for each quantity of a list (the speed comes with the
+   * stride). Missing are those of other quantities; of the last stride if the active stress does not declare its
+   * length; those where a jump of the active stress enters or leaves at the start or the end of the run, since the
+   * displacement has a kink there; of works where jumps come together in time; and of the paper's energy with feedback.
+   * Throws std::runtime_error if the adjoint cannot be found.
    */
-  class RunGradient
-  {
-  public:
-    /// @p run must outlive it.
-    explicit RunGradient(const RecordedRun &run);
-
-    /// Derivatives [unit of the quantity/unit of p], with one sweep for each quantity of a list (the speed comes with
-    /// the stride). Missing are those of other quantities; of the last stride if the active stress does not declare its
-    /// length; those where a jump of the active stress enters or leaves at the start or the end of the run, since the
-    /// displacement has a kink there; of works where jumps come together in time; and of the paper's energy with
-    /// feedback. Throws std::runtime_error if the adjoint cannot be found.
-    std::vector<Derivatives>
-    derivatives(std::span<const Variation> variations,
-                std::span<const Quantity> quantities,
-                std::span<const StretchPlace> stretches = {});
-
-    /// Derivatives of the requested stretches from the last derivatives(), each on the polynomial of a step,
-    /// [variation][stretch]. At an extreme this is the derivative of the extreme, too.
-    const std::vector<std::vector<std::optional<double>>> &
-    of_stretches() const
-    {
-      return of_stretches_;
-    }
-
-    /// Local sensitivity from the last derivatives(), if they were of the displacement, too.
-    const LocalSensitivity &
-    local() const
-    {
-      return local_;
-    }
-
-  private:
-    const RecordedRun &run_;
-    LocalSensitivity local_;
-    std::vector<std::vector<std::optional<double>>> of_stretches_;
-  };
+  RunGradient
+  gradient_of(const RecordedRun &run,
+              std::span<const Variation> variations,
+              std::span<const Quantity> quantities,
+              std::span<const StretchPlace> stretches = {});
 
   /// True if the breaks of another scene, which differs a little, lie near those of a scene: as many in space; in time
   /// several may come together in the scene itself, and some may enter or leave at the ends.

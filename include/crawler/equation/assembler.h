@@ -46,7 +46,7 @@ namespace crawler
     using Vector      = std::span<double>;
     using ConstVector = std::span<const double>;
 
-    virtual ~Assembler();
+    virtual ~Assembler()         = default;
     Assembler(const Assembler &) = delete;
 
     /// Number of unknowns of this rank, and of all ranks.
@@ -164,10 +164,6 @@ namespace crawler
 
   protected:
     Assembler(const Scene &scene, const Discretization &discretization);
-
-    /// Sums over all ranks.
-    void
-    sum_over_ranks(CellIntegrals &sum) const;
 
     const Scene &scene_;
     const Discretization &discretization_;

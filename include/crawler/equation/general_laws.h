@@ -83,9 +83,9 @@ namespace crawler
     void
     evaluate(double t, std::span<const double> own, const StretchHistory *history);
 
-    /// Change of the near stretch [points] with that of the coefficients.
+    /// Near strain [points] of these coefficients, or the change of it with theirs.
     void
-    change_of_near(std::span<const double> own_change, std::span<double> change) const;
+    near_strain(std::span<const double> own, std::span<double> strain) const;
 
     std::vector<double> near, delayed; ///< stretches; of size 0 if they are not used
 

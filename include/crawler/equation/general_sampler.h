@@ -11,11 +11,6 @@ namespace crawler
   public:
     /// @p places: in cells numbered among this rank's.
     GeneralSampler(const Assembler &assembler, const std::vector<CellPlace> &places);
-    /// Samples at the same places in all cells.
-    GeneralSampler(const Assembler &assembler, const std::vector<double> &places);
-    /// Samples at the left end of the first and the right end of the last of this rank's cells.
-    static std::unique_ptr<GeneralSampler>
-    at_ends(const Assembler &assembler);
 
     void
     sample(double t, std::span<const double> y, std::span<const double> v);
@@ -26,11 +21,6 @@ namespace crawler
     {
       return force_;
     }
-    const std::vector<double> &
-    strain() const
-    {
-      return e_;
-    }
     /// Friction per reference length [force/length].
     const std::vector<double> &
     friction() const
@@ -39,14 +29,8 @@ namespace crawler
     }
 
   private:
-    GeneralSampler(const Assembler &assembler,
-                   const std::vector<unsigned int> &cells,
-                   const std::vector<double> &places,
-                   const std::vector<double> &points);
-
     const Assembler &assembler_;
-    const std::vector<unsigned int> cells_;
-    const StretchSampler stretch_;
+    const std::vector<CellPlace> places_;
     const std::vector<double> values_, derivatives_; ///< [point][node]
     SlidingAtPoints sliding_;
     BodyForceAtPoints force_;

@@ -6,28 +6,12 @@
 namespace crawler
 {
   /**
-   * Carries a state of the position form from one mesh to an adapted one.
+   * The state @p y of the position form @p from, on the mesh of @p to; meshes may differ by one level (collective).
    *
    * A halved cell keeps its polynomials. In a cell joined from two halves the stretch becomes its L2 projection; so the
    * displacement at the cell's ends, the length of each cell and (degree 2 and above) the cell's centre of mass stay,
    * and elastic energy can only be lost. Finally a rigid shift makes the centre of mass exact for every degree.
    */
-  class MeshTransfer
-  {
-  public:
-    explicit MeshTransfer(const ReferenceElement &element);
-
-    /// Transfers the state @p y of @p from to the mesh of @p to (collective). Meshes may differ by one level.
-    std::vector<double>
-    transfer(const PositionForm &from, std::span<const double> y, const PositionForm &to) const;
-
-  private:
-    const ReferenceElement &element_;
-    std::vector<double> u_half_[2]; ///< [n][n] matrices from a cell's nodes to those of its left and right half
-    std::vector<double> u_join_;    ///< [n][2q+1] matrix from the nodes of two halves to those of the cell
-  };
-
-  /// Transfer between meshes of a degree, made once for each.
-  const MeshTransfer &
-  mesh_transfer(unsigned int degree);
+  std::vector<double>
+  transferred(const PositionForm &from, std::span<const double> y, const PositionForm &to);
 } // namespace crawler

@@ -25,7 +25,6 @@ namespace crawler
     using ConstVector = Assembler::ConstVector;
 
     PositionForm(const Scene &scene, const Discretization &discretization);
-    ~PositionForm() override;
 
     std::size_t
     n_owned() const override
@@ -80,10 +79,6 @@ namespace crawler
     void
     jacobian(double t, ConstVector u, ConstVector v, double sigma, BlockTridiagonalMatrix<double> &A);
 
-    /// Mass matrix M = dF/dv.
-    void
-    mass(double t, ConstVector u, ConstVector v, BlockTridiagonalMatrix<double> &M);
-
     Resolution
     resolution(ConstVector y);
 
@@ -106,14 +101,22 @@ namespace crawler
     virtual long
     evaluate_laws(double t, ConstVector u, CellInput &in);
 
+    /// Replaces @p x by M^-1 x for the mass matrix of a state; false if that is singular.
+    bool
+    solve_with_mass(double t, ConstVector u, ConstVector v, Vector x);
+
     const CellKernels &kernels_;
-    std::unique_ptr<BlockTridiagonalMatrix<double>> mass_; ///< mass matrix, built when a velocity is first needed
 
   private:
+    /// Mass matrix M = dF/dv.
+    void
+    mass(double t, ConstVector u, ConstVector v, BlockTridiagonalMatrix<double> &M);
+
     const std::vector<double> &
     stress_at(double t);
 
     BlockTridiagonalMatrix<double> jacobian_;
+    std::unique_ptr<BlockTridiagonalMatrix<double>> mass_; ///< made when a velocity is first needed
     const std::unique_ptr<ActiveStressAtPoints> stress_;
     /// Active stress m at the stress points.
     struct StressAtTime

@@ -27,7 +27,7 @@ namespace crawler
 
   private:
     unsigned int q_;
-    std::vector<std::size_t> cells_;
+    std::vector<CellPlace> places_;
     std::vector<double> weights_; ///< [point][q]
   };
 

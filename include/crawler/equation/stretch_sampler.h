@@ -16,7 +16,7 @@ namespace crawler
       : places_(places)
       , n_(element.n)
       , q_(element.degree)
-      , derivatives_(interpolation_matrix(element.nodes, places, 1))
+      , derivatives_(interpolation_matrix(element.nodes, places, /*derivative=*/true))
     {
     }
 

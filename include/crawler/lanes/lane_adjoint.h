@@ -66,7 +66,7 @@ namespace crawler
   };
 
   /// Adjoint of one run in the position form.
-  class LaneAdjoint
+  class LaneAdjoint : private LaneAdjointHost
   {
   public:
     /// @p scene is in natural units and must outlive it.
@@ -75,7 +75,7 @@ namespace crawler
     const LaneTables &
     tables() const
     {
-      return tables_;
+      return *tables_;
     }
 
     /// Gradient [unknowns] of the mean displacement by the last state.
@@ -83,40 +83,30 @@ namespace crawler
     gradient_of_displacement() const;
 
     /// Observer of the adjoint mu, [stages][unknowns], of a step, from the last one to the first, and of zeta, which is
-    /// mostly empty (LaneAdjointStep).
+    /// mostly empty (LaneAdjointHost).
     using Seer = std::function<void(std::size_t step, std::span<const double> mu, std::span<const double> zeta)>;
 
     /// Source that gives the dependence of the quantity on a step itself, before the step is traversed.
     using Source = std::function<void(std::size_t step, const LaneSources &sources)>;
 
     /// Computes the adjoint of a quantity that has this @p gradient by the last state, and a @p source if there is one.
-    /// Returns its derivative by the first state; nothing if the iteration for the stages did not converge.
-    std::optional<std::vector<double>>
+    /// Returns false if the iteration for the stages did not converge.
+    bool
     solve(const LaneRecord &record, const std::vector<double> &gradient, const Seer &see, const Source &source = {});
 
   private:
-    static bool
-    next(void *context, unsigned int lane, LaneJob &job, LanePast &past);
-    static void
-    step(void *context, unsigned int lane, const LaneAdjointStep &step);
-    static void
-    sources(void *context, unsigned int lane, unsigned int step, const LaneSources &sources);
-    static void
-    done(void *context, unsigned int lane, bool finished, std::size_t stride, const double *by_start);
-    static bool
-    laws(void *context, unsigned int lane, const LanePoints &points);
+    void
+    step(unsigned int step, const double *mu, const double *zeta) override;
+    void
+    sources(unsigned int step, const LaneSources &sources) override;
+    bool
+    laws(unsigned int lane, const LanePoints &points) override;
 
     const Scene &scene_;
-    const std::shared_ptr<const LaneTables> tables_owner_;
-    const LaneTables &tables_;
+    const std::shared_ptr<const LaneTables> tables_;
     std::optional<HostLaws> laws_;
     LaneStorage memory_;
-    // State of the present solve.
-    LanePast past_;
-    bool started_         = false;
-    const Seer *see_      = nullptr;
+    const Seer *see_      = nullptr; ///< of the present solve, as the source
     const Source *source_ = nullptr;
-    std::vector<double> mu_, zeta_, by_start_;
-    bool finished_ = false;
   };
 } // namespace crawler

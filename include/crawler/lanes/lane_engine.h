@@ -63,8 +63,9 @@ namespace crawler
   struct LaneProgress
   {
     bool has_old = false, just_rejected = false;
-    bool is_retry = false; ///< the guess is a step's failed try
-    double t = 0., h = 1., next = 1., old_h = 1.;
+    bool is_retry = false;                ///< the guess is a step's failed try
+    double t      = 0.;                   ///< time of the last accepted state
+    double h = 1., next = 1., old_h = 1.; ///< sizes of the present step, the next and the last one
     double rate = 0., known_rate = 1., last_correction = 0.;
     unsigned int steps = 0, rejected = 0, failures = 0, all_failures = 0, output_time = 0, limit = 0;
     unsigned int first_step = 0; ///< steps before the last start
@@ -78,24 +79,25 @@ namespace crawler
     }
   };
 
-  /// Body to compute.
+  /// Body to compute; by default one that stays at rest.
   struct LaneJob
   {
-    double k, a;          ///< elastic modulus, friction exponent
-    double tolerance;     ///< root mean square error of a step; in the stretch form the largest error
-    double newton_factor; ///< factor on LaneSetup::newton_fraction
-    double initial_step;
-    const StepLimit *limits; ///< limits of its steps
-    unsigned int n_limits;
-    unsigned int max_steps;
-    double least_stretch; ///< smaller stretches are given up; the full path must tell what they mean
-    bool is_last_resort;  ///< no other engine can take over where Newton's method often fails
-    double start_time;
-    const double *start;        ///< [unknowns] displacement at start_time; null: rest
-    const double *output_times; ///< ascending times after start_time where steps must end; the run ends at the last
-    unsigned int n_output_times;
+    double k = 1., a = 0.;        ///< elastic modulus, friction exponent
+    double tolerance        = 1.; ///< root mean square error of a step; in the stretch form the largest error
+    double newton_factor    = 1.; ///< factor on LaneSetup::newton_fraction
+    double initial_step     = 1.;
+    const StepLimit *limits = nullptr; ///< limits of its steps
+    unsigned int n_limits   = 0;
+    unsigned int max_steps  = 0;
+    double least_stretch    = 0.;    ///< smaller stretches are given up; the full path must tell what they mean
+    bool is_last_resort     = false; ///< no other engine can take over where Newton's method often fails
+    double start_time       = 0.;
+    const double *start     = nullptr; ///< [unknowns] displacement at start_time; null: rest
+    /// Ascending times after start_time where steps must end; the run ends at the last.
+    const double *output_times  = nullptr;
+    unsigned int n_output_times = 0;
     /// Flags [n_output_times] of times when the active stress jumps, so the body starts anew there; null: none are.
-    const unsigned char *restarts;
+    const unsigned char *restarts = nullptr;
 
     // State between two steps, for a body that continues from `start`; null: it starts.
     const LaneProgress *progress = nullptr;
@@ -133,9 +135,6 @@ namespace crawler
   struct LaneStep
   {
     double time, size;
-    double next_size;
-    unsigned int number, rejected;
-    unsigned long newton_iterations;
     bool is_output_time;
     std::size_t stride;
     const double *y;         ///< [unknowns] displacement
@@ -154,32 +153,46 @@ namespace crawler
       stopped, ///< stopped by the host, or at max_steps
       gave_up  ///< given up for a reason that only the full path can tell
     } status;
-    double time, step_size; ///< time of the last accepted state; step that would follow
-    unsigned int steps, rejected;
-    unsigned long newton_iterations;
-    double displacement; ///< int u ds at that time
+    const LaneProgress *progress;
+    double displacement; ///< int u ds in the last accepted state
   };
 
-  /// Host that supplies the bodies and takes the answers. Lanes are numbered 0 to lanes - 1.
-  struct LaneHost
+  /// Host that evaluates the laws that the engine leaves to it: those that its bodies need. Lanes are numbered 0 to
+  /// lanes - 1.
+  class LawHost
   {
-    void *context;
+  public:
+    virtual ~LawHost() = default;
+
+    /// Evaluates the laws in the position form; false if one of them has no meaning for this state.
+    virtual bool
+    laws(unsigned int lane, const LanePoints &points);
+
+    /// Evaluates the laws of a general body in the stretch form, for the stretch @p w and its rate at each cell, for an
+    /// engine with one lane; the arrays belong to the host and are valid until its next call. Returns a number that is
+    /// not positive if a law has no meaning there.
+    virtual double
+    cell_laws(double t, const double *m, const double *w, const double *rate, CellLaws<double> &laws);
+  };
+
+  /// Host that supplies the bodies and takes the answers.
+  class LaneHost : public LawHost
+  {
+  public:
+    bool look_inside = false; ///< request for stretch and rates in all stages, of the position form
+
     /// Supplies the next body for a lane; false if there is none.
-    bool (*next)(void *context, unsigned int lane, LaneJob &job);
+    virtual bool
+    take(unsigned int lane, LaneJob &job) = 0;
     /// Writes m at all quadrature points [cell][point]. Called at the start, in all stages of each tried step, and once
     /// more after a step to a time when m jumps, for its values from then on.
-    void (*stress)(void *context, unsigned int lane, double t, double *m);
-    /// Observes each accepted step; false stops the lane. May be null.
-    bool (*accepted)(void *context, unsigned int lane, const LaneStep &step);
-    void (*done)(void *context, unsigned int lane, const LaneOutcome &outcome);
-    bool look_inside; ///< stretch and rates in all stages, of the position form
-    /// Evaluates the laws that the engine leaves to the host; false if one of them has no meaning for this state.
-    bool (*laws)(void *context, unsigned int lane, const LanePoints &points) = nullptr;
-    /// Evaluates the laws in the stretch form, for the stretch @p w and its rate at each cell, for an engine with one
-    /// lane; the arrays belong to the host and are valid until its next call. Returns a number that is not positive if
-    /// a law has no meaning there. Null: the laws of a plain body.
-    double (*cell_laws)(
-      void *context, double t, const double *m, const double *w, const double *rate, CellLaws<double> &laws) = nullptr;
+    virtual void
+    stress(unsigned int lane, double t, double *m) = 0;
+    /// Observes each accepted step; false stops the lane.
+    virtual bool
+    accepted(unsigned int lane, const LaneStep &step) = 0;
+    virtual void
+    done(unsigned int lane, const LaneOutcome &outcome) = 0;
   };
 
   /// Run to traverse backwards. All arrays belong to the caller.
@@ -189,7 +202,7 @@ namespace crawler
     const double *times = nullptr, *sizes = nullptr; ///< [n_steps] ends and lengths of the steps
     const double *z             = nullptr;           ///< [n_steps][stages][unknowns] as in LaneStep
     const double *end           = nullptr;           ///< [unknowns] last state
-    const unsigned char *starts = nullptr;           ///< [n_steps] true if a body starts anew; null: never
+    const unsigned char *starts = nullptr;           ///< [n_steps] true if the body starts anew
     const double *gradient      = nullptr; ///< [unknowns] derivative of the quantity of interest by the last state
     bool has_sources            = false;   ///< true if the quantity of interest depends on the steps, too
   };
@@ -201,30 +214,19 @@ namespace crawler
     double *by_u, *by_velocity; ///< [stages][unknowns] displacements and velocities in the stages
   };
 
-  /// Step traversed backwards; element i is at [i*stride].
-  struct LaneAdjointStep
+  /// Host of a run that is traversed backwards.
+  class LaneAdjointHost : public LawHost
   {
-    unsigned int number; ///< counted from 0
-    std::size_t stride;
-    const double
-      *mu; ///< [stages][unknowns] derivative of the quantity of interest by the residuals, with the sign of dF
-    /// [unknowns] M^-1 times the derivative of the quantity of interest by the state at the end of the step: minus the
-    /// effect of an impulse there. Null unless the body starts anew with the next step, or there is none.
-    const double *zeta;
-  };
-
-  /// Host that supplies the runs and takes their adjoints.
-  struct LaneAdjointHost
-  {
-    void *context;
-    /// Supplies the next run for a lane; of @p job the laws of the body alone count. False if there is none.
-    bool (*next)(void *context, unsigned int lane, LaneJob &job, LanePast &past);
-    void (*step)(void *context, unsigned int lane, const LaneAdjointStep &step);
-    /// @p by_start: [unknowns] derivative of the quantity of interest by the first state; invalid unless @p finished.
-    void (*done)(void *context, unsigned int lane, bool finished, std::size_t stride, const double *by_start);
-    bool (*laws)(void *context, unsigned int lane, const LanePoints &points) = nullptr; ///< as in LaneHost
+  public:
+    /// Takes the adjoint of a step. @p mu: [stages][unknowns] derivative of the quantity of interest by the residuals,
+    /// with the sign of dF. @p zeta: [unknowns] M^-1 times the derivative of the quantity of interest by the state at
+    /// the end of the step: minus the effect of an impulse there; null unless the body starts anew with the next step,
+    /// or there is none.
+    virtual void
+    step(unsigned int step, const double *mu, const double *zeta) = 0;
     /// Called before each step of a run that has sources.
-    void (*sources)(void *context, unsigned int lane, unsigned int step, const LaneSources &sources) = nullptr;
+    virtual void
+    sources(unsigned int step, const LaneSources &sources) = 0;
   };
 
   /// Engine compiled for one instruction set and one number of lanes.
@@ -235,13 +237,15 @@ namespace crawler
     /// Number of doubles that start() and advance() need, aligned to 64 bytes.
     std::size_t (*memory)(const LaneSetup &setup);
     /// Begins with the bodies of a host. All arguments must outlive the last advance().
-    void (*start)(const LaneSetup &setup, const LaneHost &host, double *memory);
+    void (*start)(const LaneSetup &setup, LaneHost &host, double *memory);
     /// Tries one step of all bodies in the lanes, after lanes without a body took the next one; false if there is none
     /// left. The data that the host sees of a step are valid until then.
     bool (*advance)(const LaneSetup &setup, double *memory);
-    /// Memory and run of the adjoint of runs in the position form.
+    /// Memory for the adjoint of a run in the position form, and its computation, with one lane in any case; of @p job
+    /// the laws of the body alone count. False if the iteration for the stages of a step does not converge.
     std::size_t (*adjoint_memory)(const LaneSetup &setup);
-    void (*adjoint)(const LaneSetup &setup, const LaneAdjointHost &host, double *memory);
+    bool (*adjoint)(
+      const LaneSetup &setup, LaneAdjointHost &host, const LaneJob &job, const LanePast &past, double *memory);
   };
 
   /// Best engine for this processor: for many bodies, or with one lane for one body.
@@ -253,4 +257,9 @@ namespace crawler
   /// Engines for an instruction set ("baseline", "avx2", "avx512") if the processor has it, else null: for comparisons.
   const LaneEngine *
   batch_engine(const char *instruction_set);
+
+  /// Instruction set that the environment variable CRAWLER_INSTRUCTION_SET requests for all lanes ("baseline", "avx2",
+  /// "avx512"), else null. Throws InputError if there is no such set, or if this processor does not have it.
+  const char *
+  forced_instruction_set();
 } // namespace crawler

@@ -7,54 +7,44 @@
 /// Loops over all cells for a degree that is chosen at run time (included by lane_systems.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  /// Kernels for one degree, as functions.
+  /// Kernels for one degree, as functions; by default those of bodies side by side.
   template <typename Pack>
   struct LaneKernelTable
   {
-    Pack (*residual)(const LaneMesh<Pack> &, const Pack *, const Pack *, const Pack *, Pack *);
-    void (*states)(const LaneMesh<Pack> &, const Pack *, const Pack *, Pack *, Pack *, Pack *, Pack *);
-    void (*balance)(const LaneMesh<Pack> &, const Pack *, const Pack *, const Pack *, Pack *, Pack *, Pack *);
-    void (*integrals)(const LaneMesh<Pack> &, const Pack *, const Pack *, const Pack *, LaneIntegrals<Pack> &);
-    void (*factorize)(const LaneMesh<Pack> &,
-                      const Pack *,
-                      const Pack *,
-                      const Pack &,
-                      int,
-                      const Complex<Pack> *,
-                      Pack *,
-                      Pack *,
-                      Complex<Pack> *,
-                      Complex<Pack> *);
-    decltype(factorize) factorize_transposed;
-    void (*slopes)(const LaneMesh<Pack> &, const Pack *, const Pack *, const LaneSlopes<Pack> &);
-    void (*transposed)(const LaneMesh<Pack> &, const LaneSlopes<Pack> &, const Pack *, Pack *, Pack *);
-    void (*forward)(int, const Pack *, Pack *);
-    void (*backward)(int, const Pack *, Pack *);
-    void (*complex_forward)(int, const Complex<Pack> *, Complex<Pack> *);
-    void (*complex_backward)(int, const Complex<Pack> *, Complex<Pack> *);
-    int (*n_blocks)(int); ///< for which blocks have room
-    Pack (*integral)(const LaneMesh<Pack> &, const Pack *);
-    void (*end_derivatives)(const LaneMesh<Pack> &, int, const double *, const Pack *, Pack *);
-    void (*extremes)(const LaneMesh<Pack> &, int, const double *, const Pack *, LaneLook<Pack> &);
+    using One = LaneKernels<Pack, 1>; // the functions of all degrees have the same types
+
+    decltype(&One::residual) residual;
+    decltype(&One::states) states;
+    decltype(&One::balance) balance;
+    decltype(&One::integrals) integrals;
+    decltype(&One::template factorize<false>) factorize, factorize_transposed;
+    decltype(&One::slopes) slopes;
+    decltype(&One::transposed) transposed;
+    decltype(&One::template forward<Pack>) forward, backward;
+    decltype(&One::template forward<Complex<Pack>>) complex_forward, complex_backward;
+    decltype(&One::n_blocks) n_blocks; ///< for which blocks have room
+    decltype(&One::integral) integral;
+    decltype(&One::end_derivatives) end_derivatives;
+    decltype(&One::extremes) extremes;
   };
 
-  template <typename Pack, int q>
-  constexpr LaneKernelTable<Pack> lane_kernel_table = {LaneKernels<Pack, q>::residual,
-                                                       LaneKernels<Pack, q>::states,
-                                                       LaneKernels<Pack, q>::balance,
-                                                       LaneKernels<Pack, q>::integrals,
-                                                       LaneKernels<Pack, q>::template factorize<false>,
-                                                       LaneKernels<Pack, q>::template factorize<true>,
-                                                       LaneKernels<Pack, q>::slopes,
-                                                       LaneKernels<Pack, q>::transposed,
-                                                       LaneKernels<Pack, q>::template forward<Pack>,
-                                                       LaneKernels<Pack, q>::template backward<Pack>,
-                                                       LaneKernels<Pack, q>::template forward<Complex<Pack>>,
-                                                       LaneKernels<Pack, q>::template backward<Complex<Pack>>,
-                                                       LaneKernels<Pack, q>::n_blocks,
-                                                       LaneKernels<Pack, q>::integral,
-                                                       LaneKernels<Pack, q>::end_derivatives,
-                                                       LaneKernels<Pack, q>::extremes};
+  template <typename Pack, int q, typename Own = LaneKernels<Pack, q>>
+  constexpr LaneKernelTable<Pack> lane_kernel_table = {Own::residual,
+                                                       Own::states,
+                                                       Own::balance,
+                                                       Own::integrals,
+                                                       Own::template factorize<false>,
+                                                       Own::template factorize<true>,
+                                                       Own::slopes,
+                                                       Own::transposed,
+                                                       Own::template forward<Pack>,
+                                                       Own::template backward<Pack>,
+                                                       Own::template forward<Complex<Pack>>,
+                                                       Own::template backward<Complex<Pack>>,
+                                                       Own::n_blocks,
+                                                       Own::integral,
+                                                       Own::end_derivatives,
+                                                       Own::extremes};
 
   /// Kernels of one body whose cells are side by side.
   template <int q>

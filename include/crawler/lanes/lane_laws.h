@@ -22,7 +22,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   public:
     static constexpr int lanes = PackTraits<Pack>::size;
 
-    GeneralLaws(const LaneSetup &setup, const LaneHost &host)
+    GeneralLaws(const LaneSetup &setup, LawHost *host)
       : bits_(setup.laws)
       , host_(host)
       , n_(static_cast<int>(setup.n_cells * (setup.degree + 1)))
@@ -188,9 +188,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           for (int p = 0; p < n_; ++p)
             own[i][p] = get_lane(read[i][p], l);
       const bool good =
-        host_.laws(host_.context,
-                   static_cast<unsigned int>(l),
-                   {t, own[0], own[1], own[2], own[3], own[4], own[5], own[6], own[7], own[8], own[9], own[10]});
+        host_->laws(l, {t, own[0], own[1], own[2], own[3], own[4], own[5], own[6], own[7], own[8], own[9], own[10]});
       if constexpr (lanes > 1)
         for (int i = n_read; i < n_arrays; ++i)
           if (own[i] != nullptr)
@@ -205,7 +203,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static constexpr int n_read = 4, n_arrays = 11; ///< numbers of arrays of LanePoints
 
     const unsigned int bits_;
-    const LaneHost &host_;
+    LawHost *const host_;
     const int n_; ///< points
     bool is_busy_[lanes] = {};
     Pack ratio_, switching_velocity_;

@@ -13,7 +13,7 @@ namespace crawler
    * that it cannot solve it gives up, with the reason `gave_up` and the last accepted state: then the time stepper of
    * PETSc goes on from there, or finds out what is wrong.
    */
-  class LaneStepper : public Stepper
+  class LaneStepper : public Stepper, private LaneHost
   {
   public:
     static constexpr const char *gave_up = "gave_up";
@@ -37,12 +37,7 @@ namespace crawler
     bool
     exchange(Archive &archive) override;
 
-    /// Requests the data of the stages of the position form (LaneStage), from the next begin() on.
-    void
-    look_inside(const bool wanted)
-    {
-      looks_inside_ = wanted;
-    }
+    using LaneHost::look_inside; // to be set before begin()
     /// Last step, until the next one.
     const LaneStep &
     lane_step() const
@@ -52,7 +47,7 @@ namespace crawler
     const LaneTables &
     tables() const
     {
-      return tables_;
+      return *tables_;
     }
 
     /// Stretch and friction where a friction law was not positive, since begin(); nothing if all were.
@@ -63,25 +58,23 @@ namespace crawler
     }
 
   private:
-    static bool
-    take(void *context, unsigned int lane, LaneJob &job);
-    static void
-    stress(void *context, unsigned int lane, double t, double *m);
-    static bool
-    accepted(void *context, unsigned int lane, const LaneStep &step);
-    static void
-    done(void *context, unsigned int lane, const LaneOutcome &outcome);
-    static bool
-    laws(void *context, unsigned int lane, const LanePoints &points);
-    static double
-    cell_laws(
-      void *context, double t, const double *m, const double *w, const double *rate, CellLaws<double> &at_cells);
+    bool
+    take(unsigned int lane, LaneJob &job) override;
+    void
+    stress(unsigned int lane, double t, double *m) override;
+    bool
+    accepted(unsigned int lane, const LaneStep &step) override;
+    void
+    done(unsigned int lane, const LaneOutcome &outcome) override;
+    bool
+    laws(unsigned int lane, const LanePoints &points) override;
+    double
+    cell_laws(double t, const double *m, const double *w, const double *rate, CellLaws<double> &at_cells) override;
     void
     show_rates();
 
     const Scene &scene_;
-    const std::shared_ptr<const LaneTables> tables_owner_;
-    const LaneTables &tables_;
+    const std::shared_ptr<const LaneTables> tables_;
     LaneSetup setup_;
     std::optional<HostLaws> laws_;         ///< laws of a general body in the position form
     std::optional<StretchLaws> cell_laws_; ///< laws in the stretch form
@@ -93,10 +86,9 @@ namespace crawler
     std::optional<std::pair<double, double>> bad_friction_;
     Course course_;
     LaneJob job_;
-    LaneHost host_{};
-    bool started_ = false, looks_inside_ = false, goes_on_ = false, has_step_ = false;
-    LaneProgress progress_; ///< progress of a run that continues; the last step's stages:
-    std::vector<double> old_z_;
+    bool started_ = false, goes_on_ = false, has_step_ = false;
+    LaneProgress progress_;     ///< progress at the last accepted state
+    std::vector<double> old_z_; ///< stages of the last step of a run that continues
     std::vector<double> y_, rate_;
     LaneStep lane_step_;
     Step step_;

@@ -31,7 +31,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static constexpr bool gives_rates = false; ///< for LaneHost::look_inside
     static constexpr bool keeps_tries = false;
 
-    StretchSystem(const LaneSetup &setup, const LaneHost &host)
+    StretchSystem(const LaneSetup &setup, LawHost *host)
       : setup_(setup)
       , host_(host)
       , n_(static_cast<int>(setup.n_cells))
@@ -190,8 +190,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       constexpr double nothing = 1e-300;
       if constexpr (lanes == 1)
-        if (host_.cell_laws != nullptr) // the unknowns are no powers
-          return host_.cell_laws(host_.context, *t, m, q, q_dot, nodes_.laws);
+        if ((setup_.laws & LaneLaws::general) != 0) // the unknowns are no powers
+          return host_->cell_laws(*t, m, q, q_dot, nodes_.laws);
       find_stretch(q);
       Pack least = broadcast<Pack>(1.);
       for (int j = 0; j < n_; ++j)
@@ -214,7 +214,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     const LaneSetup &setup_;
-    const LaneHost &host_;
+    LawHost *const host_;
     const int n_;
     StretchNodes<Pack> nodes_;
     LaneFriction<Pack> friction_; ///< friction that gives the mobility, w^-a

@@ -24,7 +24,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static constexpr bool gives_rates = true;  ///< for LaneHost::look_inside
     static constexpr bool keeps_tries = true;  ///< a failed try is a guess, see Lane::control_step
 
-    PositionSystem(const LaneSetup &setup, const LaneHost &host)
+    PositionSystem(const LaneSetup &setup, LawHost *host)
       : setup_(setup)
       , is_general_((setup.laws & LaneLaws::general) != 0)
       , general_(setup, host)
@@ -113,8 +113,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 
     /// Lays out the memory for slopes().
     void
-    lay_out(LaneSlopes<Pack> &slopes, const std::size_t points, LaneMemory &memory) const
+    lay_out(LaneSlopes<Pack> &slopes, LaneMemory &memory) const
     {
+      const std::size_t points = n_points();
       memory.pieces(points, slopes.f_v, slopes.f_w, slopes.N_w);
       if ((setup_.laws & LaneLaws::host_ground) != 0)
         memory.pieces(points, slopes.f_u);

@@ -5,6 +5,8 @@
 #include <crawler/mesh/reference_element.h>
 #include <crawler/scene/scene.h>
 
+#include <boost/align/aligned_allocator.hpp>
+
 #include <memory>
 #include <span>
 #include <vector>
@@ -59,15 +61,8 @@ namespace crawler
   std::shared_ptr<const LaneTables>
   lane_tables(const LaneMethod &method);
 
-  /// Scratch memory of the engine: doubles aligned to its packs, all 0.
-  struct LaneStorageFree
-  {
-    void
-    operator()(double *memory) const;
-  };
-  using LaneStorage = std::unique_ptr<double, LaneStorageFree>;
-  LaneStorage
-  lane_storage(std::size_t n);
+  /// Scratch memory of the engine: doubles aligned to its packs.
+  using LaneStorage = std::vector<double, boost::alignment::aligned_allocator<double, 64>>;
 
   /// Smallest stretch admitted in a batch.
   constexpr double small_stretch = 0.1;

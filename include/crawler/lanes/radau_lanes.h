@@ -26,7 +26,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     using Equations            = System<Pack, (s - 1) / 2>;
 
     /// @p host and @p setup must outlive it.
-    RadauLanes(const LaneSetup &setup, const LaneHost &host, double *memory)
+    RadauLanes(const LaneSetup &setup, LaneHost *host, double *memory)
       : setup_(setup)
       , host_(host)
       , step_(setup, host)
@@ -41,13 +41,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static std::size_t
     memory(const LaneSetup &setup)
     {
-      const LaneHost none{};
-      return own_size() + RadauLanes(setup, none, nullptr).memory_.size();
+      return own_size() + RadauLanes(setup, nullptr, nullptr).memory_.size();
     }
 
     /// Constructs an engine at the beginning of @p memory, which holds all its data.
     static void
-    start(const LaneSetup &setup, const LaneHost &host, double *memory)
+    start(const LaneSetup &setup, LaneHost *host, double *memory)
     {
       new (memory) RadauLanes(setup, host, memory + own_size());
     }
@@ -74,10 +73,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       Lane &lane   = step_.bodies[l];
       lane         = Lane();
-      lane.busy    = host_.next(host_.context, static_cast<unsigned int>(l), lane.job);
+      lane.busy    = host_->take(l, lane.job);
       lane.is_idle = !lane.busy;
       if (lane.is_idle)
-        lane.job = {1., 0., 1., 1., 1., nullptr, 0, 0, 0., false, 0., nullptr, nullptr, 0, nullptr};
+        lane.job = LaneJob();
       lane.t    = lane.job.start_time;
       lane.next = lane.job.initial_step;
       if (lane.job.progress != nullptr)
@@ -94,7 +93,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     stress(const int l, const double t, Pack *m)
     {
       if (step_.bodies[l].busy)
-        host_.stress(host_.context, static_cast<unsigned int>(l), t, scratch_);
+        host_->stress(l, t, scratch_);
       for (int i = 0; i < step_.n_points; ++i)
         set_lane(m[i], l, step_.bodies[l].busy ? scratch_[i] : 0.);
     }
@@ -150,7 +149,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     advance(const typename PackTraits<Pack>::Mask &accepted)
     {
-      if (host_.look_inside)
+      if (host_->look_inside)
         for (int i = 0; i + 1 < s; ++i)
         {
           step_.states.go_to_stage(i, step_.inverse_h);
@@ -160,7 +159,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int i = 0; i < step_.n_points; ++i)
         step_.m_start[i] = accepted ? step_.m[(s - 1) * step_.n_points + i] : step_.m_start[i];
       if constexpr (Equations::gives_rates)
-        if (host_.look_inside) // the velocity of the stage has the error of Newton's method
+        if (host_->look_inside) // the velocity of the stage has the error of Newton's method
         {
           step_.states.go_to_rate(s - 1, step_.inverse_h);
           unsettled_ = step_.system.velocity(
@@ -177,7 +176,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     look_at_stage(const int i, const Pack *u)
     {
       LaneLook<Pack> look;
-      step_.system.look(step_.times[i], u, step_.states.v, step_.m + i * step_.n_points, host_.look_inside, look);
+      step_.system.look(step_.times[i], u, step_.states.v, step_.m + i * step_.n_points, host_->look_inside, look);
       const LaneIntegrals<Pack> &sums = look.sums;
       for (int l = 0; l < lanes; ++l)
         stages_[l][i] = {get_lane(look.least, l),
@@ -208,24 +207,17 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         end(l, LaneOutcome::gave_up);
         return;
       }
-      bool go_on = true;
-      if (host_.accepted != nullptr)
-        go_on = host_.accepted(host_.context,
-                               static_cast<unsigned int>(l),
-                               {lane.t,
-                                lane.h,
-                                lane.next,
-                                lane.steps,
-                                lane.rejected,
-                                lane.newton,
-                                is_output_time,
-                                lanes,
-                                reinterpret_cast<const double *>(step_.states.y) + l,
-                                reinterpret_cast<const double *>(step_.states.old_z) + l,
-                                stages_[l],
-                                get_lane(elastic_energy_, l),
-                                get_lane(unsettled_, l) <= 1e3,
-                                &lane});
+      const bool go_on = host_->accepted(l,
+                                         {lane.t,
+                                          lane.h,
+                                          is_output_time,
+                                          lanes,
+                                          reinterpret_cast<const double *>(step_.states.y) + l,
+                                          reinterpret_cast<const double *>(step_.states.old_z) + l,
+                                          stages_[l],
+                                          get_lane(elastic_energy_, l),
+                                          get_lane(unsettled_, l) <= 1e3,
+                                          &lane});
       if (lane.output_time == lane.job.n_output_times)
         end(l, LaneOutcome::finished);
       else if (!go_on || lane.steps >= lane.job.max_steps)
@@ -241,15 +233,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     end(const int l, const LaneOutcome::Status status)
     {
       const Lane &lane = step_.bodies[l];
-      host_.done(host_.context,
-                 static_cast<unsigned int>(l),
-                 {status,
-                  lane.t,
-                  lane.next,
-                  lane.steps,
-                  lane.rejected,
-                  lane.newton,
-                  get_lane(step_.system.integral(step_.states.y), l)});
+      host_->done(l, {status, &lane, get_lane(step_.system.integral(step_.states.y), l)});
       step_.bodies[l].busy = false;
     }
 
@@ -267,7 +251,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     const LaneSetup &setup_;
-    const LaneHost &host_;
+    LaneHost *const host_;
     RadauStep<Pack, s, Equations> step_;
     LaneMemory memory_;
     LaneStage stages_[lanes][s]; ///< stages as the host sees them

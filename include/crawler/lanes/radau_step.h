@@ -30,7 +30,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Pack *real;                           ///< [unknown] right-hand side of the real system, and its solution
     Complex<Pack> *complex;               ///< [pair][unknown] right-hand sides of the complex systems
 
-    RadauStep(const LaneSetup &all, const LaneHost &host)
+    RadauStep(const LaneSetup &all, LawHost *host)
       : setup(all)
       , system(all, host)
       , n(system.n_unknowns())

@@ -29,6 +29,16 @@ namespace crawler
     double x;          ///< from 0 to 1
   };
 
+  /// Places in their cells.
+  inline std::vector<double>
+  in_cells(const std::vector<CellPlace> &places)
+  {
+    std::vector<double> result;
+    for (const CellPlace &place : places)
+      result.push_back(place.x);
+    return result;
+  }
+
   /// Place of the point @p s among all @p cells: in the right one of two that meet there, outside at the next end.
   inline CellPlace
   place_in(const std::vector<Cell> &cells, const double s)

@@ -105,6 +105,12 @@ namespace crawler
     {
       return n_local() - (has_left_neighbour() ? 1 : 0);
     }
+    /// Own part of an array over the unknowns of all ranks.
+    std::span<const double>
+    owned_part(const std::span<const double> all) const
+    {
+      return all.subspan(first_cell_ * element_.degree + (has_left_neighbour() ? 1 : 0), n_owned());
+    }
     bool
     has_left_neighbour() const
     {
@@ -136,17 +142,22 @@ namespace crawler
     /// Material coordinates [length] of @p places (0 to 1) in the own cells, cell by cell.
     std::vector<double>
     points(const std::vector<double> &places) const;
+    /// Those of @p places in own cells, numbered as by own_places().
+    std::vector<double>
+    points_of(const std::vector<CellPlace> &places) const;
 
     /// Completes a local array from the owned values of all ranks (collective). Returns @p owned itself where nothing
     /// is missing; else fills and returns @p buffer.
-    template <typename Number>
-    std::span<const Number>
-    to_local(std::span<const Number> owned, std::vector<Number> &buffer) const;
+    std::span<const double>
+    to_local(std::span<const double> owned, std::vector<double> &buffer) const;
 
     /// Sums local contributions to owned ones (collective): @p local is added up where two ranks share a node.
-    template <typename Number>
     void
-    add_to_owned(std::span<const Number> local, std::span<Number> owned) const;
+    add_to_owned(std::span<const double> local, std::span<double> owned) const;
+
+    /// Sums each of these values over all ranks (collective).
+    void
+    sum_over_ranks(std::span<double> values) const;
 
     /// Concatenates all ranks' parts of a distributed array, in rank order, on all ranks (collective).
     std::vector<double>

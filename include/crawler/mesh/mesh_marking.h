@@ -13,14 +13,10 @@ namespace crawler
     unsigned int most_cells = 100000;
   };
 
-  /// Gathers the indicators of all ranks' cells from left to right (collective).
-  std::vector<double>
-  all_indicators(const std::vector<double> &own, const Discretization &discretization);
-
   /**
-   * Marks the cells to divide so that the sum of the indicators falls below the tolerance: those with the largest
-   * indicators, until the others together have less than a tenth of it; and their neighbours, since waves travel. Empty
-   * if the limits forbid to divide any of them.
+   * Marks the cells to divide, by the @p indicators of all cells, so that the sum of the indicators falls below the
+   * tolerance: those with the largest indicators, until the others together have less than a tenth of it; and their
+   * neighbours, since waves travel. Empty if the limits forbid to divide any of them.
    */
   std::vector<CellChange>
   mark_for_division(const std::vector<double> &indicators, const Discretization &mesh, const MeshLimits &limits);

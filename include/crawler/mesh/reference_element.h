@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <type_traits>
 #include <vector>
 
 namespace crawler
@@ -14,7 +15,7 @@ namespace crawler
   {
     static constexpr unsigned int highest_degree = 8;
 
-    /// @param degree 1 to highest_degree.
+    /// Throws std::logic_error unless @p degree is 1 to highest_degree.
     explicit ReferenceElement(unsigned int degree);
 
     unsigned int degree;
@@ -37,13 +38,22 @@ namespace crawler
     std::vector<double> integrate_points;
   };
 
+  /// Result of @p use for a degree, 1 to highest_degree, as a constant of the compiler: std::integral_constant<int, q>.
+  template <unsigned int q = 1, typename Use>
+  decltype(auto)
+  for_degree(const unsigned int degree, const Use &use)
+  {
+    if constexpr (q < ReferenceElement::highest_degree)
+      if (degree > q)
+        return for_degree<q + 1>(degree, use);
+    return use(std::integral_constant<int, q>());
+  }
+
   /// Returns the tables of a degree, made on first use and kept: meshes change more often.
   const ReferenceElement &
   reference_element(unsigned int degree);
 
   /// Values of the Lagrange polynomials through @p nodes, or of their derivatives, at @p points: [points][nodes].
   std::vector<double>
-  interpolation_matrix(const std::vector<double> &nodes,
-                       const std::vector<double> &points,
-                       unsigned int derivative = 0);
+  interpolation_matrix(const std::vector<double> &nodes, const std::vector<double> &points, bool derivative = false);
 } // namespace crawler

@@ -52,7 +52,7 @@ namespace crawler::simulation_parts
   /// Time integrators; built when they are needed.
   struct Integrators
   {
-    std::unique_ptr<PetscStepper> petsc;
+    std::unique_ptr<Stepper> petsc;
     std::unique_ptr<LaneStepper> lanes;
     Stepper *present = nullptr; ///< one of them
   };

@@ -283,15 +283,14 @@ namespace crawler
         }
       const RecordedRun run(scene, time, choice.numerics, keep_going);
       const std::vector<Quantity> quantities = quantities_of(result);
-      RunGradient gradient(run);
-      const auto values               = gradient.derivatives(variations, quantities);
-      const TimeParameters finer_time = time_of_finer_run(time);
+      RunGradient gradient                   = gradient_of(run, variations, quantities);
+      const TimeParameters finer_time        = time_of_finer_run(time);
       const RecordedRun finer_run(
         scene, finer_time, numerics_of_finer_run(choice, time, scene, /*cycles_repeat=*/false), keep_going);
-      const auto finer_values = RunGradient(finer_run).derivatives(variations, quantities);
+      const auto finer_values = gradient_of(finer_run, variations, quantities).quantities;
       for (std::size_t i = 0; i < known.size(); ++i)
-        set(*known[i], values[i], finer_values[i], result, accuracy);
-      return gradient.local();
+        set(*known[i], gradient.quantities[i], finer_values[i], result, accuracy);
+      return std::move(gradient.local);
     }
   } // namespace
 

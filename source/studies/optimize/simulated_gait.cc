@@ -302,8 +302,7 @@ namespace crawler
         try
         {
           const RecordedRun run(*task.scene, task.parameters.time, choice.numerics, [&]() { return !interrupted_(); });
-          RunGradient gradient(run);
-          const auto derivatives = gradient.derivatives(variations, wanted_quantities(), extremes_at(near));
+          const RunGradient gradient = gradient_of(run, variations, wanted_quantities(), extremes_at(near));
           for (std::size_t v = 0; v < own.size(); ++v)
           {
             const std::size_t i = own[v];
@@ -311,12 +310,12 @@ namespace crawler
             for (std::size_t k = 0; k < gait_numbers.size(); ++k)
               if (wishes_.numbers[k] && gait_numbers[k].quantity)
               {
-                const auto &value      = derivatives[v][static_cast<std::size_t>(*gait_numbers[k].quantity)];
+                const auto &value      = gradient.quantities[v][static_cast<std::size_t>(*gait_numbers[k].quantity)];
                 is_known               = is_known && value.has_value();
                 values.gradients[k][i] = value.value_or(0.);
               }
             values.by_differences[i] = !is_known;
-            const auto &strains      = gradient.of_stretches()[v];
+            const auto &strains      = gradient.stretches[v];
             if (!wishes_.strain || !std::ranges::all_of(strains, [](const auto &one) { return one.has_value(); }))
               continue;
             for (std::size_t e = 0; e < strains.size(); ++e)

@@ -98,7 +98,7 @@ TEST(MeshTransfer, DivisionKeepsLengthCentreAndEnergy)
     const auto from = create_position_form(meshes.scene, *meshes.coarse),
                to   = create_position_form(meshes.scene, *meshes.fine);
     const auto y    = state(*from, 0.1);
-    const auto z    = MeshTransfer(meshes.coarse->element()).transfer(*from, y, *to);
+    const auto z    = transferred(*from, y, *to);
     ASSERT_EQ(z.size(), to->n_owned());
     const Invariants before = invariants(*from, y), after = invariants(*to, z);
     expect_same_shape(before, after, name(q));
@@ -116,7 +116,7 @@ TEST(MeshTransfer, JoiningKeepsLengthAndCentreAndEnergyAtMost)
       const auto from = create_position_form(meshes.scene, *meshes.fine),
                  to   = create_position_form(meshes.scene, *meshes.again);
       const auto y    = state(*from, roughness);
-      const auto z    = MeshTransfer(meshes.fine->element()).transfer(*from, y, *to);
+      const auto z    = transferred(*from, y, *to);
       ASSERT_EQ(z.size(), to->n_owned());
       const Invariants before = invariants(*from, y), after = invariants(*to, z);
       const std::string which = name(q) + ", roughness " + test::text(roughness);
@@ -133,9 +133,8 @@ TEST(MeshTransfer, ThereAndBackAgain)
     const auto from = create_position_form(meshes.scene, *meshes.coarse),
                via  = create_position_form(meshes.scene, *meshes.fine),
                to   = create_position_form(meshes.scene, *meshes.again);
-    const MeshTransfer transfer(meshes.coarse->element());
     const auto y    = state(*from, 0.1);
-    const auto back = transfer.transfer(*via, transfer.transfer(*from, y, *via), *to);
+    const auto back = transferred(*via, transferred(*from, y, *via), *to);
     ASSERT_EQ(back.size(), y.size());
     for (std::size_t i = 0; i < y.size(); ++i)
       EXPECT_NEAR(back[i], y[i], 1e-13) << name(q) << ", unknown " << i;

@@ -41,13 +41,13 @@ namespace
   }
 
   /// A body, its form and its state, and the system of the engine for it.
-  struct Case
+  struct Case : LawHost
   {
     explicit Case(const Feature &feature, const int n_cells = 8, const bool other = false)
       : scene(test::parameters_with(feature.settings).create_scene())
       , d(MPI_COMM_SELF, cell_ends_of(n_cells), 1)
       , form(scene, d, other)
-      , laws(scene, d.points({0.5}))
+      , stretch_laws(scene, d.points({0.5}))
       , n(n_cells)
       , y(n + 1)
       , y_dot(n + 1)
@@ -61,8 +61,6 @@ namespace
       setup.laws            = lane_laws(scene);
       setup.stretch         = stretch_method(scene, other);
       setup.direction       = scene.ground.direction;
-      host.context          = this;
-      host.cell_laws        = scene.is_plain() ? nullptr : evaluate;
       const double power    = 1. + scene.friction_exponent();
       for (int j = 0; j < n; ++j)
       {
@@ -80,42 +78,36 @@ namespace
     }
     Case(const Case &) = delete;
 
-    static double
-    evaluate(void *context,
-             const double time,
-             const double *known_m,
-             const double *w,
-             const double *rate,
-             CellLaws<double> &at_cells)
+    double
+    cell_laws(const double time, const double *known_m, const double *w, const double *rate, CellLaws<double> &at_cells)
+      override
     {
-      auto &self         = *static_cast<Case *>(context);
-      const auto n_cells = static_cast<std::size_t>(self.n);
-      EXPECT_LT(self.laws.evaluate(time, {w, n_cells}, {rate, n_cells}, known_m), 0);
-      at_cells = self.laws.at_cells();
+      const auto n_cells = static_cast<std::size_t>(n);
+      EXPECT_LT(stretch_laws.evaluate(time, {w, n_cells}, {rate, n_cells}, known_m), 0);
+      at_cells = stretch_laws.at_cells();
       return 1.;
     }
 
     Scene scene;
     Discretization d;
     StretchForm form;
-    StretchLaws laws;
+    StretchLaws stretch_laws;
     const int n;
     std::vector<double> y, y_dot, m;
     LaneSetup setup{};
-    LaneHost host{};
   };
 
   /// The system in its memory.
   template <typename Pack>
   struct InMemory
   {
-    explicit InMemory(const LaneSetup &setup, const LaneHost &host)
+    explicit InMemory(const LaneSetup &setup, LawHost *host)
       : system(setup, host)
     {
       generic::LaneMemory sizes(nullptr);
       system.lay_out(sizes);
-      memory = lane_storage(sizes.size());
-      generic::LaneMemory pieces(memory.get());
+      memory.resize(sizes.size());
+      generic::LaneMemory pieces(memory.data());
       system.lay_out(pieces);
     }
 
@@ -136,7 +128,7 @@ namespace
   {
     explicit Alone(const Feature &feature, const int n_cells = 8, const bool other = false)
       : Case(feature, n_cells, other)
-      , InMemory<double>(setup, host)
+      , InMemory<double>(setup, this)
     {
       set_body(0, scene.body.elastic_modulus, scene.friction_exponent());
     }
@@ -268,7 +260,7 @@ TEST(LaneStretch, LanesAreBodiesAlone)
       auto settings = test::wave(a[l], 0.3, 1., 1., moduli[l]);
       alone.push_back(std::make_unique<Alone>(Feature{"", settings}));
     }
-    InMemory<Pack> both(alone[0]->setup, alone[0]->host);
+    InMemory<Pack> both(alone[0]->setup, alone[0].get());
     const int n = alone[0]->n;
     std::vector<Pack> y(n + 1), y_dot(n + 1), m(n), F(n + 1);
     for (int l = 0; l < lanes; ++l)

@@ -75,7 +75,7 @@ TEST(MeshMarking, IndicatorsOfAllRanks)
     std::vector<double> own;
     for (unsigned int c = 0; c < mesh->n_local_cells(); ++c)
       own.push_back(1. + mesh->first_cell() + c);
-    const auto all = all_indicators(own, *mesh);
+    const auto all = mesh->gather(own);
     ASSERT_EQ(all.size(), n);
     for (unsigned int c = 0; c < n; ++c)
       EXPECT_EQ(all[c], 1. + c);
