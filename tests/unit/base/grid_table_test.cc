@@ -130,15 +130,6 @@ TEST(GridTable, RoundOffMakesNoNewRows)
   EXPECT_EQ(grid.values, (std::vector<double>{1., 2., 3., 4., 5., 6.}));
 }
 
-TEST(GridTable, Hdf5HoldsTheSame)
-{
-  const GridTable grid = samples(some_s, some_t, wave_of);
-  const test::TemporaryFolder folder;
-  const auto file = folder.path / "m.h5";
-  test::write_hdf5_file(file, {{"s", {5}, grid.s}, {"t", {4}, grid.t}, {"m", {4, 5}, grid.values}});
-  expect_same(read_grid_table(file.string(), "m", ""), read(joined(rows_of(grid))));
-}
-
 TEST(GridTable, SaysWhatIsWrongInCsv)
 {
   const std::string three = "but three numbers s,t,m are expected";

@@ -85,6 +85,9 @@ TEST(TravellingWave, WindowAndRampAreFactors)
                  "(s < 0.3 || s > 0.8 ? 0 : 0.2 + 0.1*sin(2*pi*(s + t)))");
   expect_formula(travelling("Offset = 0.2; Window start = 0.25; Window edge = 0.125; Ramp duration = 2"),
                  step("(s-0.25)*8") + "*" + step("(t/2)") + "*(0.2 + 0.1*sin(2*pi*(s + t)))");
+  // An end of the body that is given has an edge.
+  expect_formula(travelling("Window start = 0.2; Window end = 1; Window edge = 0.25"),
+                 step("(s-0.2)*4") + "*" + step("(1-s)*4") + "*0.1*sin(2*pi*(s + t))");
 }
 
 TEST(TravellingWave, SquareIsTheFormula)
@@ -94,9 +97,11 @@ TEST(TravellingWave, SquareIsTheFormula)
   expect_formula(
     travelling("Profile = square; Duty cycle = 0.2; Phase = 0.1; Direction = from tail to head; Wave number = 2"),
     "0.1*(mod(2*s - t + 0.05/pi, 1) < 0.2 ? 1 : -1)");
-  expect_formula(
-    travelling("Profile = smoothed square; Duty cycle = 0.3; Front width = 0.2; Phase = 0.1; Offset = 0.05"),
-    "0.05 + 0.1*" + smoothed("(s + t + 0.05/pi)", "0.3", "0.2"));
+  for (const auto &[duty, front] : {std::pair("0.3", "0.2"), {"0.5", "0.5"}, {"0.8", "0.2"}})
+    expect_formula(
+      travelling(fmt::format(
+        "Profile = smoothed square; Duty cycle = {}; Front width = {}; Phase = 0.1; Offset = 0.05", duty, front)),
+      "0.05 + 0.1*" + smoothed("(s + t + 0.05/pi)", duty, front));
 }
 
 TEST(TravellingWave, RateIsExact)
@@ -126,6 +131,7 @@ TEST(TravellingWave, PeriodAndBreaks)
 
   const auto sharp = stress_with(travelling("Profile = square; Window start = 0.25; Window end = 1"));
   EXPECT_EQ(sharp->breaks_in_space(), Places{0.25});
+  EXPECT_EQ(stress_with(travelling("Window start = 0.25; Window edge = 0.1"))->breaks_in_space(), Places{});
   EXPECT_EQ(sharp->breaks_in_time(), Places{}); // they move
   const auto still =
     stress_with(travelling("Profile = square; Wave number = 1.5; Frequency = 0; Duty cycle = 0.75", 3.));
