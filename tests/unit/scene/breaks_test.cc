@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/expect_near.h"
 #include "../../support/test.h"
 #include "../../support/with_breaks.h"
 
@@ -87,15 +88,9 @@ TEST(Breaks, PiecesAreEvaluatedInside)
 /// Jumps and kinks of a formula, whatever its units; a front that a mesh can follow is neither.
 TEST(Breaks, OfFormulasOfTheBody)
 {
-  const auto of = [](const std::string &formula) {
+  const auto expect = [](const std::string &formula, const std::vector<double> &places) {
     const auto profile = read_profile({"friction", "s", formula, "cubic", "hold", "Body/Friction profile"}, 2., 1.);
-    return distinct_breaks_in_space(profile->breaks(), 2.);
-  };
-  const auto expect = [&](const std::string &formula, const std::vector<double> &places) {
-    const std::vector<double> found = of(formula);
-    ASSERT_EQ(found.size(), places.size()) << formula;
-    for (std::size_t i = 0; i < places.size(); ++i)
-      EXPECT_NEAR(found[i], places[i], 1e-12) << formula;
+    test::expect_near(distinct_breaks_in_space(profile->breaks(), 2.), places, 1e-12, formula);
   };
   expect("s<0.571*L ? 1 : 0.325", {1.142});
   expect("1+(s>0.3)*(s<0.7)+0.1*sin(40*s)", {0.3, 0.7});
