@@ -15,6 +15,7 @@
 //     random_extremes FIRST-LAST OUT.csv [steps that a run of the second method may take; 0: nothing is compared
 //                                         [steps that the program may take]]
 //     random_extremes NUMBER --prm           prints the parameter file of one scene
+#include "../support/processor_time.h"
 #include "anything.h"
 
 #include <crawler/accuracy/answer.h>
@@ -25,7 +26,6 @@
 #include <crawler/studies/core/compute.h>
 
 #include <cstdio>
-#include <ctime>
 #include <map>
 
 namespace
@@ -86,12 +86,6 @@ namespace
     return result.time.reason.empty() ? word_of(result.time.status) : result.time.reason;
   }
 
-  double
-  processor_seconds()
-  {
-    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-  }
-
   /// How long a computation is waited for.
   class Patience
   {
@@ -99,14 +93,14 @@ namespace
     Patience(const unsigned long steps, const double max_seconds)
       : max_steps_(steps)
       , max_seconds_(max_seconds)
-      , begin_(processor_seconds())
+      , begin_(test::processor_seconds())
     {
     }
 
     double
     seconds() const
     {
-      return processor_seconds() - begin_;
+      return test::processor_seconds() - begin_;
     }
     /// Called once a step.
     bool
