@@ -3,7 +3,7 @@
 #include "../../support/test.h"
 #include "../../support/with_breaks.h"
 
-#include <crawler/scene/active_stress/none.h>
+#include <crawler/scene/active_stress/expression.h>
 #include <crawler/scene/profile.h>
 #include <crawler/scene/scene.h>
 
@@ -11,48 +11,30 @@ using namespace crawler;
 
 namespace
 {
-  /// m = t.
-  class Clock : public ActiveStress
-  {
-  public:
-    std::unique_ptr<ActiveStressAtPoints>
-    at(const std::vector<double> &) const override
-    {
-      struct Now : ActiveStressAtPoints
-      {
-        void
-        values(const double t, const std::span<double> m) override
-        {
-          std::fill(m.begin(), m.end(), t);
-        }
-      };
-      return std::make_unique<Now>();
-    }
-  };
-
-  test::WithBreaks
+  /// m = t, with such breaks.
+  std::unique_ptr<test::WithBreaks>
   with(const std::vector<double> &in_space, const std::vector<double> &in_time)
   {
-    return {std::make_unique<Clock>(), in_space, in_time};
+    return std::make_unique<test::WithBreaks>(
+      std::make_unique<Expression>(ExpressionParameters{.active_stress = "t"}, 1., 1.), in_space, in_time);
   }
 } // namespace
 
 TEST(Breaks, AreSortedDistinctAndInside)
 {
   using List = std::vector<double>;
-  EXPECT_EQ(breaks_in_space(with({1.5, 0.5, 0., 2., 0.5 + 1e-10, -3., 7.}, {}), 2.), (List{0.5, 1.5}));
-  EXPECT_EQ(TimeSegments(with({}, {3., 1., 4., 0., 1. + 1e-13, 9.}), 4.).breaks(), (List{0.25, 0.75}));
-  EXPECT_TRUE(TimeSegments(with({}, {}), 4.).breaks().empty());
+  EXPECT_EQ(breaks_in_space(*with({1.5, 0.5, 0., 2., 0.5 + 1e-10, -3., 7.}, {}), 2.), (List{0.5, 1.5}));
+  EXPECT_EQ(TimeSegments(*with({}, {3., 1., 4., 0., 1. + 1e-13, 9.}), 4.).breaks(), (List{0.25, 0.75}));
+  EXPECT_TRUE(TimeSegments(*with({}, {}), 4.).breaks().empty());
 }
 
 /// Within a piece no time of another is used, and none at its ends; without breaks times are what they are.
 TEST(Breaks, PiecesAreEvaluatedInside)
 {
   Scene scene;
-  scene.friction = std::make_unique<PowerFriction>(1., 0.);
-  scene.end_time = 2.;
-  scene.active_stress =
-    std::make_unique<test::WithBreaks>(std::make_unique<Clock>(), std::vector<double>(), std::vector<double>{0.5, 1.});
+  scene.friction      = std::make_unique<PowerFriction>(1., 0.);
+  scene.end_time      = 2.;
+  scene.active_stress = with({}, {0.5, 1.});
   TimeSegments pieces(*scene.active_stress, 2.);
   const Units units{1., 2., 1.};
   const Scene scaled = in_units(scene, units, &pieces);
