@@ -14,7 +14,6 @@ import runpy
 import shutil
 import subprocess
 import sys
-import tempfile
 
 os.environ["MPLBACKEND"] = "agg"
 import h5py  # noqa: E402
@@ -215,25 +214,23 @@ def test_columns(folder, program):
     check(not wrong and len(found) > 50, f"{len(found)} columns are listed by the program with their units {wrong or ''}")
 
 
-def main():
-    with tempfile.TemporaryDirectory() as name:
-        folder, program = pathlib.Path(name), pathlib.Path(sys.argv[1]).resolve()
-        for scene, modulus in (("soft", 1), ("stiff", 10)):
-            (folder / f"{scene}.prm").write_text(f"subsection Body\n  set Elastic modulus = {modulus}\nend\n", encoding="utf-8")
-        for sweep, (axes, more, accuracy) in SWEEPS.items():
-            (folder / f"{sweep}.prm").write_text(BASE.format(axes=axes, more=more, accuracy=accuracy), encoding="utf-8")
-            result = call([program, "sweep", f"{sweep}.prm", "--output", sweep], folder)
-            check(result.returncode == 0, f"sweep {sweep}: {result.returncode} {result.stderr}")
-        with h5py.File(folder / "unfinished" / "results.h5", "r+") as file:  # as if only the first points were computed
-            file["results/status"][11:] = b""
-            file["results/displacement"][11:] = np.nan
-        test_pictures(folder)
-        test_fit(folder)
-        test_bad_input(folder)
-        test_without_matplotlib(folder)
-        test_columns(folder, program)
-    checks.end()
+def main(name):
+    folder, program = name, pathlib.Path(sys.argv[1]).resolve()
+    for scene, modulus in (("soft", 1), ("stiff", 10)):
+        (folder / f"{scene}.prm").write_text(f"subsection Body\n  set Elastic modulus = {modulus}\nend\n", encoding="utf-8")
+    for sweep, (axes, more, accuracy) in SWEEPS.items():
+        (folder / f"{sweep}.prm").write_text(BASE.format(axes=axes, more=more, accuracy=accuracy), encoding="utf-8")
+        result = call([program, "sweep", f"{sweep}.prm", "--output", sweep], folder)
+        check(result.returncode == 0, f"sweep {sweep}: {result.returncode} {result.stderr}")
+    with h5py.File(folder / "unfinished" / "results.h5", "r+") as file:  # as if only the first points were computed
+        file["results/status"][11:] = b""
+        file["results/displacement"][11:] = np.nan
+    test_pictures(folder)
+    test_fit(folder)
+    test_bad_input(folder)
+    test_without_matplotlib(folder)
+    test_columns(folder, program)
 
 
 if __name__ == "__main__":
-    main()
+    checks.run((main,))

@@ -9,7 +9,6 @@ import io
 import os
 import pathlib
 import sys
-import tempfile
 import threading
 import warnings
 
@@ -274,23 +273,20 @@ def check_installed(folder):
     expect(ended.stdout.startswith("<crawler.Result: finished"), f"installed: {ended}")
 
 
-def main():
-    with tempfile.TemporaryDirectory() as name:
-        os.chdir(name)
-        check_errors(pathlib.Path(name))
-        check_pictures(pathlib.Path(name))
-        check_axes()
-        check_numbers()
-        check_ends()
-        check_signals(pathlib.Path(name))
-        check_threads()
-        check_silence()
-        check_imports()
-        check_installed(pathlib.Path(name))
-        check_memory()
-        os.chdir("/")
-    checks.end()
+def main(folder):
+    os.chdir(folder)
+    check_errors(folder)
+    check_pictures(folder)
+    check_axes()
+    check_numbers()
+    check_ends()
+    check_signals(folder)
+    check_threads()
+    check_silence()
+    check_imports()
+    check_installed(folder)
+    check_memory()
 
 
 if __name__ == "__main__":
-    main()
+    checks.run((main,))
