@@ -496,11 +496,13 @@ def test_full_disk(folder):
 
 
 def test_bad_input(folder):
-    """Wrong names and values are found before the first solve. (More in tests/long/study_kills.py.)"""
-    (folder / "empty.csv").write_text("", encoding="utf-8")
-    (folder / "good.csv").write_text("# a remark\np,chi\n2,0.1\n# another\n2.0,0.2\n", encoding="utf-8")
-    (folder / "short.csv").write_text("p,q\n1,2\n\n3\n", encoding="utf-8")
+    """Wrong names and values are found before the first solve."""
+    for name, text in {"empty": "", "good": "# a remark\np,chi\n2,0.1\n# another\n2.0,0.2\n", "short": "p,q\n1,2\n\n3\n",
+                       "long": "p,q\n1,2,3\n", "remarks": "# nothing but a remark\n", "names": "p,chi\n", "quote": 'p,q\n1,"a\nb"\n',
+                       "wide": ",".join(f"name{i}" for i in range(40)) + "\n", "twice": "p,q,p\n1,2,3\n"}.items():
+        (folder / f"{name}.csv").write_text(text, encoding="utf-8")
     (folder / "utf16.csv").write_text("p,q\n1,2\n", encoding="utf-16")
+    (folder / "a_folder").mkdir()
     (folder / "measured.prm").write_text("set Accuracy = 1e-4\n", encoding="utf-8")
     cases = {
         "": ("",),
@@ -515,8 +517,21 @@ def test_bad_input(folder):
         f"{P} : column(good.csv, chj)": ('"p" or "chi"', 'nearest is "chi"'),
         f"{P} : column(short.csv, p)": ("row 4", "1 value,"),
         f"{P} : column(utf16.csv, p)": ("row 1", "not text"),
+        f"{P} : column(nothing.csv, p)": ("nothing.csv", "No such file or directory", "CSV file"),
+        f"{P} : column(a_folder, p)": ("a_folder", "is a folder"),
+        f"{P} : column(remarks.csv, p)": ("remarks.csv", "is empty"),
+        f"{P} : column(names.csv, p)": ("names.csv", "no rows"),
+        f"{P} : column(good.csv)": ("column(file.csv, name)",),
+        f"{P} : column(wide.csv, nme39)": ("40 columns", '"name0"', '"name9", ...', 'nearest is "name39"'),
+        f"{P} : column(twice.csv, p)": ("more than one column",),
+        f"{P} : column(long.csv, p)": ("row 2", "3 values,"),
+        f"{P} : column(quote.csv, p)": ("row 2", "not closed"),
         f"{P} : 1, 2; {P} : 3, 4": ("twice",),
         "File : measured.prm, mesured.prm": ("mesured.prm", 'nearest name is "measured.prm"'),
+        "File : linspace(1, 2, 2)": ("linspace(1, 2, 2)", "names of parameter files"),
+        "File : missing.prm": ("missing.prm", "No such file"),
+        "File : a_folder": ("a_folder", "is a folder"),
+        "Body/Friction profile : 1, 1+x": ("1+x",),
         "Active stress/Generator : optimal wave, plse": ("pulse",),
     }
     for axes, words in cases.items():
