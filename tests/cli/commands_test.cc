@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../support/program.h"
+#include "../support/run_text.h"
 
 #include <deal.II/base/parameter_handler.h>
 

@@ -336,26 +336,12 @@ namespace
   std::string
   parameter_file(const Settings &settings)
   {
-    std::map<std::string, std::string> sections;
+    std::string text;
     for (const auto &[entry, value] : settings)
     {
       const std::size_t slash = entry.rfind('/');
-      const bool is_top       = slash == std::string::npos;
-      sections[is_top ? "" : entry.substr(0, slash)] +=
-        fmt::format("set {} = {}\n", is_top ? entry : entry.substr(slash + 1), value);
-    }
-    std::string text;
-    for (const auto &[path, lines] : sections)
-    {
-      std::string ends, names = path;
-      while (!names.empty())
-      {
-        const std::size_t slash = std::min(names.find('/'), names.size());
-        text += "subsection " + names.substr(0, slash) + "\n";
-        ends += "end\n";
-        names.erase(0, slash + 1);
-      }
-      text += lines + ends;
+      text += test::in_section(slash == std::string::npos ? "" : entry.substr(0, slash),
+                               fmt::format("set {} = {}", entry.substr(slash + 1), value));
     }
     return text;
   }
