@@ -66,7 +66,7 @@ CHECKS = (
           files=("{root}/contrib/reference/table.json",)),
     Check("scaling", 0.3, "{root}/tests/verification/scaling.py {build}/crawler"),
     Check("examples", 1, "{root}/tests/verification/prm_files.py {build}/crawler", "", ""),
-    Check("jumps_on_meshes", 0.2, "{build}/tests/jump_study mesh -1 1", NUMERICS, "(`build/tests/jump_study mesh -1 1`", "text"),
+    Check("jumps_on_meshes", 0.2, "{build}/tests/jump_study -1 1", NUMERICS, "(`build/tests/jump_study -1 1`", "text"),
     Check("calibration", 4, "{mpi} {build}/tests/calibration 220 {out}/calibration.csv", NUMERICS,
           "mpirun -n 2 build/tests/calibration 220", "text", within=0.01),
     Check("calibration_of_jumps", 3, "{mpi} {build}/tests/calibration 10000-10059 {out}/jumps.csv", NUMERICS,

@@ -6,6 +6,7 @@
 // minutes, wants an idle machine.
 //
 //     adaptive_table contrib/reference/extremes.json [part of a scene's name]
+#include "../support/processor_time.h"
 #include "../support/run_text.h"
 
 #include <crawler/base/mpi_session.h>
@@ -14,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <fstream>
 #include <functional>
 #include <optional>
@@ -42,12 +42,6 @@ namespace
     double error = 0.;
   };
 
-  double
-  cpu_seconds()
-  {
-    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-  }
-
   Case
   from_table(const nlohmann::json &rows, const std::string &name, const std::string &title)
   {
@@ -71,8 +65,8 @@ namespace
     TimeParameters time = parameters.time;
     time.integrator     = integrator;
     Simulation simulation(MPI_COMM_WORLD, scene, time, numerics);
-    const double start = cpu_seconds();
-    return simulation.run({}, {}, {}, [&]() { return cpu_seconds() - start < limit; });
+    const double start = test::processor_seconds();
+    return simulation.run({}, {}, {}, [&]() { return test::processor_seconds() - start < limit; });
   }
 
   /// A Gaussian that travels along the body; the reference is a run with far finer uniform meshes.
@@ -104,9 +98,9 @@ namespace
     SimulationResult result;
     for (int i = 0; i < 3; ++i)
     {
-      const double start = cpu_seconds();
+      const double start = test::processor_seconds();
       result             = run(scene.parameters, numerics, limit, integrator);
-      seconds.push_back(cpu_seconds() - start);
+      seconds.push_back(test::processor_seconds() - start);
       if (result.time.status != Status::finished || seconds[0] > 1.)
         break;
     }

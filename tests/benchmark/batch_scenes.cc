@@ -35,17 +35,6 @@ namespace crawler::test
     return result;
   }
 
-  std::vector<std::size_t>
-  BatchScenes::some(const std::size_t stride) const
-  {
-    std::vector<std::size_t> result;
-    for (std::size_t i = 0; i < scenes_.size(); i += stride)
-      result.push_back(i);
-    if (result.back() + 1 < scenes_.size())
-      result.push_back(scenes_.size() - 1);
-    return result;
-  }
-
   BatchScenes::Results
   BatchScenes::run(const Setting &setting,
                    const std::size_t begin,

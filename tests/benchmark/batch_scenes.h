@@ -22,10 +22,6 @@ namespace crawler::test
     static BatchScenes
     grid(std::size_t n_exponents, std::size_t n_chi);
 
-    /// Every so many of the scenes, the first and the last among them.
-    std::vector<std::size_t>
-    some(std::size_t stride) const;
-
     std::size_t
     size() const
     {

@@ -29,44 +29,13 @@ namespace crawler::test
       double tolerance_factor = 0.66;  ///< between the tolerances to choose from
     };
 
-    const Case &
-    fig_s1()
-    {
-      static const Case result{"run", wave(-1., 0.4), 9.007252980024e-2, 1., 4096, {12, 10, 8, 7, 6, 5, 4, 3, 2}};
-      return result;
-    }
-
-    const Case &
-    fig_2()
-    {
-      static const Case result{"fig2", wave(-1., 0.4, 1., 20.), 1.8019682398008, 20., 512, {7, 6, 5, 4}, 0.5};
-      return result;
-    }
-
+    const Case fig_s1{"run", wave(-1., 0.4), 9.007252980024e-2, 1., 4096, {12, 10, 8, 7, 6, 5, 4, 3, 2}};
+    const Case fig_2{"fig2", wave(-1., 0.4, 1., 20.), 1.8019682398008, 20., 512, {7, 6, 5, 4}, 0.5};
     /// The displacement is that of runs of degree 8 with 10 and 14 cells and a tolerance of 1e-13, by both engines.
-    const Case &
-    stiff()
-    {
-      static const Case result{
-        "stiff", wave(-1., 0.3, 1., 1., 100.), 4.860527262566e-2, 1., 4096, {10, 8, 6, 5, 4, 3, 2}};
-      return result;
-    }
-
-    /// The displacements are those of contrib/reference/table.json.
-    const Case &
-    slippery()
-    {
-      static const Case result{
-        "a=-3", wave(-3., 0.3), 0.11186924764530372, 1., 4096, {16, 12, 10, 8, 7, 6, 5, 4, 3, 2}};
-      return result;
-    }
-
-    const Case &
-    sticky()
-    {
-      static const Case result{"a=2", wave(2., 0.3), -0.08107086824722676, 1., 4096, {12, 10, 8, 7, 6, 5, 4, 3, 2}};
-      return result;
-    }
+    const Case stiff{"stiff", wave(-1., 0.3, 1., 1., 100.), 4.860527262566e-2, 1., 4096, {10, 8, 6, 5, 4, 3, 2}};
+    // The displacements of these are those of contrib/reference/table.json.
+    const Case slippery{"a=-3", wave(-3., 0.3), 0.11186924764530372, 1., 4096, {16, 12, 10, 8, 7, 6, 5, 4, 3, 2}};
+    const Case sticky{"a=2", wave(2., 0.3), -0.08107086824722676, 1., 4096, {12, 10, 8, 7, 6, 5, 4, 3, 2}};
 
     double
     error_of(const SimulationResult &result, const double exact)
@@ -322,18 +291,18 @@ namespace crawler::test
     add_fig_s1(const double accuracy)
     {
       const std::string end = fmt::format("/{:.0e}", accuracy).replace(4, 1, ""); // /1e-4
-      add("run/petsc" + end, run_one, fig_s1(), "petsc", accuracy);
-      add("run/fused" + end, run_one, fig_s1(), "fused", accuracy);
+      add("run/petsc" + end, run_one, fig_s1, "petsc", accuracy);
+      add("run/fused" + end, run_one, fig_s1, "fused", accuracy);
       const auto add_batch =
         [&](const std::string &name, const LaneEngine *engine, const Simulation::Options &options) {
           if (engine != nullptr)
-            add(name + end, run_many, fig_s1(), accuracy, options, *engine);
+            add(name + end, run_many, fig_s1, accuracy, options, *engine);
         };
       add_batch("run/batch", &batch_engine(), {});
       add_batch("run/batch_avx2", batch_engine("avx2"), {});
       add_batch("run/batch_baseline", batch_engine("baseline"), {});
       add_batch("run/batch_energy_balance", &batch_engine(), {.energy_balance = true});
-      for (const Case &body : {fig_s1(), stiff(), slippery(), sticky(), fig_2()})
+      for (const Case &body : {fig_s1, stiff, slippery, sticky, fig_2})
         add("answer/" + body.name + end, run_answer, body, accuracy);
     }
   } // namespace
@@ -346,10 +315,10 @@ namespace crawler::test
     for (int i = 1; i <= 10; ++i) // contrib/peers/trade.py
     {
       const double accuracy = std::pow(10., -i);
-      add(fmt::format("front/engine/1e-{}", i), run_one, fig_s1(), "fused", accuracy);
-      add(fmt::format("front/answer/1e-{}", i), run_answer, fig_s1(), accuracy);
+      add(fmt::format("front/engine/1e-{}", i), run_one, fig_s1, "fused", accuracy);
+      add(fmt::format("front/answer/1e-{}", i), run_answer, fig_s1, accuracy);
     }
-    for (const Case &body : {fig_2(), stiff()})
+    for (const Case &body : {fig_2, stiff})
     {
       const std::string name = "case/" + body.name + "/1e-6";
       add(name + "/petsc", run_one, body, "petsc", 1e-6);

@@ -10,6 +10,7 @@
 // ranks, since ranks that wait for each other use the CPU, too. Each step is at a new time, so the active stress is
 // evaluated once in it. With complex numbers the step has one complex system, as one pair of stages of a Radau method
 // has. Prints a table in Markdown.
+#include "../support/processor_time.h"
 #include "../support/ranks.h"
 #include "../support/run_text.h"
 
@@ -18,7 +19,6 @@
 #include <crawler/equation/general_position_form.h>
 
 #include <algorithm>
-#include <ctime>
 #include <limits>
 
 namespace
@@ -75,7 +75,7 @@ namespace
   Seconds
   now()
   {
-    return {MPI_Wtime(), static_cast<double>(std::clock()) / CLOCKS_PER_SEC};
+    return {MPI_Wtime(), test::processor_seconds()};
   }
 
   /// So many steps are timed at once that a clock can see them.

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "setting_search.h"
 
+#include "../support/processor_time.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <stdexcept>
 
@@ -17,15 +18,6 @@ namespace crawler::test
     constexpr double hopeless = 2.;
     /// Repetitions of the timing.
     constexpr unsigned int repetitions = 8;
-
-    /// [s]
-    double
-    processor_time()
-    {
-      timespec now{};
-      clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-      return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-    }
 
     Setting
     make_setting(const SearchSpace &space,
@@ -52,9 +44,9 @@ namespace crawler::test
       double seconds = std::numeric_limits<double>::infinity();
       for (unsigned int i = 0; i < n; ++i)
       {
-        const double start = processor_time();
+        const double start = processor_seconds();
         run();
-        seconds = std::min(seconds, processor_time() - start);
+        seconds = std::min(seconds, processor_seconds() - start);
       }
       return seconds;
     }

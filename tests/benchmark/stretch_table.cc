@@ -8,13 +8,13 @@
 //
 // With the word "trade" the CPU time of both forms for bodies that become emptier or softer: which one is the cheaper
 // one at which Accuracy (choose_form() follows that).
+#include "../support/processor_time.h"
 #include "../support/run_text.h"
 
 #include <crawler/base/mpi_session.h>
 #include <crawler/studies/core/compute.h>
 
 #include <cmath>
-#include <ctime>
 #include <string>
 
 namespace
@@ -42,12 +42,6 @@ namespace
                         {"a = -7, k = 1e-4, chi = 0.3", -7., 0.3, 1e-4, .516944874, false, 1e-4},
                         {"a = -0.8, chi = 0.77", -0.8, 0.77, 1., .322123, true, 1e-4}};
 
-  double
-  cpu_seconds()
-  {
-    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-  }
-
   /// The answer with the bound, and the CPU time of the faster of two.
   double
   compute(const Case &c, const double accuracy, const std::string &formulation, const double limit, Task &task)
@@ -61,9 +55,9 @@ namespace
     {
       task              = Task();
       task.parameters   = test::parameters_with(settings);
-      const double from = cpu_seconds();
+      const double from = test::processor_seconds();
       compute_all({&task, 1}, limit, []() { return false; });
-      seconds = std::min(seconds, cpu_seconds() - from);
+      seconds = std::min(seconds, test::processor_seconds() - from);
     }
     return seconds;
   }

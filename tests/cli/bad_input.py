@@ -9,7 +9,6 @@ import pathlib
 import re
 import shlex
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import Checks, call  # noqa: E402
@@ -81,6 +80,7 @@ def rows():
 
 
 def test_rows(folder):
+    fill(folder)
     for text, code, parts in rows():
         bad, arguments = folder / "bad.prm", ["run", "bad.prm", "--output", "results"]
         bad.unlink(missing_ok=True)
@@ -99,7 +99,6 @@ def test_rows(folder):
 def test_unreadable(folder):
     """A link to itself cannot be read; a file without permissions can be read by root only."""
     bad = folder / "bad.prm"
-    bad.unlink(missing_ok=True)
     bad.symlink_to("bad.prm")
     expect_refusal(folder, ["run", "bad.prm", "--output", "results"], 6, ['cannot read "bad.prm"'], "a link to itself")
     bad.unlink()
@@ -110,8 +109,4 @@ def test_unreadable(folder):
         checks.expect(done.returncode == 6 and "permission denied" in done.stderr, f"no permission: {done.stderr!r}")
 
 
-with tempfile.TemporaryDirectory() as directory:
-    fill(pathlib.Path(directory))
-    test_rows(pathlib.Path(directory))
-    test_unreadable(pathlib.Path(directory))
-checks.end()
+checks.run((test_rows, test_unreadable))

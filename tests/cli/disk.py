@@ -14,7 +14,6 @@ import pathlib
 import random
 import shutil
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from disk_faults import PAGE, Disk, Faults, content, fresh, prepare, take_folders_away  # noqa: E402
@@ -60,32 +59,29 @@ def read_only(cases, disk, has_disk, inputs):
             checks.expect(not faults.judge(case.start(out, inputs), out, {}, what), f"{what}: no fault")
 
 
-def main():
-    with tempfile.TemporaryDirectory() as name:
-        place = pathlib.Path(name)
-        inputs, disk = place / "inputs", Disk(place / "disk")
-        cases = prepare(CRAWLER, PRM, inputs)
-        has_disk = disk.room()
-        if not has_disk:
-            checks.skip("small disks and a read-only one: a tmpfs may not be mounted here")
-        try:
-            for case in cases:
-                out = place / case.place
-                older = {str(path.relative_to(out)): text for path, text in fresh(case, out, inputs).items()}
-                done = case.start(out, inputs)
-                checks.expect(done.returncode == 0, f"{case.name} itself: {done.returncode}, {done.stderr[:500]!r}")
-                whole = content(out) if out.is_dir() else {"": out.read_bytes()}
-                if case.name == "run":
-                    shutil.copytree(out, inputs / "whole_run", dirs_exist_ok=True)
-                disturb(case, disk, has_disk, inputs, whole, older)
-            read_only(cases, disk, has_disk, inputs)
-        finally:
-            if os.path.ismount(disk.place):
-                disk.unmount()
-        take_folders_away(CRAWLER, faults, place, inputs)
+def main(place):
+    inputs, disk = place / "inputs", Disk(place / "disk")
+    cases = prepare(CRAWLER, PRM, inputs)
+    has_disk = disk.room()
+    if not has_disk:
+        checks.skip("small disks and a read-only one: a tmpfs may not be mounted here")
+    try:
+        for case in cases:
+            out = place / case.place
+            older = {str(path.relative_to(out)): text for path, text in fresh(case, out, inputs).items()}
+            done = case.start(out, inputs)
+            checks.expect(done.returncode == 0, f"{case.name} itself: {done.returncode}, {done.stderr[:500]!r}")
+            whole = content(out) if out.is_dir() else {"": out.read_bytes()}
+            if case.name == "run":
+                shutil.copytree(out, inputs / "whole_run", dirs_exist_ok=True)
+            disturb(case, disk, has_disk, inputs, whole, older)
+        read_only(cases, disk, has_disk, inputs)
+    finally:
+        if os.path.ismount(disk.place):
+            disk.unmount()
+    take_folders_away(CRAWLER, faults, place, inputs)
     print(f"{faults.n} faults")
-    checks.end()
 
 
 if __name__ == "__main__":
-    main()
+    checks.run((main,))

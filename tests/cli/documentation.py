@@ -144,6 +144,4 @@ def main():
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("usage: documentation.py PATH_TO_CRAWLER")
     sys.exit(1 if main() else 0)

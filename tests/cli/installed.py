@@ -10,7 +10,6 @@ import os
 import pathlib
 import shutil
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import Checks, call  # noqa: E402
@@ -36,8 +35,7 @@ def printed(*words, folder, before=()):
     return end.stdout
 
 
-with tempfile.TemporaryDirectory() as name:
-    here = pathlib.Path(name)
+def main(here):
     prefix = here / "installed"
     printed(CMAKE, "--install", BUILD, "--prefix", prefix, "--strip", folder=here)
     parts = list(PARTS)
@@ -69,4 +67,5 @@ with tempfile.TemporaryDirectory() as name:
     printed(program, "run", prefix / "share/crawler/prm/examples/earthworm.prm", "--quiet", "--output", "example",
          folder=here, before=before)
 
-checks.end()
+
+checks.run((main,))

@@ -7,7 +7,6 @@ show something and are those of the page, a number that is off ends with 7.
 """
 import pathlib
 import sys
-import tempfile
 
 import numpy as np
 from PIL import Image
@@ -70,24 +69,22 @@ def test_numbers(out, printed):
         check(number in printed, f"{number} is printed")
 
 
-def main():
+def main(folder):
     program = pathlib.Path(sys.argv[1]).resolve()
-    with tempfile.TemporaryDirectory() as name:
-        out = pathlib.Path(name) / "paper"
-        end = call([sys.executable, SCRIPT, program, out])
-        check(end.returncode == 0, f"all numbers are right: {end.returncode} {end.stderr.strip()}")
-        if end.returncode == 0:
-            test_pictures(out)
-            test_numbers(out, end.stdout)
-        for value, code in ((1.0005, 0), (1.002, 7), (float("nan"), 7)):
-            end = call([sys.executable, "-c", WRONG.replace("VALUE", f'float("{value}")'), SCRIPT.parent, program, out])
-            check(end.returncode == code, f"{value}, where 1 +- 1e-3 is expected: {end.returncode} {end.stderr.strip()[-200:]}")
-        for arguments, word in (((name,), "contrib/setup.sh"), ((program, program / "x"), "cannot make the folder"), ((), "BUILD")):
-            end = call([sys.executable, SCRIPT, *arguments])
-            check(end.returncode in (2, 6) and end.stderr.count("\n") == 1 and word in end.stderr,
-                  f"bad input: {end.returncode} {end.stderr.strip()[-200:]}")
-    checks.end()
+    out = folder / "paper"
+    end = call([sys.executable, SCRIPT, program, out])
+    check(end.returncode == 0, f"all numbers are right: {end.returncode} {end.stderr.strip()}")
+    if end.returncode == 0:
+        test_pictures(out)
+        test_numbers(out, end.stdout)
+    for value, code in ((1.0005, 0), (1.002, 7), (float("nan"), 7)):
+        end = call([sys.executable, "-c", WRONG.replace("VALUE", f'float("{value}")'), SCRIPT.parent, program, out])
+        check(end.returncode == code, f"{value}, where 1 +- 1e-3 is expected: {end.returncode} {end.stderr.strip()[-200:]}")
+    for arguments, word in (((folder,), "contrib/setup.sh"), ((program, program / "x"), "cannot make the folder"), ((), "BUILD")):
+        end = call([sys.executable, SCRIPT, *arguments])
+        check(end.returncode in (2, 6) and end.stderr.count("\n") == 1 and word in end.stderr,
+              f"bad input: {end.returncode} {end.stderr.strip()[-200:]}")
 
 
 if __name__ == "__main__":
-    main()
+    checks.run((main,))

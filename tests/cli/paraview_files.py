@@ -7,11 +7,9 @@
 The same scene is run on one rank and on two, and as XDMF; all must give the same fields. An adaptive mesh, a level
 without a mesh and a run that is killed must leave whole animations, too.
 """
-import json
 import pathlib
 import signal
 import sys
-import tempfile
 from xml.etree import ElementTree
 
 try:
@@ -24,6 +22,7 @@ except ImportError as error:
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import Checks, call, on_ranks, prm  # noqa: E402
+from tables import json_of  # noqa: E402
 
 # The points of the VTU files are then every fourth of the 201 points of the kymograph, and frames are every 16th row.
 LENGTH, END_TIME, FRAMES, CELLS, DEGREE = 2.0, 1.5, 8, 10, 5
@@ -220,7 +219,7 @@ def check_run(name, output):
     check_scenery(name, parts, frames)
 
     check(not frames[0]["displacement"].any(), f"{name}: starts at rest")
-    last, summary = frames[-1], json.loads((output / "summary.json").read_text())
+    last, summary = frames[-1], json_of(output / "summary.json")
     moved = np.trapz(last["displacement"], last["s"]) / LENGTH
     check(abs(moved / summary["displacement"] - 1) < 1e-3,
           f"{name}: the last frame has moved as far as summary.json says")
@@ -304,33 +303,28 @@ def vtu_frames(output):
     return frames
 
 
-def main():
-    if len(sys.argv) != 3:
-        sys.exit("usage: paraview_files.py PATH_TO_CRAWLER MPIEXEC")
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        serial = check_run("one rank", run(folder, "one", [sys.argv[1]]))
-        script = pathlib.Path(__file__).resolve().parents[2] / "contrib/python/crawler/plot" / "kymograph.py"
-        done = call([sys.executable, script, folder / "one"], folder)
-        check(done.returncode == 0 and (folder / "one" / "kymograph.png").is_file(), "the picture of a run is beside its files")
-        check_xdmf("XDMF", run(folder, "xdmf", [sys.argv[1]], XDMF), serial[0])
-        check(sorted(path.name for path in (folder / "xdmf").glob("*solution*")) == ["solution.h5", "solution.xdmf"],
-              "XDMF: one pair of files")
-        for name, more in (("adaptive", ADAPTIVE), ("no mesh", NO_MESH)):
-            frames = vtu_frames(run(folder, name, [sys.argv[1]], more))
-            if name == "adaptive":
-                check(len({len(frame["s"]) for frame in frames}) > 1, "the mesh changes between frames")
-            check_xdmf(name, run(folder, name + " XDMF", [sys.argv[1]], more + XDMF), frames)
-        check_killed(folder, sys.argv[1])
-        two = check_run("two ranks", run(folder, "two", [*on_ranks(sys.argv[2], 2), sys.argv[1]]))
+def main(folder):
+    serial = check_run("one rank", run(folder, "one", [sys.argv[1]]))
+    script = pathlib.Path(__file__).resolve().parents[2] / "contrib/python/crawler/plot" / "kymograph.py"
+    done = call([sys.executable, script, folder / "one"], folder)
+    check(done.returncode == 0 and (folder / "one" / "kymograph.png").is_file(), "the picture of a run is beside its files")
+    check_xdmf("XDMF", run(folder, "xdmf", [sys.argv[1]], XDMF), serial[0])
+    check(sorted(path.name for path in (folder / "xdmf").glob("*solution*")) == ["solution.h5", "solution.xdmf"],
+          "XDMF: one pair of files")
+    for name, more in (("adaptive", ADAPTIVE), ("no mesh", NO_MESH)):
+        frames = vtu_frames(run(folder, name, [sys.argv[1]], more))
+        if name == "adaptive":
+            check(len({len(frame["s"]) for frame in frames}) > 1, "the mesh changes between frames")
+        check_xdmf(name, run(folder, name + " XDMF", [sys.argv[1]], more + XDMF), frames)
+    check_killed(folder, sys.argv[1])
+    two = check_run("two ranks", run(folder, "two", [*on_ranks(sys.argv[2], 2), sys.argv[1]]))
     for i, (a, b) in enumerate(zip(serial[0], two[0])):
         for field in a:
             check(close(a[field], b[field], 1e-9), f"frame {i}: {field} is the same on one and two ranks")
     for field, values in serial[1].items():
         check(close(values, two[1][field], NINE_DIGITS), f"kymograph: {field} is the same on one and two ranks")
     print(f"{len(serial[0])} frames and a kymograph on one and on two ranks")
-    checks.end()
 
 
 if __name__ == "__main__":
-    main()
+    checks.run((main,))

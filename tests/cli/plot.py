@@ -8,8 +8,6 @@ missing. Each picture must have names, symbols and units on its axes, and a part
 Each script is called by the program once; in most checks of pictures it runs in a fork of this process, which has loaded
 matplotlib already.
 """
-import csv
-import json
 import os
 import pathlib
 import re
@@ -25,6 +23,7 @@ import matplotlib.pyplot
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import NO_PICTURES, Checks, call, prm  # noqa: E402
+from tables import csv_rows, json_of  # noqa: E402
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -196,8 +195,7 @@ def test_copied_program():
     """A copy of the program alone says where its scripts are looked for."""
     shutil.copy(PROGRAM, "copied")
     end = call(["./copied", "plot", "run"])
-    check(end.returncode == 2 and "__main__.py is neither " in end.stderr and f"{pathlib.Path.cwd()}/python/crawler/__main__.py" in end.stderr
-          and end.stderr.count("\n") == 1, f"a copied program: {end.returncode} {end.stderr.strip()}")
+    checks.refused(end, "__main__.py is neither ", f"{pathlib.Path.cwd()}/python/crawler/__main__.py")
     pathlib.Path("copied").unlink()
 
 
@@ -233,9 +231,8 @@ def test_bad_input():
     """One sentence, and nothing is drawn."""
     for arguments, code, word in REFUSED:
         end = crawler("plot", *arguments)
-        lines = end.stderr.splitlines()
-        check(end.returncode == code and len(lines) == 1 and word in lines[0] and lines[0].startswith("crawler: ")
-              and "wrote" not in end.stdout, f"plot {' '.join(arguments)}: {end.returncode} {end.stderr.strip()[-300:]}")
+        checks.refused(end, "crawler: ", word, code=code)
+        check("wrote" not in end.stdout, f"plot {' '.join(arguments)}: {end.stdout}")
     for arguments, code, word in REFUSED_BY_SCRIPTS:
         found, printed = drawn(*arguments)
         check(found == code and printed.count("\n") == 1 and word in printed and re.match(r"\w+\.py: ", printed),
@@ -249,7 +246,7 @@ def test_bad_input():
 
 def test_paper():
     """crawler paper: size and fonts of the figure, numbers with their bounds."""
-    summary = json.loads(pathlib.Path("run/summary.json").read_text(encoding="utf-8"))
+    summary = json_of("run/summary.json")
     for words, width, height in ((["run"], 86, 80), (["run", "--columns", "2", "--last-stride", "--stress", "--height", "90"], 178, 90),
                                  (["sweep", "--lines", "--value", "stress_power"], 86, 80), (["checked", "--columns", "2"], 178, 70)):
         shutil.rmtree("printed", ignore_errors=True)
@@ -260,8 +257,7 @@ def test_paper():
         box = [float(number) * 25.4 / 72 for number in re.search(rb"/MediaBox \[ 0 0 (\S+) (\S+) \]", figure).groups()]
         check(max(abs(box[0] - width), abs(box[1] - height)) < 0.1, f"the figure has {box} mm, expected {width} x {height}")
         check(b"/FontFile2" in figure and b"/Type3" not in figure, "fonts are embedded, as outlines")
-        with open("printed/numbers.csv", newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+        rows = csv_rows("printed/numbers.csv")
         table = pathlib.Path("printed/numbers.tex").read_text(encoding="utf-8")
         cells = [line.removesuffix(r" \\").split(" & ") for line in table.splitlines() if line.endswith(r" \\")]
         check(len(cells) == len(rows) + 1 and len({len(line) for line in cells}) == 1, f"rows of the table: {len(cells)}, of the CSV file {len(rows)}")
@@ -272,8 +268,7 @@ def test_paper():
             check(all(round_trip(line[1], *known[row["number"]]) for line, row in zip(cells[1:], rows)), f"numbers for LaTeX: {cells}")
             check(cells[1][0] == "displacement $D$ [length]", f"names and units: {cells[1][0]}")
         elif words[0] == "sweep":
-            with open("sweep/results.csv", newline="", encoding="utf-8") as file:
-                points = [(float(row["stress_power"]), float(row["errors.stress_power"])) for row in csv.DictReader(file)]
+            points = [(float(row["stress_power"]), float(row["errors.stress_power"])) for row in csv_rows("sweep/results.csv")]
             found = [(float(row["stress_power"]), float(row["bound"])) for row in rows]
             check(len(found) == 6 and all(abs(one / other - 1) < 1e-6 for mine, theirs in zip(found, points) for one, other in zip(mine, theirs)), f"values of the sweep: {found}")
             check(all(round_trip(line[-1], *one) for line, one in zip(cells[1:], found)), f"points for LaTeX: {cells}")
@@ -284,8 +279,8 @@ def test_paper():
                                   (["run", "--height", "5"], 2, "from 20 to 250"), (["run", "--lastt-stride"], 2, '"--last-stride"'),
                                   (["sweep", "--value", "nothing"], 2, "nearest"), (["run", "--output", "no/where"], 6, "no/where")):
         end = crawler("paper", *arguments)
-        check(end.returncode == code and end.stderr.count("\n") == 1 and end.stderr.startswith("crawler: ") and word in end.stderr and "wrote" not in end.stdout,
-              f"paper {' '.join(arguments)}: {end.returncode} {end.stderr}")
+        checks.refused(end, "crawler: ", word, code=code)
+        check("wrote" not in end.stdout, f"paper {' '.join(arguments)}: {end.stdout}")
 
 
 def round_trip(text, value, bound):
@@ -306,9 +301,8 @@ def test_python(folder):
     pathlib.Path("blind").mkdir()
     pathlib.Path("blind/h5py.py").write_text("raise ImportError\n", encoding="utf-8")
     end = crawler("plot", "sweep", PATH=f"{bare}:{os.environ['PATH']}", PYTHONPATH=f"{folder}/blind")
-    check(end.returncode == 2 and f"{bare}/python3 has no numpy and no matplotlib; /usr/bin/python3 has no h5py "
-          "(on Debian: apt install python3-h5py)" in end.stderr and end.stderr.count("\n") == 1,
-          f"which Python lacks what: {end.stderr.strip()}")
+    checks.refused(end, f"{bare}/python3 has no numpy and no matplotlib; /usr/bin/python3 has no h5py "
+                   "(on Debian: apt install python3-h5py)")
     end = crawler("plot", "run", PYTHONPATH=f"{folder}/blind")
     check(end.returncode == 0, f"a run needs no h5py: {end.stderr.strip()}")
     for script in sorted((ROOT / "contrib/python/crawler/plot").glob("*.py")):

@@ -66,8 +66,7 @@ def refused(name, entries, *words):
         entries = {"File": FAULTY, "Parameters": entries}
     for kind in ("run", "check"):
         done = run(name, "library", entries, command=kind)
-        expect(done.returncode == 2 and done.stderr.count("\n") == 1 and done.stderr.startswith("crawler: ")
-               and all(word in done.stderr for word in words), f"{kind} {name}: {done.returncode}, {done.stderr}")
+        checks.refused(done, "crawler: ", *words)
     expect(not os.path.exists(name), f"{name}: something was written")
 
 

@@ -7,7 +7,6 @@ of a version, the newest by default; and the version of the program is that of t
 """
 import pathlib
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import program  # noqa: E402
@@ -41,8 +40,7 @@ def version(folder):
 code, out = call(ROOT / "contrib/release_notes.py", "--check", folder=ROOT)
 expect(code == 0 and out == "", f"doc/changes.md: {out}")
 
-with tempfile.TemporaryDirectory() as name:
-    folder = pathlib.Path(name)
+def main(folder):
     (folder / "contrib").mkdir()
     (folder / "doc").mkdir()
     script, changes = folder / "contrib/release_notes.py", folder / "doc/changes.md"
@@ -79,4 +77,5 @@ with tempfile.TemporaryDirectory() as name:
         code, out = notes("--check")
         expect(code == 1 and "line 11" in out and line.splitlines()[0][:40] in out, f"{line} is not refused: {out}")
 
-checks.end()
+
+checks.run((main,))

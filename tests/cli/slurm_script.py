@@ -7,7 +7,6 @@
 import os
 import pathlib
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import Checks, call  # noqa: E402
@@ -43,7 +42,7 @@ class Cluster:
 
     def __init__(self, folder, program="crawler"):
         self.folder = folder
-        (folder / "bin").mkdir(parents=True)
+        (folder / "bin").mkdir()
         for name, text in (("srun", SRUN), ("scontrol", SCONTROL)):
             (folder / "bin" / name).write_text(text, encoding="utf-8")
             (folder / "bin" / name).chmod(0o755)
@@ -112,9 +111,9 @@ def test_crashes(folder):
     expect(code == 1 and requeued, "so is --output=FOLDER")
 
 
-def test_program(folder, program):
+def test_program(folder):
     """The real program: stopped by the signal or its time limit, killed, and finished in the next start."""
-    cluster = Cluster(folder, program)
+    cluster = Cluster(folder, str(pathlib.Path(sys.argv[1]).resolve()))
     n = 144
     cluster.write("  set Axes = Body/Anchoring exponent : linspace(1.5, 4, 12); \\\n"
                   "             Active stress/Optimal wave/Perturbation parameter : linspace(0.05, 0.4, 12)\n")
@@ -135,15 +134,5 @@ def test_program(folder, program):
     expect(code == 2 and not requeued, f"a bad parameter: {code}, not again {words}")
 
 
-def main():
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        test_usage(folder / "usage")
-        test_codes(folder / "codes")
-        test_crashes(folder / "crashes")
-        test_program(folder / "program", str(pathlib.Path(sys.argv[1]).resolve()))
-    checks.end()
-
-
 if __name__ == "__main__":
-    main()
+    checks.run((test_usage, test_codes, test_crashes, test_program))

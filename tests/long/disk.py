@@ -11,7 +11,6 @@ import pathlib
 import random
 import shutil
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from disk_faults import PAGE, Disk, Faults, content, fresh, prepare, take_folders_away  # noqa: E402
@@ -66,31 +65,28 @@ def small_disks(case, disk, inputs, whole):
         disk.unmount()
 
 
-def main():
+def main(place):
     print(f"seed {SEED}", flush=True)
-    with tempfile.TemporaryDirectory() as name:
-        place = pathlib.Path(name)
-        inputs, disk = place / "inputs", Disk(place / "disk")
-        cases, only = prepare(CRAWLER, PRM, inputs), sys.argv[5:]
-        for case in cases:
-            out = place / case.place
-            fresh(case, out, inputs)
-            if only and case.name not in ["run", *only]:
-                continue
-            done = case.start(out, inputs)
-            checks.expect(done.returncode == 0, f"{case.name} itself: {done.returncode}, {done.stderr[:500]!r}")
-            whole = content(out) if out.is_dir() else {"": out.read_bytes()}
-            if case.name == "run":
-                shutil.copytree(out, inputs / "whole_run", dirs_exist_ok=True)
-            before = faults.n
-            small_files(case, place, inputs, whole)
-            small_disks(case, disk, inputs, whole)
-            print(f"{case.name}: {faults.n - before} faults", flush=True)
-            checks.expect(faults.n > before, f"{case.name}: no fault")
-        take_folders_away(CRAWLER, faults, place, inputs)
+    inputs, disk = place / "inputs", Disk(place / "disk")
+    cases, only = prepare(CRAWLER, PRM, inputs), sys.argv[5:]
+    for case in cases:
+        out = place / case.place
+        fresh(case, out, inputs)
+        if only and case.name not in ["run", *only]:
+            continue
+        done = case.start(out, inputs)
+        checks.expect(done.returncode == 0, f"{case.name} itself: {done.returncode}, {done.stderr[:500]!r}")
+        whole = content(out) if out.is_dir() else {"": out.read_bytes()}
+        if case.name == "run":
+            shutil.copytree(out, inputs / "whole_run", dirs_exist_ok=True)
+        before = faults.n
+        small_files(case, place, inputs, whole)
+        small_disks(case, disk, inputs, whole)
+        print(f"{case.name}: {faults.n - before} faults", flush=True)
+        checks.expect(faults.n > before, f"{case.name}: no fault")
+    take_folders_away(CRAWLER, faults, place, inputs)
     print(f"{faults.n} faults")
-    checks.end()
 
 
 if __name__ == "__main__":
-    main()
+    checks.run((main,))

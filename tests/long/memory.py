@@ -10,7 +10,6 @@ PART_FOR_PETSC: its points are slower, so only this part of them is computed (de
 import pathlib
 import re
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import Checks, Paused, prm  # noqa: E402
@@ -55,7 +54,9 @@ def measure(name, place):
     checks.expect(sizes[1] <= sizes[0] + ALLOWED, f"{name}: the memory grows from {sizes[0]:.1f} to {sizes[1]:.1f} MB")
 
 
-with tempfile.TemporaryDirectory() as directory:
+def main(folder):
     for one in SWEEPS:
-        measure(one, pathlib.Path(directory))
-checks.end()
+        measure(one, folder)
+
+
+checks.run((main,))

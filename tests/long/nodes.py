@@ -13,13 +13,10 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
-
-import h5py
-import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import Checks, call, environment, prm  # noqa: E402
+from tables import h5_columns, same_columns  # noqa: E402
 
 PROGRAM, MPIEXEC = str(pathlib.Path(sys.argv[1]).resolve()), shutil.which(sys.argv[2])
 KILLS = int(sys.argv[3]) if len(sys.argv) > 3 else 3
@@ -90,18 +87,7 @@ def sweep(folder, nodes, *options, stop_at=None):
 
 
 def table(folder):
-    """The columns of a results.h5, without times."""
-    with h5py.File(folder / "results.h5", "r") as file:
-        group = file["results"] if "results" in file else file
-        columns = {}
-        group.visititems(lambda name, one: columns.update({name: one[()]}) if isinstance(one, h5py.Dataset) else None)
-    return {name: values for name, values in columns.items() if "seconds" not in name and "checksum" not in name}
-
-
-def same(one, other):
-    """Are all columns equal, bit for bit?"""
-    return one.keys() == other.keys() and all(
-        np.array_equal(values, other[name], equal_nan=values.dtype.kind == "f") for name, values in one.items())
+    return h5_columns(folder / "results.h5", "results")
 
 
 def finished_rows(folder):
@@ -119,49 +105,46 @@ def wait_for_more_rows(process, folder, n):
     return False
 
 
-def main():
+def main(folder):
     if os.geteuid() != 0 or shutil.which("ip") is None:
         print("namespaces need root and iproute2")
         sys.exit(77)
     generator = random.Random(5)
-    with tempfile.TemporaryDirectory() as place:
-        folder = pathlib.Path(place)
-        (folder / "sweep.prm").write_text(SCENE)
-        remote_shell = folder / "remote_shell"  # what mpirun calls in the place of ssh: remote_shell HOST COMMAND...
-        remote_shell.write_text("#!/bin/sh\nnode=$1; shift; i=$((${node##*.} - 1))\n"
-                                f"exec ip netns exec {NAME}n$i unshare --uts sh -c \"hostname node$i; $*\"\n")
-        remote_shell.chmod(0o755)
+    (folder / "sweep.prm").write_text(SCENE)
+    remote_shell = folder / "remote_shell"  # what mpirun calls in the place of ssh: remote_shell HOST COMMAND...
+    remote_shell.write_text("#!/bin/sh\nnode=$1; shift; i=$((${node##*.} - 1))\n"
+                            f"exec ip netns exec {NAME}n$i unshare --uts sh -c \"hostname node$i; $*\"\n")
+    remote_shell.chmod(0o755)
+    try:
         try:
-            try:
-                make_nodes()
-            except subprocess.CalledProcessError as error:
-                print(f"no namespaces here: {error.stderr.strip()}")
-                sys.exit(77)
-            done = call([PROGRAM, "sweep", "sweep.prm", "--output", "one"], folder)
-            if done.returncode != 0:
-                sys.exit(f"one process: {done.stderr}")
-            reference = table(folder / "one")
-            n_rows = finished_rows(folder / "one")
-            rows, killed, nodes = 0, 0, list(range(NODES))
-            for k in range(KILLS):
-                victim, stop_at = generator.choice(nodes), generator.randint(1, n_rows // (4 * KILLS * NODES * RANKS_OF_NODE))
-                process = sweep(folder, nodes, *(["--resume"] if k > 0 else []), stop_at=stop_at)
-                check(wait_for_more_rows(process, folder / "nodes", rows), f"{stop_at} rows of a rank before a node is off")
-                power_off(victim)
-                process.communicate()
-                killed += 1
-                before, rows = rows, finished_rows(folder / "nodes")
-                check(process.returncode != 0 and before < rows, f"node {victim} of {nodes} off: {rows} rows, {before} before")
-                nodes = [i for i in range(NODES) if i != victim] if k % 2 == 0 else list(range(NODES))
-            process = sweep(folder, nodes, "--resume")
-            text, _ = process.communicate()
-            check(process.returncode == 0, f"the last one, on nodes {nodes}: {process.returncode}, {text[-600:]}")
-            check(rows < n_rows, f"{killed} nodes were switched off under way: {rows} of {n_rows} rows before the last start")
-            check(same(reference, table(folder / "nodes")), f"the table is that of one process ({len(nodes) * RANKS_OF_NODE} ranks)")
-        finally:
-            remove_nodes()
-    checks.end()
+            make_nodes()
+        except subprocess.CalledProcessError as error:
+            print(f"no namespaces here: {error.stderr.strip()}")
+            sys.exit(77)
+        done = call([PROGRAM, "sweep", "sweep.prm", "--output", "one"], folder)
+        if done.returncode != 0:
+            sys.exit(f"one process: {done.stderr}")
+        reference = table(folder / "one")
+        n_rows = finished_rows(folder / "one")
+        rows, killed, nodes = 0, 0, list(range(NODES))
+        for k in range(KILLS):
+            victim, stop_at = generator.choice(nodes), generator.randint(1, n_rows // (4 * KILLS * NODES * RANKS_OF_NODE))
+            process = sweep(folder, nodes, *(["--resume"] if k > 0 else []), stop_at=stop_at)
+            check(wait_for_more_rows(process, folder / "nodes", rows), f"{stop_at} rows of a rank before a node is off")
+            power_off(victim)
+            process.communicate()
+            killed += 1
+            before, rows = rows, finished_rows(folder / "nodes")
+            check(process.returncode != 0 and before < rows, f"node {victim} of {nodes} off: {rows} rows, {before} before")
+            nodes = [i for i in range(NODES) if i != victim] if k % 2 == 0 else list(range(NODES))
+        process = sweep(folder, nodes, "--resume")
+        text, _ = process.communicate()
+        check(process.returncode == 0, f"the last one, on nodes {nodes}: {process.returncode}, {text[-600:]}")
+        check(rows < n_rows, f"{killed} nodes were switched off under way: {rows} of {n_rows} rows before the last start")
+        check(same_columns(reference, table(folder / "nodes")), f"the table is that of one process ({len(nodes) * RANKS_OF_NODE} ranks)")
+    finally:
+        remove_nodes()
 
 
 if __name__ == "__main__":
-    main()
+    checks.run((main,))

@@ -9,7 +9,6 @@ import pathlib
 import re
 import shutil
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import Checks, call  # noqa: E402
@@ -22,22 +21,20 @@ checks = Checks()
 expect = checks.expect
 
 
-def main():
+def main(folder):
     octave = shutil.which("octave-cli")
     if octave is None:
         print("not run: there is no Octave (Debian: apt install octave)")
         sys.exit(77)
-    with tempfile.TemporaryDirectory() as name:
-        os.chdir(name)
-        os.symlink(ROOT / "prm", "prm")
-        # The commands that its first lines show, as they stand.
-        for line in re.findall(r"^%   (crawler .*)", SCRIPT.read_text(encoding="utf-8"), re.M):
-            done = call(["sh", "-c", line.replace("crawler", f"'{PROGRAM}'", 1) + " --quiet"])
-            expect(done.returncode == 0, f"{line}: {done.stderr}")
-        ended = call([octave, "--no-init-file", "--eval", f"draw = false; source('{SCRIPT}')"])
-        summary = json_of("output-fig_s1/summary.json")
-        rows = csv_rows("output-sweep/results.csv")
-        os.chdir("/")
+    os.chdir(folder)
+    os.symlink(ROOT / "prm", "prm")
+    # The commands that its first lines show, as they stand.
+    for line in re.findall(r"^%   (crawler .*)", SCRIPT.read_text(encoding="utf-8"), re.M):
+        done = call(["sh", "-c", line.replace("crawler", f"'{PROGRAM}'", 1) + " --quiet"])
+        expect(done.returncode == 0, f"{line}: {done.stderr}")
+    ended = call([octave, "--no-init-file", "--eval", f"draw = false; source('{SCRIPT}')"])
+    summary = json_of("output-fig_s1/summary.json")
+    rows = csv_rows("output-sweep/results.csv")
     screen = ended.stdout
     expect(ended.returncode == 0, f"Octave: {ended.stdout} {ended.stderr}")
     wanted = [f"finished: displacement {summary['displacement']:.10g} +- ",
@@ -50,8 +47,7 @@ def main():
     smallest = re.search(r"smallest stretch ([\d.]+)", screen)
     expect(len(rows) == 3 and smallest and abs(float(smallest[1]) / summary["min_stretch"]["value"] - 1) < 1e-3,
            f"the smallest stretch is {summary['min_stretch']}, read {smallest and smallest[1]}")
-    checks.end()
 
 
 if __name__ == "__main__":
-    main()
+    checks.run((main,))

@@ -9,16 +9,15 @@ import pathlib
 import shutil
 import subprocess
 import sys
-import tempfile
 
 import numpy as np
 from matplotlib.image import imread
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call  # noqa: E402
+from program import Checks, call, prm  # noqa: E402
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "contrib" / "paraview"
-SCENE = "subsection Output\n set Number of snapshots = 4\nend\n"
+SCENE = prm("Output/Number of snapshots=4")
 checks = Checks()
 check = checks.expect
 
@@ -35,15 +34,14 @@ def coloured(picture):
     return pixels.max(axis=2) - pixels.min(axis=2) > 0.15
 
 
-def main():
+def main(folder):
     missing = [name for name in (sys.argv[2], "Xvfb", "ffmpeg") if shutil.which(name) is None]
     if missing:
         print(f"not installed: {', '.join(missing)} (Debian: python3-paraview, not beside python3-vtk9; xvfb, ffmpeg)")
         sys.exit(77)
-    with tempfile.TemporaryDirectory() as name, subprocess.Popen(
-            ["Xvfb", "-displayfd", "1", "-screen", "0", "1280x1024x24"], stdout=subprocess.PIPE, text=True) as server:
+    with subprocess.Popen(["Xvfb", "-displayfd", "1", "-screen", "0", "1280x1024x24"], stdout=subprocess.PIPE, text=True) as server:
         try:
-            check_all(pathlib.Path(name), ":" + server.stdout.readline().strip())
+            check_all(folder, ":" + server.stdout.readline().strip())
         finally:
             server.terminate()
 
@@ -76,5 +74,4 @@ def check_all(folder, screen):
     check(code == 2 and "nothing has neither solution.pvd nor solution.xdmf" in text, f"no run: {code} {text}")
 
 
-main()
-checks.end()
+checks.run((main,))

@@ -12,7 +12,6 @@ import random
 import shutil
 import signal
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import Checks  # noqa: E402
@@ -20,6 +19,7 @@ from run_scenes import SCENES, STATES, Scene  # noqa: E402
 
 FILES = ("restart.dat", "restart.dat.new", "000003.vtu", "line_000007.vtu", "grip_000005.vtu", "kymograph.vts",
          "parameters.prm", "summary.json")
+checks = Checks()
 
 
 class Places:
@@ -40,7 +40,7 @@ class Places:
             self.most[what] = max(1, self.most[what] * 2 // 3)
 
 
-def disturb(scene, n, chance, checks, how="KILL"):
+def disturb(scene, n, chance, how="KILL"):
     """The run is stopped n times at random places, resumed each time, and then left alone. How often it went on."""
     places, hits, resumed, folder = Places(chance), 0, 0, scene.place / "disturbed"
     shutil.rmtree(folder, ignore_errors=True)
@@ -65,26 +65,23 @@ def disturb(scene, n, chance, checks, how="KILL"):
     return hits, resumed + scene.went_on("disturbed")
 
 
-def main():
+def main(place):
     n, seed = (int(word) if word else default for word, default in zip((sys.argv[3:5] + ["", ""])[:2], (20, 1)))
-    names, chance, checks = sys.argv[5:] or list(SCENES), random.Random(seed), Checks()
+    names, chance = sys.argv[5:] or list(SCENES), random.Random(seed)
     print(f"seed {seed}", flush=True)
     resumed = 0
-    with tempfile.TemporaryDirectory() as name:
-        place = pathlib.Path(name)
-        for one in names:
-            scene = Scene(sys.argv[1], place / one.replace(" ", "_"), one, checks, is_long=True)
-            numbers = disturb(scene, n, chance, checks)
-            resumed += numbers[1]
-            print(f"{one}: {numbers[0]} kills, {numbers[1]} times on from a state", flush=True)
-        checks.expect(resumed > 0, "no run went on from a state")
-        for one, more in (("lanes", []), ("petsc", ["Discretization/Share cells=yes"])):
-            if one in names:
-                scene = Scene(sys.argv[1], place / f"two_{one}", one, checks, more, [sys.argv[2], "--oversubscribe", "-n", "2"])
-                print(f"two ranks, {one}: stopped, and on from a state", *disturb(scene, max(1, n // 10), chance, checks, "USR1"),
-                      flush=True)
-    checks.end()
+    for one in names:
+        scene = Scene(sys.argv[1], place / one.replace(" ", "_"), one, checks, is_long=True)
+        numbers = disturb(scene, n, chance)
+        resumed += numbers[1]
+        print(f"{one}: {numbers[0]} kills, {numbers[1]} times on from a state", flush=True)
+    checks.expect(resumed > 0, "no run went on from a state")
+    for one, more in (("lanes", []), ("petsc", ["Discretization/Share cells=yes"])):
+        if one in names:
+            scene = Scene(sys.argv[1], place / f"two_{one}", one, checks, more, [sys.argv[2], "--oversubscribe", "-n", "2"])
+            print(f"two ranks, {one}: stopped, and on from a state", *disturb(scene, max(1, n // 10), chance, "USR1"),
+                  flush=True)
 
 
 if __name__ == "__main__":
-    main()
+    checks.run((main,))

@@ -6,16 +6,14 @@ gives in place of the stretch form show this answer.
 
     python3 soft_bodies.py PATH_TO_CRAWLER MPIRUN NUMBER SEED
 """
-import json
 import pathlib
 import sys
-import tempfile
 
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import Checks, call, on_ranks, prm, sets  # noqa: E402
-from tables import h5_columns  # noqa: E402
+from tables import h5_columns, json_of  # noqa: E402
 
 BLOCK = 50  # points of a sweep
 SCENES = prm("Model=nonlinear", "Active stress/Generator=optimal wave",
@@ -25,25 +23,24 @@ SCENES = prm("Model=nonlinear", "Active stress/Generator=optimal wave",
              "Active stress/Optimal wave/Perturbation parameter : uniform(0.1, 0.45); "
              "Active stress/Optimal wave/Wave speed : uniform(0.7, 1.3)",
              "Sweep/Time limit per point=20")
-
-
 OTHER_FORM = prm("Model=nonlinear", "Accuracy=2e-8", "Body/Elastic modulus=1e-3", "Body/Anchoring exponent=4.5",
                  "Active stress/Generator=optimal wave", "Active stress/Optimal wave/Choose wave by=wave speed",
                  "Active stress/Optimal wave/Wave speed=1.3", "Active stress/Optimal wave/Perturbation parameter=0.25")
+checks = Checks()
 
 
-def check_files(program, folder, checks):
+def check_files(program, folder):
     """The last row of the statistics is the answer, whose form is that of its summary."""
     (folder / "other.prm").write_text(OTHER_FORM, encoding="utf-8")
     result = call([program, "run", "other.prm", "--output", "other"], folder)
-    summary = json.loads((folder / "other" / "summary.json").read_text(encoding="utf-8"))
+    summary = json_of(folder / "other" / "summary.json")
     last = np.genfromtxt(folder / "other" / "statistics.csv", delimiter=",", skip_header=1)[-1]
     checks.expect(result.returncode == 0 and summary["formulation"] == "position" and last[0] > 100
                   and abs(last[3] - summary["displacement"]) <= summary["displacement_error"]["total"],
                   f"files of the other form: {result.stderr}, {summary['displacement']}, {last}")
 
 
-def ratios_of_block(program, mpirun, folder, seed, checks):
+def ratios_of_block(program, mpirun, folder, seed):
     """Both sweeps of a block of points: differences over bounds where there are both answers."""
     (folder / "soft.prm").write_text(SCENES.replace("NUMBER", str(BLOCK)).replace("SEED", seed), encoding="utf-8")
     tables = []
@@ -59,20 +56,16 @@ def ratios_of_block(program, mpirun, folder, seed, checks):
     return ratio[both]
 
 
-def main():
+def main(folder):
     program, mpirun, number, seed = pathlib.Path(sys.argv[1]).resolve(), *sys.argv[2:5]
-    checks = Checks()
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        check_files(program, folder, checks)
-        ratios = []
-        for block in range(0, int(number), BLOCK):
-            ratios.extend(ratios_of_block(program, mpirun, folder, str(1000 * int(seed) + block // BLOCK), checks))
-        checks.expect(len(ratios) > 0.5 * int(number), f"only {len(ratios)} points have both answers")
-        print(f"{len(ratios)} of {number} compared; bound over error: median {1. / np.median(ratios):.3g}, "
-              f"least {1. / np.max(ratios):.3g}")
-    checks.end()
+    check_files(program, folder)
+    ratios = []
+    for block in range(0, int(number), BLOCK):
+        ratios.extend(ratios_of_block(program, mpirun, folder, str(1000 * int(seed) + block // BLOCK)))
+    checks.expect(len(ratios) > 0.5 * int(number), f"only {len(ratios)} points have both answers")
+    print(f"{len(ratios)} of {number} compared; bound over error: median {1. / np.median(ratios):.3g}, "
+          f"least {1. / np.max(ratios):.3g}")
 
 
 if __name__ == "__main__":
-    main()
+    checks.run((main,))

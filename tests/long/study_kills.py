@@ -252,51 +252,7 @@ def test_out_of_memory(folder):
            rows["status"] == ["finished", "failed", "finished"], f"in a sweep it is a row {rows['reason']} {result.stderr}")
 
 
-def test_more_bad_input(folder):
-    """Axes and tables like those of tests/cli/sweep.py."""
-    files = {"good": "p,chi\n2,0.1\n", "remarks": "# nothing but a remark\n", "names": "p,chi\n", "long": "p,q\n1,2,3\n",
-             "quote": 'p,q\n1,"a\nb"\n', "wide": ",".join(f"name{i}" for i in range(40)) + "\n", "twice": "p,q,p\n1,2,3\n"}
-    for name, text in files.items():
-        (folder / f"{name}.csv").write_text(text, encoding="utf-8")
-    (folder / "binary.csv").write_bytes(bytes(range(256)) * 20)
-    (folder / "a_folder").mkdir()
-    for axes, words in ((f"{P} : 4, column(good.csv, p)", ("column(good.csv, p)", "nothing else")),
-                        (f"{P} : linspace(1, 2)", ("linspace(first, last, count)",)),
-                        (f"{P} : uniforms(2, 3)", ('nearest is "uniform"',)),
-                        (f"{P} 1, 2", ("VALUES",)),
-                        ("File : linspace(1, 2, 2)", ("linspace(1, 2, 2)", "names of parameter files")),
-                        ("File : uniform(1, 2)", ("uniform(1, 2)", "names of parameter files")),
-                        ("File : missing.prm", ("missing.prm", "No such file")),
-                        ("File : a_folder", ("a_folder", "is a folder")),
-                        (f"{P} : linspace(2, 3, 2) Body/Length: linspace(1, 2, 2)", ("semicolon missing",)),
-                        (f"{P} : column(nothing.csv, p)", ("nothing.csv", "No such file or directory", "CSV file")),
-                        (f"{P} : column(a_folder, p)", ("a_folder", "is a folder")),
-                        (f"{P} : column(remarks.csv, p)", ("remarks.csv", "is empty")),
-                        (f"{P} : column(names.csv, p)", ("names.csv", "no rows")),
-                        (f"{P} : column(good.csv)", ("column(file.csv, name)",)),
-                        (f"{P} : column(wide.csv, nme39)", ("40 columns", '"name0"', '"name9", ...', 'nearest is "name39"')),
-                        (f"{P} : column(twice.csv, p)", ("more than one column",)),
-                        (f"{P} : column(long.csv, p)", ("row 2", "3 values,")),
-                        (f"{P} : column(quote.csv, p)", ("row 2", "not closed")),
-                        (f"{P} : column(binary.csv, p)", ("row 1", "not text")),
-                        ("Sweep/Seed : 1, 2", ("cannot vary",)),
-                        ("Body/Friction profile : 1, 1+x", ("1+x",))):
-        write(folder, axes)
-        result = call([PROGRAM, "sweep", "scene.prm", "--output", "bad"], folder)
-        expect(result.returncode == 2 and len(result.stderr.splitlines()) == 1 and not (folder / "bad").exists()
-               and all(word in result.stderr for word in (*words, "Sweep/Axes")), f'"{axes}": {result}')
-    write(folder, f"{P} : 2, 3")
-    call([PROGRAM, "sweep", "scene.prm", "--output", "damaged"], folder)
-    file = folder / "damaged" / "results.h5"
-    whole = file.read_bytes()
-    for content, word in ((whole[:100], "cannot be read"), (b"", "not an HDF5"), (whole.replace(b"results", b"Results"), "results")):
-        file.write_bytes(content)
-        result = call([PROGRAM, "sweep", "scene.prm", "--output", "damaged", "--resume"], folder)
-        expect(result.returncode == 2 and len(result.stderr.splitlines()) == 1 and "results.h5" in result.stderr
-               and word in result.stderr and file.read_bytes() == content, f"a table of {len(content)} bytes: {result}")
-
-
 if __name__ == "__main__":
     print(f"{N_KILLS} kills, seed {SEED}", flush=True)
     ctypes.CDLL(None).prctl(36, 1)  # PR_SET_CHILD_SUBREAPER: the ranks of a killed mpirun become children of this process
-    checks.run((test_more_bad_input, test_many_ranks, test_out_of_memory, test_error_bars, test_kills))
+    checks.run((test_many_ranks, test_out_of_memory, test_error_bars, test_kills))

@@ -7,7 +7,6 @@
 import json
 import pathlib
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import Checks, call, on_ranks, sets  # noqa: E402
@@ -66,31 +65,29 @@ def same_answer(name, scene, ranks, *where):
               f"largest difference {errors[worst]:.1e} in {worst}")
 
 
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        where = (sys.argv[1], sys.argv[2], folder)
-        same_answer("Fig. S1, chi = 0.4", WAVE, (2, 3), *where)
-        same_answer("the whole body on each rank", {**WAVE, "Discretization/Share cells": "no"}, (2,), *where)
-        same_answer("formula, 3 cells", FORMULA, (2, 3), *where)
-        same_answer("one cell", {**FORMULA, "Discretization/Number of cells": 1}, (2,), *where)
+def main(folder):
+    where = (sys.argv[1], sys.argv[2], folder)
+    same_answer("Fig. S1, chi = 0.4", WAVE, (2, 3), *where)
+    same_answer("the whole body on each rank", {**WAVE, "Discretization/Share cells": "no"}, (2,), *where)
+    same_answer("formula, 3 cells", FORMULA, (2, 3), *where)
+    same_answer("one cell", {**FORMULA, "Discretization/Number of cells": 1}, (2,), *where)
 
-        ends = []
-        for ranks in (1, 2):
-            code, summary, messages = run(*where, ranks, INVERTS)
-            check(code == 4 and len(messages) <= 1, f"inversion: exit code {code} on {ranks} ranks, message {messages}")
-            check(summary is not None and summary["status"] == "inverted" and summary["inversion"] is not None,
-                  f"inversion: summary.json of {ranks} ranks says so")
-            ends.append((summary or {}).get("inversion"))
-        if None not in ends:
-            check(all(abs(ends[0][key] - ends[1][key]) <= 1e-6 for key in ("s", "t")),
-                  f"inversion at the same place: {ends}")
+    ends = []
+    for ranks in (1, 2):
+        code, summary, messages = run(*where, ranks, INVERTS)
+        check(code == 4 and len(messages) <= 1, f"inversion: exit code {code} on {ranks} ranks, message {messages}")
+        check(summary is not None and summary["status"] == "inverted" and summary["inversion"] is not None,
+              f"inversion: summary.json of {ranks} ranks says so")
+        ends.append((summary or {}).get("inversion"))
+    if None not in ends:
+        check(all(abs(ends[0][key] - ends[1][key]) <= 1e-6 for key in ("s", "t")),
+              f"inversion at the same place: {ends}")
 
-        bad = {"value out of range": BAD_VALUE, "unknown entry": UNKNOWN, "impossible wave": INCONSISTENT}
-        for name, scene in bad.items():
-            code, _, messages = run(*where, 2, scene)
-            check(code == 2 and len(messages) == 1, f"{name}: exit code {code} on 2 ranks, messages {messages}")
-    checks.end()
+    bad = {"value out of range": BAD_VALUE, "unknown entry": UNKNOWN, "impossible wave": INCONSISTENT}
+    for name, scene in bad.items():
+        code, _, messages = run(*where, 2, scene)
+        check(code == 2 and len(messages) == 1, f"{name}: exit code {code} on 2 ranks, messages {messages}")
 
 
 if __name__ == "__main__":
-    main()
+    checks.run((main,))

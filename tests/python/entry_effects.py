@@ -21,7 +21,7 @@ import warnings
 PROGRAM, PACKAGE, SOURCE = (str(pathlib.Path(path).resolve()) for path in sys.argv[1:4])
 sys.path[:0] = [PACKAGE, str(pathlib.Path(__file__).resolve().parents[1] / "support")]
 import crawler  # noqa: E402
-from program import NO_PICTURES, Checks, call  # noqa: E402
+from program import NO_PICTURES, Checks, call, warnings_of  # noqa: E402
 
 checks = Checks()
 expect = checks.expect
@@ -348,13 +348,10 @@ def values():
 def idle_of(scene, others):
     """Those of the other values that a note of check() names; sections are tried as a whole first."""
     def noted(some):
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            try:
-                crawler.check(scene, set=some)
-            except crawler.InputError:
-                return None
-        notes = [str(one.message) for one in caught]
+        try:
+            notes, _ = warnings_of(lambda: crawler.check(scene, set=some))
+        except crawler.InputError:
+            return None
         return {name: value for name, value in some.items() if any(f'"{name}" has no effect' in note for note in notes)}
 
     idle, sections = {}, {}
@@ -417,19 +414,13 @@ def check_channels():
                  "sweep": lambda: crawler.sweep(idle, {BODY + "Length": [1, 2]}),
                  "sweep with files": lambda: crawler.sweep(idle, {BODY + "Length": [1, 2]}, output=FILES / "channels2")}
     for kind, action in in_python.items():
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            action()
-        texts = [str(one.message) for one in caught]
-        expect(len(texts) == 1 and sentence in texts[0] and caught[0].filename == __file__, f"{kind} in Python: {texts}")
+        texts, files = warnings_of(action)
+        expect(len(texts) == 1 and sentence in texts[0] and files == {__file__}, f"{kind} in Python: {texts}")
     # A run without files has fields or none; how they are written is nothing to it.
     for name, value, n in (("Output/Number of snapshots", 3, 1), ("Output/Number of snapshots", 0, 0), ("Output/Statistics", False, 0),
                            ("Output/Snapshot format", "xdmf", 1), ("Output/Active stress table", "4, 4", 1),
                            ("Time/Checkpoint interval", 3, 1)):
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            crawler.run({name: value})
-        texts = [str(one.message) for one in caught]
+        texts, _ = warnings_of(lambda: crawler.run({name: value}))
         expect(len(texts) == n and all(f'"{name}" has no effect' in text for text in texts), f"{name} = {value} in Python: {texts}")
     # An axis may give the entry its effect, and may itself have none.
     for axes, n in ((GROUND + "Friction law : power, expression", 0), (BODY + "Length : 1, 2", 1),
@@ -454,10 +445,7 @@ def check_commas():
                         ("0.3, 0, 5", "1", 0), ("0.3,0,5", "1", 0)):
         scene = {OPTIMAL + "Choose wave by": "wave speed", OPTIMAL + "Perturbation parameter": "1e-2",
                  BODY + "Elastic modulus": k, coefficients: value}
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            crawler.check(scene)
-        texts = [str(one.message) for one in caught]
+        texts, _ = warnings_of(lambda: crawler.check(scene))
         expect(len(texts) == n and all("decimals are written with a point" in text for text in texts), f"{value}: {texts}")
     file = FILES / "commas.prm"
     file.write_text(crawler.to_prm({**scene, coefficients: "0,5"}))

@@ -61,14 +61,19 @@ def scaled(samples, factor):
     return samples
 
 
+def quiet_fit(*arguments, **settings):
+    """The Fit, without its warnings."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return crawler.fit(*arguments, **settings)
+
+
 def fit(scene, data, *names, **settings):
     """The Fit of variables with these names, from a start beside the truth."""
     start = {**scene, **{name: scene.get(name, 1) * 1.1 for name in names}}
     kinds = [one.quantity for one in (data if isinstance(data, list) else [data])]
-    where = {"Fit/Markers at": ", ".join(f"{s:.17g}" for s in S)} if "x" in kinds else {}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return crawler.fit(start, data, {name: RANGES[name] for name in names}, set={**where, **settings.pop("set", {})}, **settings)
+    where = {"markers_at": S} if "x" in kinds else {}
+    return quiet_fit(start, data, {name: RANGES[name] for name in names}, **where, **settings)
 
 
 class Values(unittest.TestCase):
@@ -161,9 +166,7 @@ class Values(unittest.TestCase):
     def test_few_data(self):
         """Ten numbers for three unknowns and an origin: no sentence is about nothing."""
         few = Samples("x", np.arange(5.0), T[:2], tracks(STRESS).values[:2, 1:6], list("abcde"))
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            found = crawler.fit(STRESS, few, {name: RANGES[name] for name in (P, K, AMPLITUDE)}, standard_deviation=0.1, markers_at=S[1:6])
+        found = quiet_fit(STRESS, few, {name: RANGES[name] for name in (P, K, AMPLITUDE)}, standard_deviation=0.1, markers_at=S[1:6])
         self.assertEqual((found.status, [one["determined"] for one in found.variables.values()], len(found.undetermined) > 0), ("finished", 3 * [False], True))
 
     def test_deviation_beside_an_undetermined_direction(self):
@@ -198,21 +201,17 @@ class Values(unittest.TestCase):
         scene = {**STRESS, BODY + "Length": 1, K: 1, AMPLITUDE: 0.25, "Time/End time": 3}
         data = self.path_of_centre(scene, np.linspace(0, 3, 61), 0.001, 3)
         variables = {P: (0.5, 5), AMPLITUDE: (0.02, 1)}
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            found = crawler.fit({**scene, P: 1.7, AMPLITUDE: 0.2}, data, variables, standard_deviation=0.001)
-            for end in found.variables[P]["interval_95"]:
-                held = crawler.fit({**scene, P: end, AMPLITUDE: 0.5 if end < 2 else 0.15}, data, {AMPLITUDE: (0.02, 1)}, standard_deviation=0.001)
-                self.assertAlmostEqual(held.goodness.chi_square - found.goodness.chi_square, 3.8415, delta=0.2)
+        found = quiet_fit({**scene, P: 1.7, AMPLITUDE: 0.2}, data, variables, standard_deviation=0.001)
+        for end in found.variables[P]["interval_95"]:
+            held = quiet_fit({**scene, P: end, AMPLITUDE: 0.5 if end < 2 else 0.15}, data, {AMPLITUDE: (0.02, 1)}, standard_deviation=0.001)
+            self.assertAlmostEqual(held.goodness.chi_square - found.goodness.chi_square, 3.8415, delta=0.2)
 
     def test_leaves_a_minimum_beside_which_a_profile_is_lower(self):
         """Of chi-square 84 at a frequency of 0.91; it is 64 at 1.05, and the truth is 1.06."""
         scene = {**STRESS, BODY + "Length": 1.4, P: 2.18, K: 1.43, GAMMA: 0.25, AMPLITUDE: 0.29, WAVE + "Frequency": 1.06, WAVE + "Wave number": 0.87,
                  "Time/End time": 3.82}
         data = self.path_of_centre(scene, np.linspace(0, 3.82, 70), 0.001, 4)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            found = crawler.fit({**scene, P: 2.26, WAVE + "Frequency": 0.9}, data, {P: (-3, 6), WAVE + "Frequency": (0.5, 1.5)}, standard_deviation=0.001)
+        found = quiet_fit({**scene, P: 2.26, WAVE + "Frequency": 0.9}, data, {P: (-3, 6), WAVE + "Frequency": (0.5, 1.5)}, standard_deviation=0.001)
         self.assertLess(found.starts[0]["values"][WAVE + "Frequency"], 0.95)
         self.assertLess(abs(found.variables[WAVE + "Frequency"]["value"] - 1.06), 3 * found.variables[WAVE + "Frequency"]["deviation"])
         self.assertIn("chi-square has another minimum", " ".join(found.notes))
@@ -253,7 +252,7 @@ class Values(unittest.TestCase):
         modes = {**STRAIN, "Active stress/Prescribed strain/Given by": "modes", "Active stress/Modes/Coefficients": "0, 0.2, 0.1"}
         name = "Active stress/Modes/Coefficients[5]"
         found = crawler.fit(modes, tracks({**modes, "Active stress/Modes/Coefficients": "0, 0.2, 0.1, 0, 0.05"}, 1e-3), {name: (-0.1, 0.2)},
-                            set={"Fit/Markers at": ", ".join(f"{s:.17g}" for s in S)}, standard_deviation=1e-3)
+                            markers_at=S, standard_deviation=1e-3)
         self.assertLess(abs(found.variables[name]["value"] - 0.05), 4 * found.variables[name]["deviation"])
 
     def test_stress_as_splines(self):
@@ -262,8 +261,7 @@ class Values(unittest.TestCase):
         splines = {**STRESS, "Active stress/Generator": "modes", "Active stress/Modes/In time": "splines", "Active stress/Modes/Harmonics": 1,
                    "Active stress/Modes/Time cells": 1, "Active stress/Modes/Coefficients": ", ".join(map(repr, coefficients.tolist()))}
         found = crawler.fit({**splines, "Active stress/Modes/Coefficients": ", ".join(["0"] * 9)}, tracks(splines),
-                            {"Active stress/Modes/Coefficients[1-9]": (-1, 1)}, standard_deviation=NOISE,
-                            set={"Fit/Markers at": ", ".join(f"{s:.17g}" for s in S)})
+                            {"Active stress/Modes/Coefficients[1-9]": (-1, 1)}, standard_deviation=NOISE, markers_at=S)
         self.assertEqual((found.undetermined, len(found.variables)), ([], 9))
         self.assertLess(found.n_runs, 15 * 9)  # of a variable: a derivative in a step of the search, two at the end, two for the bias, two for the profile
         for one, truth in zip(found.variables.values(), coefficients):
@@ -361,9 +359,7 @@ class Valley(unittest.TestCase):
         cls.data = Samples("centre", np.zeros(1), t, (centre + 1e-4 * np.random.default_rng(1).standard_normal(60))[:, None])
 
     def from_start(self, exponent, amplitude):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            return crawler.fit({**self.SCENE, P: exponent, AMPLITUDE: amplitude}, self.data, {P: (0.5, 5), AMPLITUDE: RANGES[AMPLITUDE]}, standard_deviation=1e-4)
+        return quiet_fit({**self.SCENE, P: exponent, AMPLITUDE: amplitude}, self.data, {P: (0.5, 5), AMPLITUDE: RANGES[AMPLITUDE]}, standard_deviation=1e-4)
 
     def test_search_follows_it_to_its_end(self):
         far, near = self.from_start(3, 0.15), self.from_start(2, 0.3)

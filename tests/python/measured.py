@@ -323,6 +323,8 @@ class Trackers(unittest.TestCase):
     S = np.linspace(0, 4, 9)
     T = np.arange(17) / 10
     NAMES = [f"p{i}" for i in range(9)]
+    DEEPLABCUT = (f"scorer{',net' * 27}\nbodyparts" + "".join(f",p{i}" * 3 for i in range(9))
+                  + f"\ncoords{',x,y,likelihood' * 9}\n")
 
     @classmethod
     def x(cls):
@@ -340,17 +342,15 @@ class Trackers(unittest.TestCase):
     def test_deeplabcut(self):
         x = self.x()
         triples = [column for i in range(9) for column in (x[:, i], np.full(17, 3.0), 0.9 + 0.005 * np.arange(17))]
-        head = ["scorer" + ",net" * 27, "bodyparts," + ",".join(name for name in self.NAMES for _ in range(3)), "coords" + ",x,y,likelihood" * 9]
-        text = "\n".join(head) + "\n" + self.rows(range(17), *triples)
+        text = self.DEEPLABCUT + self.rows(range(17), *triples)
         self.agrees(read(text))
         self.assertEqual(np.isnan(read(text, confidence=0.9249).values).sum(), 5 * 9)
         with self.assertRaisesRegex(InputError, "no place at any time"):
             read(text, confidence=1)
-        several = "\n".join([head[0], "individuals" + ",worm1" * 27, *head[1:]]) + "\n" + self.rows(range(17), *triples)
+        several = text.replace("bodyparts", "individuals" + ",worm1" * 27 + "\nbodyparts")
         self.agrees(read(several))
-        two = several.replace(",worm1", ",worm2", 1)
         with self.assertRaisesRegex(InputError, "2 animals"):
-            read(two)
+            read(several.replace(",worm1", ",worm2", 1))
 
     def test_sleap(self):
         import h5py
@@ -408,10 +408,7 @@ class Trackers(unittest.TestCase):
         """On a circle: distances are those along the body, and the mean place moves with it."""
         x, radius = self.x(), 3.0
         columns = [column for i in range(9) for column in (radius * np.sin(x[:, i] / radius), radius * np.cos(x[:, i] / radius))]
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder, "file.csv")
-            path.write_text("t," + ",".join(f"x{i},y{i}" for i in range(9)) + "\n" + self.rows(self.T, *columns))
-            samples = read_samples(path)
+        samples = read("t," + ",".join(f"x{i},y{i}" for i in range(9)) + "\n" + self.rows(self.T, *columns))
         np.testing.assert_allclose(np.diff(samples.values, axis=1), np.diff(x, axis=1), rtol=2e-3)
         self.assertRegex(samples.notes[0], "the body bends.*distances along it, of x and y")
 
@@ -419,12 +416,11 @@ class Trackers(unittest.TestCase):
         """On a circle, one misplaced and uncertain: the places of all others stay, and its own is a gap."""
         x, radius = self.x(), 3.0
         columns = [column for i in range(9) for column in (radius * np.sin(x[:, i] / radius), radius * np.cos(x[:, i] / radius), np.ones(17))]
-        head = ["scorer" + ",net" * 27, "bodyparts," + ",".join(name for name in self.NAMES for _ in range(3)), "coords" + ",x,y,likelihood" * 9]
-        whole = read("\n".join(head) + "\n" + self.rows(range(17), *columns)).values
+        whole = read(self.DEEPLABCUT + self.rows(range(17), *columns)).values
         gaps = [(0, 0), (6, 4), (16, 5)]  # frame and marker, also where no frames beside tell
         for frame, marker in gaps:
             columns[3 * marker][frame], columns[3 * marker + 1][frame], columns[3 * marker + 2][frame] = 9, 9, 0.1
-        lost = read("\n".join(head) + "\n" + self.rows(range(17), *columns), confidence=0.6).values
+        lost = read(self.DEEPLABCUT + self.rows(range(17), *columns), confidence=0.6).values
         self.assertEqual([tuple(one) for one in np.argwhere(np.isnan(lost))], gaps)
         moved = lost - whole - np.nanmean(lost - whole)  # the origin is nobody's
         self.assertLess(np.nanmax(np.abs(moved)), 0.01)

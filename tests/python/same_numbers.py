@@ -9,7 +9,6 @@ import os
 import pathlib
 import pickle
 import sys
-import tempfile
 
 import numpy as np
 
@@ -192,19 +191,18 @@ def check_other_folders(folder):
            len(optimum.starts) > 0, f"{optimum!r}")
 
 
-def main():
-    with tempfile.TemporaryDirectory() as name:
-        os.chdir(name)
-        folder = pathlib.Path(tempfile.mkdtemp())
-        check_runs(folder)
-        check_results()
-        check_batch()
-        check_sweeps(folder)
-        check_other_folders(folder)
-        expect(not list(pathlib.Path(name).iterdir()), f"files were written: {list(pathlib.Path(name).iterdir())}")
-        os.chdir("/")
-    checks.end()
+def main(folder):
+    empty, folder = folder / "empty", folder / "files"
+    for place in (empty, folder):
+        place.mkdir()
+    os.chdir(empty)
+    check_runs(folder)
+    check_results()
+    check_batch()
+    check_sweeps(folder)
+    check_other_folders(folder)
+    expect(not list(empty.iterdir()), f"files were written: {list(empty.iterdir())}")
 
 
 if __name__ == "__main__":
-    main()
+    checks.run((main,))

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Commands that cannot write: operations of tests of full disks on every command, and the expected behaviour."""
-import csv
 import os
 import resource
 import shutil
 import subprocess
 
 from program import NO_PICTURES, Paused, call, prm
+from tables import without_columns
 
 PAGE = 4096
 RUN = prm("Accuracy=1e-3", "Active stress/Generator=expression",
@@ -59,13 +59,6 @@ class Case:
             return None
 
 
-def without_times(text):
-    """Rows of a table without columns that differ from run to run."""
-    rows = list(csv.reader(text.decode().splitlines()))
-    kept = [i for i, name in enumerate(rows[0]) if not any(word in name for word in TIMES)]
-    return [[row[i] for i in kept] for row in rows]
-
-
 class Faults:
     """Counts disturbed commands, and judges them."""
 
@@ -79,7 +72,7 @@ class Faults:
         self.checks.expect(set(ours) - free == set(whole) - free, f"{what}: other files: {sorted(set(ours) ^ set(whole))}")
         for name in set(ours) & set(whole) - free:
             if name.endswith(("results.csv", "starts.csv", "optima.csv")):
-                same = without_times(ours[name]) == without_times(whole[name])
+                same = without_columns(ours[name].decode(), *TIMES) == without_columns(whole[name].decode(), *TIMES)
             elif name.endswith(".prm") and "recommendations" not in name:  # comments follow names of folders
                 same = ours[name].split() == whole[name].split()
             elif name.endswith((".vtu", ".vts", ".pvd", "sensitivity_body.csv", "statistics.csv", "stress.csv")):

@@ -206,15 +206,4 @@ namespace crawler::test
       before.insert(before.end(), {"--set", entry});
     return before;
   }
-
-  /// Wraps "set ..." lines in the subsections of a path like "Active stress/Expression".
-  inline std::string
-  in_section(const std::string &path, const std::string &lines)
-  {
-    std::string before, after;
-    std::istringstream in(path);
-    for (std::string name; std::getline(in, name, '/'); after += "end\n")
-      before += "subsection " + name + "\n";
-    return before + lines + "\n" + after;
-  }
 } // namespace crawler::test

@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import warnings
 
 PATIENCE = 600  # [s]
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1",
@@ -33,6 +34,11 @@ class Checks:
             self.failures.append(what)
             print(f"FAILED {what}", flush=True)
         return bool(condition)
+
+    def refused(self, done, *words, code=2):
+        """Expects that a command ended with this exit code and one sentence that has these words. Returns whether it did."""
+        return self.expect(done.returncode == code and done.stderr.count("\n") == 1 and all(word in done.stderr for word in words),
+                           f"{' '.join(done.args)}: exit code {done.returncode}, {done.stderr[:800]!r}, but {words} are expected")
 
     def skip(self, what):
         """Notes a check that this machine cannot do, and why; the last line counts it."""
@@ -70,6 +76,14 @@ def call(command, folder=None, stop_at=None, variables=None, **more):
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **({} if "input" in more else {"stdin": subprocess.DEVNULL})}
     return subprocess.run([str(word) for word in command], cwd=folder, env=environment(stop_at, **(variables or {})),
                           text=True, timeout=PATIENCE, check=False, **{**streams, **more})
+
+
+def warnings_of(action):
+    """What an action warns of, and the files it names as those of its caller."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        action()
+    return [str(one.message) for one in caught], {one.filename for one in caught}
 
 
 def sets(settings):

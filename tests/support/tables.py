@@ -18,6 +18,13 @@ def csv_rows(file):
         return list(csv.DictReader(lines))
 
 
+def without_columns(text, *words):
+    """Rows of a CSV text, without columns whose names have one of these words in them."""
+    rows = list(csv.reader(text.splitlines()))
+    kept = [i for i, name in enumerate(rows[0]) if not any(word in name for word in words)]
+    return [[row[i] for i in kept if i < len(row)] for row in rows]
+
+
 def h5_columns(file, group):
     """Columns of a table in HDF5, by their names: arrays of numbers, lists of texts."""
     with h5py.File(file, "r") as whole:

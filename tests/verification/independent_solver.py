@@ -8,7 +8,6 @@ scenes and compares the results.
 import json
 import pathlib
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 import program as started  # noqa: E402
@@ -29,6 +28,7 @@ SCENES = {
     "a = 2, two harmonics, sines and cosines": (2, 1.5, 2, 0.6, 1.2, (0.1, -1.3, (1, 0.5), (-0.4, 0.3))),
     "a = -1.5, formula": (-1.5, 1, 1, 1, 1, "0.2*(1-cos(2*pi*t))*(sin(2*pi*(s+t))+s^2)"),
 }
+checks = started.Checks()
 
 
 def call(*arguments):
@@ -69,38 +69,31 @@ def parameter_file(exponent, length, modulus, friction, end_time, stress):
                        "Output/Number of snapshots=0", "Output/Statistics=false")
 
 
-def crawler(program, *scene):
+def crawler(folder, *scene):
     """Results of the program, extremes without their places."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = pathlib.Path(folder, "scene.prm")
-        file.write_text(parameter_file(*scene))
-        summaries = []
-        for cells in ("automatic", CELLS_FOR_EXTREMES):
-            output = pathlib.Path(folder, f"{cells}")
-            call(program, "run", str(file), "--quiet", "--output", str(output),
-                 "--set", f"Discretization/Number of cells={cells}")
-            summaries.append(json_of(output / "summary.json"))
+    file, output = folder / "scene.prm", folder / "output"
+    file.write_text(parameter_file(*scene))
+    summaries = []
+    for cells in ("automatic", CELLS_FOR_EXTREMES):
+        call(sys.argv[1], "run", str(file), "--quiet", "--output", str(output), "--overwrite",
+             "--set", f"Discretization/Number of cells={cells}")
+        summaries.append(json_of(output / "summary.json"))
     automatic, fine = summaries
     return {name: fine[name]["value"] if name.endswith("_stretch") else automatic[name] for name in TOLERANCE}
 
 
-def main():
-    if len(sys.argv) != 2:
-        sys.exit("usage: independent_solver.py PATH_TO_CRAWLER")
-    failures = 0
+def main(folder):
     for name, scene in SCENES.items():
-        theirs, ours = reference(*scene), crawler(sys.argv[1], *scene)
+        theirs, ours = reference(*scene), crawler(folder, *scene)
         print(f"{name}: independent solver with {theirs['points']} points in {theirs['seconds']:.1f} s")
         for quantity, tolerance in TOLERANCE.items():
             difference = abs(ours[quantity] / theirs[quantity] - 1)
             own_error = theirs["errors"][quantity] / abs(theirs[quantity])
-            good = difference <= tolerance and own_error <= 0.2 * tolerance
-            failures += not good
-            print(f"  {quantity:<13} {ours[quantity]:>15.10g}, reference {theirs[quantity]:>15.10g} +- {own_error:.0e}, "
-                  f"difference {difference:.1e} of at most {tolerance:g}{'' if good else '  FAILED'}", flush=True)
-    print(f"{failures} differences too large")
-    return 1 if failures else 0
+            text = (f"{quantity:<13} {ours[quantity]:>15.10g}, reference {theirs[quantity]:>15.10g} +- {own_error:.0e}, "
+                    f"difference {difference:.1e} of at most {tolerance:g}")
+            print(f"  {text}", flush=True)
+            checks.expect(difference <= tolerance and own_error <= 0.2 * tolerance, text)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    checks.run((main,))

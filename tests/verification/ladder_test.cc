@@ -111,10 +111,6 @@ TEST(Ladder, ScenesThatDoNotFitAreRefused)
   const test::Settings expression = {{"Active stress/Generator", "expression"}},
                        prescribed = test::set("Body/Friction profile = 1+s; prescribed strain");
   const std::vector<std::tuple<test::Settings, test::Settings, std::string>> cases = {
-    {expression, {{"Model", "perturbation"}}, "Model: Model is perturbation, which is a series"},
-    {test::wave(-1., 0.1),
-     {{"Model", "linear"}},
-     "Model: Model is linear, but a = 1 - p is -1; a = 0 is expected (Anchoring exponent p = 1)"},
     {test::wave(0., 0.1), {{"Model", "linear"}}, "nothing"},
     {expression, {{"Model", "kinematic"}}, "nothing"},
     {expression,
@@ -133,14 +129,9 @@ TEST(Ladder, ScenesThatDoNotFitAreRefused)
     EXPECT_TRUE(complaint(with(scene, settings)).starts_with(words)) << complaint(with(scene, settings));
 }
 
-/// A level that was asked for gives its answer and its error, also if that is too large.
+/// An error that is not known is not within Accuracy (one that is too large: cli/commands_test.cc).
 TEST(Ladder, AccuracyThatIsNotMet)
 {
-  const auto result = on_level(test::wave(-1., 0.2), Model::perturbation, 1e-4);
-  EXPECT_EQ(result.time.status, Status::failed);
-  EXPECT_EQ(result.time.reason, "accuracy_not_met");
-  EXPECT_NEAR(result.displacement, 0.02, 1e-15);
-  EXPECT_GE(result.error->model, 2.04422750e-2 - 2e-2);
   const auto unknown = on_level(test::wave(-1., 0.6), Model::perturbation, 1e-4);
   EXPECT_EQ(unknown.time.reason, "accuracy_not_met");
   EXPECT_TRUE(std::isnan(unknown.error->total));

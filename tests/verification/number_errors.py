@@ -10,7 +10,6 @@ give by chance (in one of 100 samples).
 """
 import pathlib
 import sys
-import tempfile
 
 from scipy.stats import binom
 
@@ -63,16 +62,14 @@ def judge(rows, reference, judged):
                                                 abs(float(exact[column]))))
 
 
-def main():
+def main(folder):
     program = str(pathlib.Path(sys.argv[1]).resolve())
     points, seed = (int(sys.argv[i]) if len(sys.argv) > i else default for i, default in ((2, 6), (3, 1)))
     judged = {}
-    with tempfile.TemporaryDirectory() as name:
-        for settings, axes in SCENES.values():
-            reference = sweep(program, pathlib.Path(name), settings, axes, points, seed, "1e-9",
-                              ["Discretization/Number of cells=24"])
-            for accuracy in ACCURACIES:
-                judge(sweep(program, pathlib.Path(name), settings, axes, points, seed, accuracy), reference, judged)
+    for settings, axes in SCENES.values():
+        reference = sweep(program, folder, settings, axes, points, seed, "1e-9", ["Discretization/Number of cells=24"])
+        for accuracy in ACCURACIES:
+            judge(sweep(program, folder, settings, axes, points, seed, accuracy), reference, judged)
     print(f"{'number':40s} {'judged':>7s} {'covered':>9s} {'bar/error':>10s} {'worst':>8s} {'largest relative error':>23s}")
     for number, rows in judged.items():
         ratios = sorted(bar / max(error, 1e-300) for bar, error, _ in rows)
@@ -82,8 +79,7 @@ def main():
         checks.expect(sum(ratio < 1 for ratio in ratios) <= binom.ppf(0.99, len(rows), 0.01), f"{number}: 99 % are wanted")
         checks.expect(len(rows) >= points, f"{number}: {len(rows)} were judged")
     checks.expect(len(judged) >= 17, f"{len(judged)} numbers have error bounds, 17 are expected")
-    checks.end()
 
 
 if __name__ == "__main__":
-    main()
+    checks.run((main,))

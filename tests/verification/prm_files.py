@@ -8,18 +8,20 @@ A file says what to expect of summary.json in a line like
     # Expect: displacement 0.0900725298, stress_power 0.08386012, tolerance 1e-8
 with a relative tolerance (an absolute one where the value is 0); a dot leads inside: min_stretch.value.
 """
-import json
 import math
 import pathlib
 import re
-import subprocess
 import sys
-import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, call  # noqa: E402
+from tables import json_of  # noqa: E402
 
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / "prm"
 GENERATED = FOLDER / "default.prm"  # the listing of all entries; it must run, but expects nothing
 FEW_SNAPSHOTS = ("--set", "Output/Number of snapshots=4")
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+checks = Checks()
 
 
 class Problem(Exception):
@@ -44,7 +46,7 @@ def expectation(text):
 
 
 def crawler(*arguments):
-    done = subprocess.run(arguments, capture_output=True, text=True, timeout=600)
+    done = call(arguments)
     if done.returncode != 0:
         reason = (done.stderr.strip() or done.stdout.strip() or "no message").splitlines()[-1]
         raise Problem(f"{arguments[1]} exits with {done.returncode}: {reason}")
@@ -59,13 +61,12 @@ def quantity(summary, name):
     return summary
 
 
-def check(program, path, row):
+def check(program, path, folder, row):
     """Prints a table row for each quantity of one file; raises Problem if one is off."""
     expected, tolerance = ({}, 0.0) if path == GENERATED else expectation(path.read_text())
-    with tempfile.TemporaryDirectory() as folder:
-        crawler(program, "check", str(path))
-        crawler(program, "run", str(path), "--quiet", "--output", f"{folder}/output", *FEW_SNAPSHOTS)
-        summary = json.loads(pathlib.Path(folder, "output/summary.json").read_text())
+    crawler(program, "check", path)
+    crawler(program, "run", path, "--quiet", "--output", folder / "output", "--overwrite", *FEW_SNAPSHOTS)
+    summary = json_of(folder / "output/summary.json")
     if summary["status"] != "finished":
         raise Problem(f"status is {summary['status']}")
     seconds, wrong = sum(summary["seconds"].values()), []
@@ -82,24 +83,18 @@ def check(program, path, row):
         raise Problem("not as expected: " + ", ".join(wrong))
 
 
-def main():
-    if len(sys.argv) != 2:
-        sys.exit("usage: prm_files.py PATH_TO_CRAWLER")
+def main(folder):
     files = sorted(FOLDER.rglob("*.prm"))
-    if not files:
-        sys.exit(f"no parameter files in {FOLDER}")
     row = "{:<%d}  {:<14} {:>15} {:>15} {:>8} {:>10} {:>8}" % max(len(str(f.relative_to(FOLDER))) for f in files)
     print(row.format("file", "quantity", "expected", "found", "error", "tolerance", "seconds"))
-    failures = 0
     for path in files:
+        found = None
         try:
-            check(sys.argv[1], path, row)
-        except (Problem, OSError, ValueError, subprocess.TimeoutExpired) as problem:
-            failures += 1
-            print(f"{path.relative_to(FOLDER)}: FAILED: {problem}")
-    print(f"{len(files)} files, {failures} failed")
-    return 1 if failures else 0
+            check(sys.argv[1], path, folder, row)
+        except (Problem, OSError, ValueError) as problem:
+            found = problem
+        checks.expect(found is None, f"{path.relative_to(FOLDER)}: {found}")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    checks.run((main,))

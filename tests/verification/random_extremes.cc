@@ -15,6 +15,7 @@
 //     random_extremes FIRST-LAST OUT.csv [steps that a run of the second method may take; 0: nothing is compared
 //                                         [steps that the program may take]]
 //     random_extremes NUMBER --prm           prints the parameter file of one scene
+#include "../support/processor_time.h"
 #include "anything.h"
 
 #include <crawler/accuracy/answer.h>
@@ -25,7 +26,6 @@
 #include <crawler/studies/core/compute.h>
 
 #include <cstdio>
-#include <ctime>
 #include <map>
 
 namespace
@@ -86,12 +86,6 @@ namespace
     return result.time.reason.empty() ? word_of(result.time.status) : result.time.reason;
   }
 
-  double
-  processor_seconds()
-  {
-    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-  }
-
   /// How long a computation is waited for.
   class Patience
   {
@@ -99,14 +93,14 @@ namespace
     Patience(const unsigned long steps, const double max_seconds)
       : max_steps_(steps)
       , max_seconds_(max_seconds)
-      , begin_(processor_seconds())
+      , begin_(test::processor_seconds())
     {
     }
 
     double
     seconds() const
     {
-      return processor_seconds() - begin_;
+      return test::processor_seconds() - begin_;
     }
     /// Called once a step.
     bool
@@ -342,26 +336,12 @@ namespace
   std::string
   parameter_file(const Settings &settings)
   {
-    std::map<std::string, std::string> sections;
+    std::string text;
     for (const auto &[entry, value] : settings)
     {
       const std::size_t slash = entry.rfind('/');
-      const bool is_top       = slash == std::string::npos;
-      sections[is_top ? "" : entry.substr(0, slash)] +=
-        fmt::format("set {} = {}\n", is_top ? entry : entry.substr(slash + 1), value);
-    }
-    std::string text;
-    for (const auto &[path, lines] : sections)
-    {
-      std::string ends, names = path;
-      while (!names.empty())
-      {
-        const std::size_t slash = std::min(names.find('/'), names.size());
-        text += "subsection " + names.substr(0, slash) + "\n";
-        ends += "end\n";
-        names.erase(0, slash + 1);
-      }
-      text += lines + ends;
+      text += test::in_section(slash == std::string::npos ? "" : entry.substr(0, slash),
+                               fmt::format("set {} = {}", entry.substr(slash + 1), value));
     }
     return text;
   }

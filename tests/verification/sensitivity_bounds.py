@@ -9,13 +9,13 @@ import collections
 import pathlib
 import statistics
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import Checks, call  # noqa: E402
 from tables import json_of  # noqa: E402
 
 ACCURACIES = (1e-3, 1e-4, 1e-6)
+checks = Checks()
 
 
 def sensitivities(program, file, accuracy, folder):
@@ -27,7 +27,7 @@ def sensitivities(program, file, accuracy, folder):
         print(f"{file}, Accuracy {accuracy}: {done.stderr.strip()}")
         return {}
     found = {}
-    for entry, one in json_of(pathlib.Path(folder, "summary.json"))["sensitivities"].items():
+    for entry, one in json_of(folder / "summary.json")["sensitivities"].items():
         if one["value"] is not None:
             found[entry, "displacement"] = one["value"], one["error"]
         for number, other in one.items():
@@ -36,24 +36,22 @@ def sensitivities(program, file, accuracy, folder):
     return found
 
 
-def main():
-    ratios, checks, reference = collections.defaultdict(list), Checks(), float(sys.argv[2])
-    with tempfile.TemporaryDirectory() as folder:
-        for file in sys.argv[3:]:
-            exact = sensitivities(sys.argv[1], file, reference, folder)
-            for accuracy in (one for one in ACCURACIES if one > 999 * reference):
-                for (entry, number), (value, error) in sensitivities(sys.argv[1], file, accuracy, folder).items():
-                    if (entry, number) not in exact:
-                        continue
-                    true, of_true = exact[entry, number]
-                    ratios[number].append(abs(value - true) / error)
-                    checks.expect(abs(value - true) <= error + of_true,
-                                  f"{file}, Accuracy {accuracy}: d({number})/d({entry}) = {value} +- {error}, "
-                                  f"but {true} +- {of_true} at Accuracy {reference}")
+def main(folder):
+    ratios, reference = collections.defaultdict(list), float(sys.argv[2])
+    for file in sys.argv[3:]:
+        exact = sensitivities(sys.argv[1], file, reference, folder)
+        for accuracy in (one for one in ACCURACIES if one > 999 * reference):
+            for (entry, number), (value, error) in sensitivities(sys.argv[1], file, accuracy, folder).items():
+                if (entry, number) not in exact:
+                    continue
+                true, of_true = exact[entry, number]
+                ratios[number].append(abs(value - true) / error)
+                checks.expect(abs(value - true) <= error + of_true,
+                              f"{file}, Accuracy {accuracy}: d({number})/d({entry}) = {value} +- {error}, "
+                              f"but {true} +- {of_true} at Accuracy {reference}")
     for number, list_of_one in ratios.items():
         print(f"{number}: {len(list_of_one)} derivatives, true error/bound {statistics.median(list_of_one):.2g} in the "
               f"median, {max(list_of_one):.2g} at most")
-    checks.end()
 
 
-main()
+checks.run((main,))

@@ -8,6 +8,7 @@
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/petsc_object.h>
+#include <crawler/scene/evaluators.h>
 #include <crawler/time/failure.h>
 
 using namespace crawler;
@@ -30,33 +31,15 @@ namespace
     {
       if (points.size() > max_points_)
         fault_();
-      return std::make_unique<AtPoints>(*this, points);
+      return stress_at_points([this, points](const double t, const std::span<double> m) {
+        if (t >= from_)
+          fault_();
+        for (std::size_t i = 0; i < m.size(); ++i)
+          m[i] = 0.2 * (1. - std::exp(-10. * t * t)) * std::sin(2. * std::numbers::pi * (points[i] + t));
+      });
     }
 
   private:
-    class AtPoints : public ActiveStressAtPoints
-    {
-    public:
-      AtPoints(const Throwing &stress, const std::vector<double> &points)
-        : stress_(stress)
-        , points_(points)
-      {
-      }
-
-      void
-      values(const double t, const std::span<double> m) override
-      {
-        if (t >= stress_.from_)
-          stress_.fault_();
-        for (std::size_t i = 0; i < m.size(); ++i)
-          m[i] = 0.2 * (1. - std::exp(-10. * t * t)) * std::sin(2. * std::numbers::pi * (points_[i] + t));
-      }
-
-    private:
-      const Throwing &stress_;
-      const std::vector<double> points_;
-    };
-
     const std::function<void()> fault_;
     const double from_;
     const std::size_t max_points_;

@@ -118,12 +118,3 @@ TEST(FastChanges, GeneratorsSayWhenTheyAct)
                "Term 2/Generator = pulse; Term 2/Pulse/Speed = 20; Term 2/Pulse/Start position = -9000");
   EXPECT_LT(longest_step(stress_scales(sum).step_limits, 450.01), 0.02);
 }
-
-/// An event that happens once is no part of a period, also if it falls between the samples of the search.
-TEST(FastChanges, ThatHappenOnceSpoilAPeriod)
-{
-  EXPECT_TRUE(formula("0.1*sin(2*pi*(s+10*t))").active_stress->period());
-  EXPECT_FALSE(formula("0.1*sin(2*pi*(s+10*t))+0.1*exp(-((t-0.51234)/1e-6)^2)").active_stress->period());
-  EXPECT_FALSE(formula("0.1*sin(2*pi*(s+10*t))+(t>0.51234 && t<0.512341)").active_stress->period());
-  EXPECT_NEAR(formula("0.1*s*(mod(t,0.1)<0.03)").active_stress->period().value(), 0.1, 1e-12);
-}

@@ -2,6 +2,7 @@
 //
 // Reading samples on a grid (grid_table.h) and interpolating them (grid_interpolation.h, cubic_spline.h).
 #include "../../support/complaint.h"
+#include "../../support/expect_near.h"
 #include "../../support/hdf5_file.h"
 #include "../../support/program.h"
 #include "../../support/test.h"
@@ -130,15 +131,6 @@ TEST(GridTable, RoundOffMakesNoNewRows)
   EXPECT_EQ(grid.values, (std::vector<double>{1., 2., 3., 4., 5., 6.}));
 }
 
-TEST(GridTable, Hdf5HoldsTheSame)
-{
-  const GridTable grid = samples(some_s, some_t, wave_of);
-  const test::TemporaryFolder folder;
-  const auto file = folder.path / "m.h5";
-  test::write_hdf5_file(file, {{"s", {5}, grid.s}, {"t", {4}, grid.t}, {"m", {4, 5}, grid.values}});
-  expect_same(read_grid_table(file.string(), "m", ""), read(joined(rows_of(grid))));
-}
-
 TEST(GridTable, SaysWhatIsWrongInCsv)
 {
   const std::string three = "but three numbers s,t,m are expected";
@@ -223,10 +215,8 @@ TEST(CubicSpline, Periodic)
   for (const double knot : {0.2, 0.3, 0.6, 0.7})
     EXPECT_NEAR(slope(knot - 1e-12), slope(knot), 1e-8);
   const CubicSpline later({0.3, 0.6, 0.7, 1., 1.2, 1.3}, CubicSpline::Ends::periodic);
-  const auto M_later                 = later.curvatures(std::vector<double>{0.5, 3., 0.2, 1., -2., 0.5});
-  const std::vector<double> expected = {M[2], M[3], M[4], M[0], M[1], M[2]};
-  for (std::size_t i = 0; i < expected.size(); ++i)
-    EXPECT_NEAR(M_later[i], expected[i], 1e-12);
+  test::expect_near(
+    later.curvatures(std::vector<double>{0.5, 3., 0.2, 1., -2., 0.5}), {M[2], M[3], M[4], M[0], M[1], M[2]}, 1e-12);
 }
 
 /// Doubling both grids divides the errors by 4 (linear) and 16 (cubic), those of the rate by 2 and 8.

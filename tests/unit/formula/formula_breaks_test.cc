@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/expect_near.h"
+#include "../../support/test.h"
+
 #include <crawler/formula/formula_breaks.h>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-#include <numbers>
 
 using namespace crawler;
 
@@ -21,16 +18,10 @@ namespace
   void
   expect_breaks(const std::string &text, const std::vector<double> &in_space, const std::vector<double> &in_time)
   {
-    const FormulaBreaks found                                                       = breaks_of(text);
-    const std::pair<std::optional<std::vector<double>>, std::vector<double>> both[] = {{found.in_space, in_space},
-                                                                                       {found.in_time, in_time}};
-    for (const auto &[breaks, expected] : both)
-    {
-      ASSERT_TRUE(breaks) << text;
-      ASSERT_EQ(breaks->size(), expected.size()) << text;
-      for (std::size_t i = 0; i < expected.size(); ++i)
-        EXPECT_NEAR((*breaks)[i], expected[i], 2e-15) << text;
-    }
+    const FormulaBreaks found = breaks_of(text);
+    ASSERT_TRUE(found.in_space && found.in_time) << text;
+    test::expect_near(*found.in_space, in_space, 2e-15, text);
+    test::expect_near(*found.in_time, in_time, 2e-15, text);
   }
 } // namespace
 

@@ -2,6 +2,7 @@
 //
 // The generator "two-level wave" against theory.md, "Gait efficiency": its strain, its share, what it reaches on the
 // kinematic level and in the nonlinear model, and what it refuses.
+#include "../../support/expect_near.h"
 #include "../../support/stress.h"
 #include "../../support/test.h"
 
@@ -51,9 +52,7 @@ TEST(TwoLevelWave, HasItsTwoStrains)
   std::vector<double> e(6);
   const auto strain = scene.active_stress->prescribed_strain()->at({0., 0.06, 0.54, 0.6, 0.66, 1.94});
   strain->strain(/*t=*/0., e); // the fronts are about s = 0 and s = 0.3 L, 0.05 L wide
-  const std::vector<double> expected = {0.15, 0.5, 0.5, 0.15, -0.2, -0.2};
-  for (std::size_t i = 0; i < e.size(); ++i)
-    EXPECT_NEAR(e[i], expected[i], 1e-14) << i;
+  test::expect_near(e, {0.15, 0.5, 0.5, 0.15, -0.2, -0.2}, 1e-14);
   scene.active_stress->prescribed_strain()->at({1.})->strain(/*t=*/0.75, {e.data(), 1}); // from head to tail
   EXPECT_NEAR(e[0], 0.5, 1e-14);
   EXPECT_NEAR(scene.active_stress->period().value_or(0.), 1., 1e-14);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/expect_near.h"
 #include "../../support/test.h"
 #include "../../support/with_breaks.h"
 
-#include <crawler/scene/active_stress/none.h>
+#include <crawler/scene/active_stress/expression.h>
 #include <crawler/scene/profile.h>
 #include <crawler/scene/scene.h>
 
@@ -10,48 +11,30 @@ using namespace crawler;
 
 namespace
 {
-  /// m = t.
-  class Clock : public ActiveStress
-  {
-  public:
-    std::unique_ptr<ActiveStressAtPoints>
-    at(const std::vector<double> &) const override
-    {
-      struct Now : ActiveStressAtPoints
-      {
-        void
-        values(const double t, const std::span<double> m) override
-        {
-          std::fill(m.begin(), m.end(), t);
-        }
-      };
-      return std::make_unique<Now>();
-    }
-  };
-
-  test::WithBreaks
+  /// m = t, with such breaks.
+  std::unique_ptr<test::WithBreaks>
   with(const std::vector<double> &in_space, const std::vector<double> &in_time)
   {
-    return {std::make_unique<Clock>(), in_space, in_time};
+    return std::make_unique<test::WithBreaks>(
+      std::make_unique<Expression>(ExpressionParameters{.active_stress = "t"}, 1., 1.), in_space, in_time);
   }
 } // namespace
 
 TEST(Breaks, AreSortedDistinctAndInside)
 {
   using List = std::vector<double>;
-  EXPECT_EQ(breaks_in_space(with({1.5, 0.5, 0., 2., 0.5 + 1e-10, -3., 7.}, {}), 2.), (List{0.5, 1.5}));
-  EXPECT_EQ(TimeSegments(with({}, {3., 1., 4., 0., 1. + 1e-13, 9.}), 4.).breaks(), (List{0.25, 0.75}));
-  EXPECT_TRUE(TimeSegments(with({}, {}), 4.).breaks().empty());
+  EXPECT_EQ(breaks_in_space(*with({1.5, 0.5, 0., 2., 0.5 + 1e-10, -3., 7.}, {}), 2.), (List{0.5, 1.5}));
+  EXPECT_EQ(TimeSegments(*with({}, {3., 1., 4., 0., 1. + 1e-13, 9.}), 4.).breaks(), (List{0.25, 0.75}));
+  EXPECT_TRUE(TimeSegments(*with({}, {}), 4.).breaks().empty());
 }
 
 /// Within a piece no time of another is used, and none at its ends; without breaks times are what they are.
 TEST(Breaks, PiecesAreEvaluatedInside)
 {
   Scene scene;
-  scene.friction = std::make_unique<PowerFriction>(1., 0.);
-  scene.end_time = 2.;
-  scene.active_stress =
-    std::make_unique<test::WithBreaks>(std::make_unique<Clock>(), std::vector<double>(), std::vector<double>{0.5, 1.});
+  scene.friction      = std::make_unique<PowerFriction>(1., 0.);
+  scene.end_time      = 2.;
+  scene.active_stress = with({}, {0.5, 1.});
   TimeSegments pieces(*scene.active_stress, 2.);
   const Units units{1., 2., 1.};
   const Scene scaled = in_units(scene, units, &pieces);
@@ -87,15 +70,9 @@ TEST(Breaks, PiecesAreEvaluatedInside)
 /// Jumps and kinks of a formula, whatever its units; a front that a mesh can follow is neither.
 TEST(Breaks, OfFormulasOfTheBody)
 {
-  const auto of = [](const std::string &formula) {
+  const auto expect = [](const std::string &formula, const std::vector<double> &places) {
     const auto profile = read_profile({"friction", "s", formula, "cubic", "hold", "Body/Friction profile"}, 2., 1.);
-    return distinct_breaks_in_space(profile->breaks(), 2.);
-  };
-  const auto expect = [&](const std::string &formula, const std::vector<double> &places) {
-    const std::vector<double> found = of(formula);
-    ASSERT_EQ(found.size(), places.size()) << formula;
-    for (std::size_t i = 0; i < places.size(); ++i)
-      EXPECT_NEAR(found[i], places[i], 1e-12) << formula;
+    test::expect_near(distinct_breaks_in_space(profile->breaks(), 2.), places, 1e-12, formula);
   };
   expect("s<0.571*L ? 1 : 0.325", {1.142});
   expect("1+(s>0.3)*(s<0.7)+0.1*sin(40*s)", {0.3, 0.7});

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/derivative.h"
 #include "../../support/test.h"
 
 #include <crawler/scene/friction_law.h>
@@ -29,22 +30,17 @@ TEST(PowerFriction, DerivativeMatchesDifferences)
   for (const double a : exponents)
   {
     const PowerFriction law(0.7, a);
-    std::vector<double> g(stretches.size()), w_dg(stretches.size()), plus(stretches.size()), minus(stretches.size());
+    std::vector<double> g(stretches.size()), w_dg(stretches.size());
     law.values_and_log_derivatives(stretches, g, w_dg);
-    const double epsilon       = 1e-5;
-    std::vector<double> w_plus = stretches, w_minus = stretches;
-    for (std::size_t i = 0; i < stretches.size(); ++i)
-    {
-      w_plus[i] *= 1. + epsilon;
-      w_minus[i] *= 1. - epsilon;
-    }
-    law.values(w_plus, plus);
-    law.values(w_minus, minus);
+    const auto expected = test::derivative([&](const double step) {
+      std::vector<double> w = stretches, moved(w.size());
+      for (double &stretch : w)
+        stretch *= 1. + step;
+      law.values(w, moved);
+      return moved;
+    });
     for (std::size_t i = 0; i < g.size(); ++i)
-    {
-      const double difference = (plus[i] - minus[i]) / (2. * epsilon);
-      EXPECT_NEAR(w_dg[i], difference, 1e-7 * (std::abs(g[i]) + std::abs(difference)))
+      EXPECT_NEAR(w_dg[i], expected[i], 1e-7 * (std::abs(g[i]) + std::abs(expected[i])))
         << "a = " << a << ", w = " << stretches[i];
-    }
   }
 }

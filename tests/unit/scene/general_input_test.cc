@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/derivative.h"
+#include "../../support/expect_near.h"
 #include "../../support/program.h"
 #include "../../support/stress.h"
 #include "../../support/test.h"
@@ -55,22 +57,21 @@ TEST(FormulaGradient, MatchesDifferences)
       x[v][i] = 0.9 + 0.5 * std::sin(3. * static_cast<double>(v) + 0.7 * static_cast<double>(i));
   for (std::size_t v = 0; v < 5; ++v)
   {
-    std::vector<double> f(n), slope(n), plus(n), minus(n);
-    const auto evaluate = [&](const double step, std::vector<double> &result, const bool with_slope) {
+    std::vector<double> slope(n);
+    const auto moved = [&](const double step) {
       auto shifted = x;
       for (double &value : shifted[v])
         value += step;
+      std::vector<double> f(n);
       std::vector<std::span<const double>> arguments(shifted.begin(), shifted.end());
       std::vector<std::span<double>> derivatives(5);
-      if (with_slope)
+      if (step == 0.)
         derivatives[v] = slope;
-      gradient.evaluate(arguments, result, derivatives);
+      gradient.evaluate(arguments, f, derivatives);
+      return f;
     };
-    evaluate(0., f, true);
-    evaluate(1e-6, plus, false);
-    evaluate(-1e-6, minus, false);
-    for (std::size_t i = 0; i < n; ++i)
-      EXPECT_NEAR(slope[i], (plus[i] - minus[i]) / 2e-6, 1e-8) << "variable " << v;
+    moved(0.);
+    test::expect_near(slope, test::derivative(moved), 1e-8, "variable " + std::to_string(v));
   }
   EXPECT_TRUE(formula->uses(4));
 }

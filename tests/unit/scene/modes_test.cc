@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/stress.h"
 #include "../../support/test.h"
 
 #include <crawler/base/exceptions.h>
@@ -10,14 +11,6 @@ namespace
 {
   using std::numbers::pi;
   constexpr double L = 2., T = 3.;
-
-  std::vector<double>
-  values(ActiveStressAtPoints &at, const double t, const std::size_t n)
-  {
-    std::vector<double> m(n);
-    at.values(t, m);
-    return m;
-  }
 
   ModesParameters
   modes(const std::string &in_time, const bool from_rest)
@@ -46,7 +39,7 @@ TEST(Modes, TravelWithoutChangingTheirShape)
   const double s = 0.3, t = 1.1, x = 2. * pi * (s + 0.7 * t) / L;
   const double exact =
     c[0] + c[1] * std::sin(x) + c[2] * std::cos(x) + c[3] * std::sin(2. * x) + c[4] * std::cos(2. * x);
-  EXPECT_NEAR(values(*stress.at({s}), t, 1)[0], exact, 1e-13);
+  EXPECT_NEAR(test::values(stress, {s}, t)[0], exact, 1e-13);
   EXPECT_NEAR(*stress.period(), L / 0.7, 1e-15);
 }
 
@@ -61,7 +54,7 @@ TEST(Modes, HarmonicsAreProductsOfModes)
   for (std::size_t j = 0; j < 5; ++j)
     for (std::size_t k = 0; k < 5; ++k)
       exact += p.coefficients[5 * j + k] * time[j] * space[k];
-  EXPECT_NEAR(values(*stress.at({s}), t, 1)[0], exact, 1e-13);
+  EXPECT_NEAR(test::values(stress, {s}, t)[0], exact, 1e-13);
 }
 
 /// Splines that are all 1 add up to 1.
@@ -73,28 +66,20 @@ TEST(Modes, SplinesAreAPartitionOfUnity)
   const Modes stress(p, L, T);
   for (const double t : {0., 0.1, 0.75, 1.6, 2.9, 3.})
   {
-    EXPECT_NEAR(values(*stress.at({0.4}), t, 1)[0], 1., 1e-14);
-    EXPECT_NEAR(values(*stress.rate_at({0.4}), t, 1)[0], 0., 1e-13);
+    EXPECT_NEAR(test::values(stress, {0.4}, t)[0], 1., 1e-14);
+    EXPECT_NEAR(test::rates(stress, {0.4}, t)[0], 0., 1e-13);
   }
   EXPECT_EQ(stress.breaks_in_time().size(), 3u);
 }
 
 TEST(Modes, KnowTheirRate)
 {
-  constexpr double d = 1e-5;
   for (const std::string in_time : {"travelling", "harmonics", "splines"})
     for (const bool from_rest : {false, true})
     {
       const Modes stress(modes(in_time, from_rest), L, T);
-      const std::vector<double> points = {0., 0.3, 1.7};
-      for (const double t : {0.4, 1.3, 2.8})
-      {
-        const auto rate = values(*stress.rate_at(points), t, 3), after = values(*stress.at(points), t + d, 3),
-                   before = values(*stress.at(points), t - d, 3);
-        for (std::size_t i = 0; i < 3; ++i)
-          EXPECT_NEAR(rate[i], (after[i] - before[i]) / (2. * d), 1e-7) << in_time;
-      }
-      for (const double m : values(*stress.at(points), 0., 3))
+      test::expect_rate(stress, L, {0.4, 1.3, 2.8}, 1e-7);
+      for (const double m : test::values(stress, {0., 0.3, 1.7}, 0.))
         EXPECT_TRUE(!from_rest || std::abs(m) < 1e-15) << in_time;
     }
 }

@@ -61,28 +61,6 @@ TEST(Scene, NaturalUnits)
   }
 }
 
-/// There and back: any units, and those of the user again.
-TEST(Scene, InUnitsAndBack)
-{
-  const Scene scene = test::parameters_with(in_user_units(0.3, 7e5, 2e-4)).create_scene();
-  const Units units{3e4, 17., 1e-9};
-  const Scene other = in_units(scene, units);
-  const Scene back  = in_units(other, {1. / units.length, 1. / units.time, 1. / units.force});
-  EXPECT_NEAR(back.body.length / scene.body.length, 1., 1e-14);
-  EXPECT_NEAR(back.body.elastic_modulus / scene.body.elastic_modulus, 1., 1e-14);
-  EXPECT_NEAR(back.body.friction_coefficient / scene.body.friction_coefficient, 1., 1e-14);
-  EXPECT_NEAR(back.end_time / scene.end_time, 1., 1e-14);
-  const std::vector<double> w = {0.5, 1., 2.};
-  std::vector<double> g(3), g_back(3), m(1), m_back(1);
-  scene.friction->values(w, g);
-  back.friction->values(w, g_back);
-  for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_NEAR(g_back[i] / g[i], 1., 1e-13);
-  scene.active_stress->at({0.1})->values(2e5, m);
-  back.active_stress->at({0.1})->values(2e5, m_back);
-  EXPECT_NEAR(m_back[0] / m[0], 1., 1e-12);
-}
-
 /// The whole program: the same crawler moves the same part of its length in any units.
 TEST(Scene, TheSameMotionInAllUnits)
 {

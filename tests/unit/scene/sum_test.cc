@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/expect_near.h"
 #include "../../support/stress.h"
 #include "../../support/test.h"
 
@@ -9,6 +10,7 @@
 #include <crawler/scene/period.h>
 
 using namespace crawler;
+using crawler::test::expect_near;
 using crawler::test::parameters_with;
 
 namespace
@@ -56,14 +58,6 @@ namespace
   rates(const ActiveStress &stress, const double t)
   {
     return test::rates(stress, points, t);
-  }
-
-  void
-  expect_near(const std::vector<double> &a, const std::vector<double> &b, const double tolerance)
-  {
-    ASSERT_EQ(a.size(), b.size());
-    for (std::size_t i = 0; i < a.size(); ++i)
-      EXPECT_NEAR(a[i], b[i], tolerance) << "point " << i;
   }
 } // namespace
 

@@ -27,6 +27,7 @@ namespace
             const double from   = 0.,
             const double to     = 1.)
     {
+      std::vector<double> s, t, m;
       for (std::size_t i = 0; i < n_s; ++i)
         s.push_back(length * static_cast<double>(i) / static_cast<double>(n_s - 1));
       std::string text = "s,t,m\n";
@@ -45,7 +46,6 @@ namespace
       test::write_hdf5_file(hdf5, {{"s", {n_s}, s}, {"t", {n_t}, t}, {"m", {n_t, n_s}, m}});
     }
 
-    std::vector<double> s, t, m;
     std::string csv, hdf5;
 
   private:
@@ -87,21 +87,6 @@ TEST(Table, OfTheOptimalWaveMovesTheBodyAsTheWaveDoes)
   const double by_csv        = displacement(samples.csv);
   EXPECT_NEAR(by_csv / reference, 1., 1e-6);
   EXPECT_EQ(by_csv, displacement(samples.hdf5));
-}
-
-TEST(Table, GoesThroughItsSamples)
-{
-  const Samples samples(5, 6, wave_of);
-  for (const std::string interpolation : {"cubic", "linear"})
-  {
-    const ActiveStressTable table({.file = samples.csv, .interpolation = interpolation}, 1., 1.);
-    for (std::size_t j = 0; j < samples.t.size(); ++j)
-    {
-      const auto m = values(table, samples.s, samples.t[j]);
-      for (std::size_t i = 0; i < samples.s.size(); ++i)
-        EXPECT_NEAR(m[i], samples.m[j * samples.s.size() + i], 1e-15);
-    }
-  }
 }
 
 /// m in mN over millimetres and milliseconds, say.
@@ -166,17 +151,11 @@ TEST(Table, Breaks)
   EXPECT_EQ(ActiveStressTable({.file = Samples(40, 5, wave_of).csv}, 1., 1.).breaks_in_space(), List());
 }
 
-/// Each entry has its range; the message names the entry and what is expected.
 TEST(Table, EntriesHaveRanges)
 {
-  const std::string section = "Active stress/Table/";
-  for (const auto &[entry, value, expected] : {std::tuple("Interpolation", "spline", "cubic"),
-                                               {"Outside", "zero", "periodic"},
-                                               {"Outside in s", "periodic", "hold"},
-                                               {"Unit of s", "0", "positive"},
-                                               {"Unit of t", "-1", "positive"},
-                                               {"Unit of m", "mN", "number"}})
-    test::expect_complaint({{section + entry, value}}, {section + entry + ": ", expected});
+  test::expect_outside_of_ranges("table",
+                                 "Interpolation = spline; Outside = zero; Outside in s = periodic; Unit of s = 0; "
+                                 "Unit of t = -1; Unit of m = mN");
 }
 
 TEST(Table, SaysWhatIsWrong)

@@ -2,6 +2,7 @@
 //
 // The generators travelling wave, standing wave and pulse against formulas of s and t, and what they know of
 // themselves.
+#include "../../support/expect_near.h"
 #include "../../support/stress.h"
 #include "../../support/test.h"
 
@@ -85,6 +86,9 @@ TEST(TravellingWave, WindowAndRampAreFactors)
                  "(s < 0.3 || s > 0.8 ? 0 : 0.2 + 0.1*sin(2*pi*(s + t)))");
   expect_formula(travelling("Offset = 0.2; Window start = 0.25; Window edge = 0.125; Ramp duration = 2"),
                  step("(s-0.25)*8") + "*" + step("(t/2)") + "*(0.2 + 0.1*sin(2*pi*(s + t)))");
+  // An end of the body that is given has an edge.
+  expect_formula(travelling("Window start = 0.2; Window end = 1; Window edge = 0.25"),
+                 step("(s-0.2)*4") + "*" + step("(1-s)*4") + "*0.1*sin(2*pi*(s + t))");
 }
 
 TEST(TravellingWave, SquareIsTheFormula)
@@ -94,9 +98,11 @@ TEST(TravellingWave, SquareIsTheFormula)
   expect_formula(
     travelling("Profile = square; Duty cycle = 0.2; Phase = 0.1; Direction = from tail to head; Wave number = 2"),
     "0.1*(mod(2*s - t + 0.05/pi, 1) < 0.2 ? 1 : -1)");
-  expect_formula(
-    travelling("Profile = smoothed square; Duty cycle = 0.3; Front width = 0.2; Phase = 0.1; Offset = 0.05"),
-    "0.05 + 0.1*" + smoothed("(s + t + 0.05/pi)", "0.3", "0.2"));
+  for (const auto &[duty, front] : {std::pair("0.3", "0.2"), {"0.5", "0.5"}, {"0.8", "0.2"}})
+    expect_formula(
+      travelling(fmt::format(
+        "Profile = smoothed square; Duty cycle = {}; Front width = {}; Phase = 0.1; Offset = 0.05", duty, front)),
+      "0.05 + 0.1*" + smoothed("(s + t + 0.05/pi)", duty, front));
 }
 
 TEST(TravellingWave, RateIsExact)
@@ -126,6 +132,7 @@ TEST(TravellingWave, PeriodAndBreaks)
 
   const auto sharp = stress_with(travelling("Profile = square; Window start = 0.25; Window end = 1"));
   EXPECT_EQ(sharp->breaks_in_space(), Places{0.25});
+  EXPECT_EQ(stress_with(travelling("Window start = 0.25; Window edge = 0.1"))->breaks_in_space(), Places{});
   EXPECT_EQ(sharp->breaks_in_time(), Places{}); // they move
   const auto still =
     stress_with(travelling("Profile = square; Wave number = 1.5; Frequency = 0; Duty cycle = 0.75", 3.));
@@ -140,14 +147,9 @@ TEST(TravellingWave, PeriodAndBreaks)
     std::sort(times.begin(), times.end());
     const Places expected =
       direction == "from head to tail" ? Places{0.125, 0.75, 1.125, 1.75} : Places{0.25, 0.875, 1.25, 1.875};
-    ASSERT_EQ(times.size(), expected.size());
-    for (std::size_t i = 0; i < times.size(); ++i)
-    {
-      EXPECT_NEAR(times[i], expected[i], 1e-14);
-      EXPECT_NEAR(std::abs(values(*at_once, {0.5}, times[i] + 1e-9)[0] - values(*at_once, {0.5}, times[i] - 1e-9)[0]),
-                  0.2,
-                  1e-14);
-    }
+    test::expect_near(times, expected, 1e-14);
+    for (const double t : times)
+      EXPECT_NEAR(std::abs(values(*at_once, {0.5}, t + 1e-9)[0] - values(*at_once, {0.5}, t - 1e-9)[0]), 0.2, 1e-14);
   }
 }
 
@@ -294,22 +296,18 @@ TEST(Waves, RefuseWhatMakesNoSense)
   expect_complaint(pulse("Speed = 0"), {"Active stress/Pulse/Start position: ", "a path that reaches the body"});
   expect_complaint(pulse("Start position = 2"), {"Active stress/Pulse/Speed: ", "from 2 to 7"});
   expect_complaint(pulse("Width = 1e-5"), {"Active stress/Pulse/Width: ", "at least 0.0001"});
-  // Refused by the ranges of their entries.
-  const auto expect_refused = [](const auto &of, const std::string &section, const std::string &entries) {
-    for (const auto &[entry, value] : test::set(entries))
-      expect_complaint(of(entry + " = " + value, 1., 5.),
-                       {"Active stress/" + section + "/" + entry + ": ", "expected"});
-  };
-  expect_refused(
-    travelling,
-    "Travelling wave",
-    "Wave number = -1; Wave number = 1001; Frequency = -1; Wave speed = -1; Profile = triangle; Direction = "
-    "left; Given by = period; Duty cycle = 1; Front width = 0.6; Window edge = -0.1; Ramp duration = -1; "
-    "Amplitude = nan; Offset = much; Phase = inf; Window start = -0.2");
-  expect_refused(
-    standing, "Standing wave", "Frequency = -1; Wave number = -1; Phase in space = x; Profile = x; Phase = ");
-  expect_refused(pulse,
-                 "Pulse",
-                 "Shape = square; Width = 0; Speed = -1; Direction = up; Repetition period = -1; Start position = x; "
-                 "Amplitude = ");
+}
+
+TEST(Waves, EntriesHaveRanges)
+{
+  test::expect_outside_of_ranges(
+    "travelling wave",
+    "Wave number = -1; Wave number = 1001; Frequency = -1; Wave speed = -1; Profile = triangle; "
+    "Direction = left; Given by = period; Duty cycle = 1; Front width = 0.6; Window edge = -0.1; "
+    "Ramp duration = -1; Amplitude = nan; Offset = much; Phase = inf; Window start = -0.2");
+  test::expect_outside_of_ranges("standing wave",
+                                 "Frequency = -1; Wave number = -1; Phase in space = x; Profile = x; Phase = ");
+  test::expect_outside_of_ranges("pulse",
+                                 "Shape = square; Width = 0; Speed = -1; Direction = up; Repetition period = -1; "
+                                 "Start position = x; Amplitude = ");
 }
