@@ -34,9 +34,28 @@ namespace crawler
         const auto p = static_cast<std::size_t>(place - values.begin());
         list.push_back(
           {fmt::format("{} {}", place == least ? "smallest" : "largest", name),
-           [=](const GaitValues &there) { return (there.*block).values[p]; }, // X // value
+           [=](const GaitValues &there) { return (there.*block).values[p]; },
            [=](const GaitValues &there, const std::size_t i) { return (*(there.*block).jacobian)[p * n + i]; }});
       }
+    }
+
+    /// Numbers that the study wants or limits, for @p n variables.
+    std::vector<Checked>
+    numbers_to_check(const GaitValues &here, const GaitWishes &wishes, const std::size_t n)
+    {
+      std::vector<Checked> list;
+      for (std::size_t k = 0; k < gait_numbers.size(); ++k)
+        if (wishes.numbers[k])
+          list.push_back({gait_numbers[k].words,
+                          [k](const GaitValues &there) { return there.numbers[k]; },
+                          [k](const GaitValues &there, const std::size_t i) { return there.gradients[k][i]; }});
+      if (wishes.strain && std::ranges::find(here.strain_by_differences, true) == here.strain_by_differences.end())
+        add_extremes("strain", here, &GaitValues::strain, n, list);
+      if (wishes.stress)
+        add_extremes("stress", here, &GaitValues::stress, n, list);
+      if (wishes.stress_rate)
+        add_extremes("stress rate", here, &GaitValues::stress_rate, n, list);
+      return list;
     }
 
     /// Largest deviation of a gradient from differences, relative to the number or to its largest derivative.
@@ -65,19 +84,7 @@ namespace crawler
     const double step = noise > 0. ? 0.5 * std::cbrt(noise) : 1e-6, tolerance = noise > 0. ? 20. * noise / step : 1e-5;
     const GaitValues here = model.evaluate(x, /*with_gradients=*/true);
     here.require_start();
-    std::vector<Checked> list;
-    for (std::size_t k = 0; k < gait_numbers.size(); ++k)
-      if (wishes.numbers[k])
-        list.push_back({gait_numbers[k].words,
-                        [k](const GaitValues &there) { return there.numbers[k]; },
-                        [k](const GaitValues &there, const std::size_t i) { return there.gradients[k][i]; }});
-    if (wishes.strain && std::ranges::find(here.strain_by_differences, true) == here.strain_by_differences.end())
-      add_extremes("strain", here, &GaitValues::strain, x.size(), list);
-    if (wishes.stress)
-      add_extremes("stress", here, &GaitValues::stress, x.size(), list);
-    if (wishes.stress_rate)
-      add_extremes("stress rate", here, &GaitValues::stress_rate, x.size(), list);
-
+    const std::vector<Checked> list = numbers_to_check(here, wishes, x.size());
     std::vector<std::size_t> checked;
     for (std::size_t i = 0; i < x.size(); ++i)
       if (here.by_differences.empty() || !here.by_differences[i])

@@ -134,7 +134,7 @@ TEST(MeshTransfer, ThereAndBackAgain)
     const auto from = create_position_form(meshes.scene, *meshes.coarse),
                via  = create_position_form(meshes.scene, *meshes.fine),
                to   = create_position_form(meshes.scene, *meshes.again);
-    const auto y = state(*from, 0.1);
+    const auto y    = state(*from, 0.1);
     test::expect_near(transferred(*via, transferred(*from, y, *via), *to), y, 1e-13, name(q));
   }
 }
