@@ -41,8 +41,6 @@ namespace crawler
   class TravellingWave : public KnownStress, public MovingJumps
   {
   public:
-    static constexpr const char *description = "a sine or square wave that runs along the body";
-
     /// Throws InputError if fronts or window do not fit, if a speed is given for wave number 0, or if there are more
     /// than 1e8 periods (1e6 if the whole body is switched at once).
     TravellingWave(const TravellingWaveParameters &parameters, double length, double end_time);
@@ -109,8 +107,6 @@ namespace crawler
   class StandingWave : public KnownStress
   {
   public:
-    static constexpr const char *description = "a wave whose nodes stay in place";
-
     /// Throws InputError if fronts or window do not fit, or if there are more than 1e8 periods (1e6 of a square wave).
     StandingWave(const StandingWaveParameters &parameters, double length, double end_time);
 
