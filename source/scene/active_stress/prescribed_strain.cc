@@ -357,9 +357,7 @@ namespace crawler
     GridTable
     read(const std::string &name, const double length, const double end_time, const std::string &entry)
     {
-      GridTable grid = read_grid_table(name, "strain", entry);
-      require_number_of_values(grid.s, 4, "s", name, entry);
-      require_number_of_values(grid.t, 4, "t", name, entry);
+      GridTable grid = read_grid_table(name, "strain", 4, entry);
       reach_ends(grid.s, length, "s", "body", name, entry);
       reach_ends(grid.t, end_time, "t", "duration", name, entry);
       return grid;
