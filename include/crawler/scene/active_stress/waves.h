@@ -64,12 +64,9 @@ namespace crawler
     std::unique_ptr<ActiveStressAtPoints>
     sine_at(const std::vector<double> &points, bool rate) const;
 
-    /// Places in (0, @p length) where a steady square wave jumps; below, times in (0, @p end_time) when a uniform one
-    /// does.
+    /// Times when a uniform square wave jumps.
     std::vector<double>
-    places_of_jumps(double length) const;
-    std::vector<double>
-    times_of_own_jumps(double end_time) const;
+    times_of_own_jumps() const;
 
     const TravellingWaveParameters parameters_;
     const double length_, end_time_;
