@@ -20,13 +20,7 @@ namespace crawler
   } // namespace
 
   GridTable
-  read_grid_table(const std::string &, const std::string &, const std::string &entry)
-  {
-    refuse(entry);
-  }
-  void
-  require_number_of_values(
-    const std::vector<double> &, std::size_t, const std::string &, const std::string &, const std::string &entry)
+  read_grid_table(const std::string &, const std::string &, std::size_t, const std::string &entry)
   {
     refuse(entry);
   }

@@ -29,11 +29,10 @@ namespace crawler
       std::find_if(std::begin(templates), std::end(templates), [&](const Template &one) { return one.name == name; });
     if (found == std::end(templates))
     {
-      const auto near = nearest_names(name, template_names(), 1);
       throw InputError(fmt::format("unknown template \"{}\"; {} is expected{}",
                                    name,
                                    quoted_list(template_names()),
-                                   near.empty() ? "" : "; the nearest is " + quoted_list(near)));
+                                   nearest_hint(name, template_names())));
     }
     if (output.empty())
       std::cout << found->text;

@@ -87,11 +87,8 @@ namespace crawler
         fmt::format("the command is missing before \"{0}\"; did you mean \"crawler run {0}\"?", arguments[0]));
     if (const std::string now = successor_of(arguments[0]); !now.empty())
       throw InputError(fmt::format("the command \"{}\" was removed; {} is expected", arguments[0], now));
-    const auto near = nearest_names(arguments[0], names, 1);
-    throw InputError(fmt::format("unknown command \"{}\"; {} is expected{}",
-                                 arguments[0],
-                                 quoted_list(names),
-                                 near.empty() ? "" : "; the nearest is " + quoted_list(near)));
+    throw InputError(fmt::format(
+      "unknown command \"{}\"; {} is expected{}", arguments[0], quoted_list(names), nearest_hint(arguments[0], names)));
   }
 
   std::string
@@ -119,11 +116,10 @@ namespace crawler
       const CLI::Option *option = name == "-h" ? nullptr : command->get_option_no_throw(name);
       if (option == nullptr && name != "-h")
       {
-        const auto near = nearest_names(name, known, 1);
         return fmt::format("unknown option \"{}\"{}{}",
                            name,
                            has_command ? fmt::format(" of the command \"{}\"", command->get_name()) : "",
-                           near.empty() ? "" : "; the nearest is " + quoted_list(near));
+                           nearest_hint(name, known));
       }
       const bool has_value = option != nullptr && option->get_items_expected_max() > 0;
       if (has_command && words.empty())

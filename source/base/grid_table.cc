@@ -124,7 +124,7 @@ namespace crawler
   } // namespace
 
   GridTable
-  read_grid_table(const std::string &file, const std::string &name, const std::string &entry)
+  read_grid_table(const std::string &file, const std::string &name, const std::size_t least, const std::string &entry)
   {
     const Source source{file, name, entry};
     if (const std::string reason = unreadable(file); !reason.empty())
@@ -137,21 +137,12 @@ namespace crawler
                     file,
                     name);
     const std::string text = std::move(content).str();
-    return text.starts_with("\x89HDF\r\n\x1a\n") ? read_hdf5_grid_table(source) : read_csv(text, source);
-  }
-
-  void
-  require_number_of_values(const std::vector<double> &values,
-                           const std::size_t least,
-                           const std::string &name,
-                           const std::string &file,
-                           const std::string &entry)
-  {
-    if (values.size() < least)
-      throw InputError(
-        fmt::format(
-          "\"{}\" has {} different values of {}, but at least {} are expected", file, values.size(), name, least),
-        entry);
+    GridTable grid = text.starts_with("\x89HDF\r\n\x1a\n") ? read_hdf5_grid_table(source) : read_csv(text, source);
+    for (const auto &[variable, size] : {std::pair("s", grid.s.size()), std::pair("t", grid.t.size())})
+      if (size < least)
+        source.refuse(
+          "\"{}\" has {} different values of {}, but at least {} are expected", file, size, variable, least);
+    return grid;
   }
 
   void

@@ -62,6 +62,13 @@ namespace crawler
     return result;
   }
 
+  std::string
+  nearest_hint(const std::string &name, const std::vector<std::string> &candidates)
+  {
+    const auto near = nearest_names(name, candidates, 1);
+    return near.empty() ? "" : "; the nearest is " + quoted_list(near);
+  }
+
   std::vector<std::string>
   nearly_alike(const std::string &name, const std::vector<std::string> &candidates)
   {

@@ -33,7 +33,7 @@ namespace crawler
     {
       for (std::size_t i = 0; i < n; ++i)
         x_[i] = points_[i] + u[i];
-      ground.profile->values_and_slopes(x_, c_, slope_);
+      ground.profile->values(x_, c_, slope_);
     }
     long bad = -1;
     for (std::size_t i = 0; i < n; ++i)

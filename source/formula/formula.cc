@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/formula/formula.h>
-#include <crawler/formula/operation_rules.h>
 
 #include <muParser.h>
 

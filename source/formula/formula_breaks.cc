@@ -69,21 +69,17 @@ namespace crawler
     };
 
     /// Breaks of a formula in one variable; the other one is called u.
-    class BreaksInVariable
+    struct BreaksInVariable
     {
-    public:
-      BreaksInVariable(FormulaBound &bound, const FormulaBound::Variable variable, const double end)
-        : bound_(bound)
-        , variable_(variable)
-        , end_(end)
-      {
-      }
+      FormulaBound &bound;
+      const FormulaBound::Variable variable;
+      const double end;
 
       /// Breaks of operations that do not depend on u.
       Places
       alone() const
       {
-        return BreakSearch([this](const Interval &x) { return sides(x, 0., false); }, end_).find();
+        return BreakSearch([this](const Interval &x) { return sides(x, 0., false); }, end).find();
       }
 
       /// Breaks of all operations on each piece between those of u, in [0, end_of_u], where it does not matter.
@@ -100,28 +96,23 @@ namespace crawler
           if (ends[i] - ends[i - 1] <= same * end_of_u)
             continue;
           const double u = 0.5 * (ends[i - 1] + ends[i]);
-          const auto its = BreakSearch([&](const Interval &x) { return sides(x, u, true); }, end_).find();
+          const auto its = BreakSearch([&](const Interval &x) { return sides(x, u, true); }, end).find();
           if (!its)
             return std::nullopt;
           all.insert(all.end(), its->begin(), its->end());
         }
         std::ranges::sort(all);
-        const auto is_same = [&](const double a, const double b) { return b - a <= same * end_; };
+        const auto is_same = [&](const double a, const double b) { return b - a <= same * end; };
         all.erase(std::unique(all.begin(), all.end(), is_same), all.end());
         return all;
       }
 
-    private:
       std::vector<Interval>
       sides(const Interval &x, const double u, const bool in_steps) const
       {
-        return variable_ == FormulaBound::Variable::s ? bound_.sides(variable_, x, u, in_steps)
-                                                      : bound_.sides(variable_, u, x, in_steps);
+        return variable == FormulaBound::Variable::s ? bound.sides(variable, x, u, in_steps)
+                                                     : bound.sides(variable, u, x, in_steps);
       }
-
-      FormulaBound &bound_;
-      const FormulaBound::Variable variable_;
-      const double end_;
     };
   } // namespace
 
@@ -129,8 +120,8 @@ namespace crawler
   formula_breaks(const std::shared_ptr<const Formula> &formula, const double length, const double end_time)
   {
     FormulaBound bound(formula);
-    const BreaksInVariable in_space(bound, FormulaBound::Variable::s, length),
-      in_time(bound, FormulaBound::Variable::t, end_time);
+    const BreaksInVariable in_space{bound, FormulaBound::Variable::s, length},
+      in_time{bound, FormulaBound::Variable::t, end_time};
     const Places places = in_space.alone(), times = end_time > 0. ? in_time.alone() : Places(std::vector<double>());
     return {in_space.on_pieces(places, times, end_time), in_time.on_pieces(times, places, length)};
   }

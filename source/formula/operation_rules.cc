@@ -91,56 +91,22 @@ namespace crawler
         df[i] = dx[0][i] == 0. ? 0. : derivative(x[0][i], f[i]) * dx[0][i];
     }
 
+    /// Tangent of a function of two arguments x and y with the value f, by its derivative as a function of x, y, dx, dy
+    /// and f.
+    template <auto derivative>
     void
-    plus_tangent(const Numbers, const Numbers dx, const double *, double *df, const std::size_t n)
+    tangent_of_two(const Numbers x, const Numbers dx, const double *f, double *df, const std::size_t n)
     {
       for (std::size_t i = 0; i < n; ++i)
-        df[i] = dx[0][i] + dx[1][i];
+        df[i] = derivative(x[0][i], x[1][i], dx[0][i], dx[1][i], f[i]);
     }
 
-    void
-    minus_tangent(const Numbers, const Numbers dx, const double *, double *df, const std::size_t n)
+    /// Derivative of f = x^y. Terms of a constant base or exponent are left out, so that (-1)^2 and 0^2 have a
+    /// derivative.
+    double
+    power_derivative(const double x, const double y, const double dx, const double dy, const double f)
     {
-      for (std::size_t i = 0; i < n; ++i)
-        df[i] = dx[0][i] - dx[1][i];
-    }
-
-    void
-    times_tangent(const Numbers x, const Numbers dx, const double *, double *df, const std::size_t n)
-    {
-      for (std::size_t i = 0; i < n; ++i)
-        df[i] = dx[0][i] * x[1][i] + x[0][i] * dx[1][i];
-    }
-
-    void
-    divide_tangent(const Numbers x, const Numbers dx, const double *f, double *df, const std::size_t n)
-    {
-      for (std::size_t i = 0; i < n; ++i)
-        df[i] = (dx[0][i] - f[i] * dx[1][i]) / x[1][i];
-    }
-
-    /// Tangent of x^y. Terms of a constant base or exponent are left out, so that (-1)^2 and 0^2 have a derivative.
-    void
-    power_tangent(const Numbers x, const Numbers dx, const double *f, double *df, const std::size_t n)
-    {
-      for (std::size_t i = 0; i < n; ++i)
-        df[i] = (dx[0][i] == 0. ? 0. : x[1][i] * std::pow(x[0][i], x[1][i] - 1.) * dx[0][i]) +
-                (dx[1][i] == 0. ? 0. : f[i] * std::log(x[0][i]) * dx[1][i]);
-    }
-
-    /// x - y floor(x/y)
-    void
-    modulo_tangent(const Numbers x, const Numbers dx, const double *, double *df, const std::size_t n)
-    {
-      for (std::size_t i = 0; i < n; ++i)
-        df[i] = dx[0][i] - dx[1][i] * std::floor(x[0][i] / x[1][i]);
-    }
-
-    void
-    atan2_tangent(const Numbers x, const Numbers dx, const double *, double *df, const std::size_t n)
-    {
-      for (std::size_t i = 0; i < n; ++i)
-        df[i] = (x[1][i] * dx[0][i] - x[0][i] * dx[1][i]) / (x[0][i] * x[0][i] + x[1][i] * x[1][i]);
+      return (dx == 0. ? 0. : y * std::pow(x, y - 1.) * dx) + (dy == 0. ? 0. : f * std::log(x) * dy);
     }
 
     void
@@ -207,18 +173,6 @@ namespace crawler
     operator-(const Enclosure &a)
     {
       return {-a.value, -a.rate};
-    }
-
-    Enclosure
-    plus_rule(const Arguments x)
-    {
-      return x[0] + x[1];
-    }
-
-    Enclosure
-    minus_rule(const Arguments x)
-    {
-      return x[0] + -x[1];
     }
 
     Enclosure
@@ -421,7 +375,8 @@ namespace crawler
       return anything;
     }
 
-    // Functions of one argument x: their value f, for intervals, and their derivative, for numbers as well.
+    // Functions of one argument x: their value f, for intervals, and their derivative, for numbers as well. Functions
+    // of two arguments x and y: the derivative of their value f, for numbers.
 #define CRAWLER_DERIVATIVE(expression) \
   []([[maybe_unused]] const auto &x, [[maybe_unused]] const auto &f) { return expression; }
 #define CRAWLER_FUNCTION(value, derivative)                                                              \
@@ -429,6 +384,13 @@ namespace crawler
     tangent_by<CRAWLER_DERIVATIVE(derivative)>,                                                          \
       enclosure_by<[](const Interval &x) -> Interval { return value; }, CRAWLER_DERIVATIVE(derivative)>, \
   }
+#define CRAWLER_TANGENT(expression)                  \
+  tangent_of_two<[]([[maybe_unused]] const double x, \
+                    [[maybe_unused]] const double y, \
+                    const double dx,                 \
+                    const double dy,                 \
+                    [[maybe_unused]] const double f) { return expression; }>
+
     const double gauss = 2. * std::numbers::inv_sqrtpi; // erf'(x) = gauss exp(-x^2)
 
     /// Rules of an operation that is constant except for jumps: another value is another side.
@@ -465,18 +427,18 @@ namespace crawler
         {"-", CRAWLER_FUNCTION(-x, -1.)},
         {"erf", CRAWLER_FUNCTION(increasing(std::erf, x), gauss * exp(-square(x)))},
         {"erfc", CRAWLER_FUNCTION(1. - increasing(std::erf, x), -gauss * exp(-square(x)))},
-        {"atan2", {atan2_tangent, unknown_rule}},
-        {"pow", {power_tangent, power_rule}},
-        {"mod", {modulo_tangent, modulo_rule, number_of_period}},
+        {"atan2", {CRAWLER_TANGENT((y * dx - x * dy) / (x * x + y * y)), unknown_rule}},
+        {"pow", {tangent_of_two<power_derivative>, power_rule}},
+        {"mod", {CRAWLER_TANGENT(dx - dy * std::floor(x / y)), modulo_rule, number_of_period}},
         {"min", {extreme_tangent, min_rule, number_of_least}},
         {"max", {extreme_tangent, max_rule, number_of_largest}},
         {"sum", {sum_tangent, sum_rule}},
         {"avg", {average_tangent, average_rule}},
         {"?", {select_tangent, select_rule}},
-        {"a+b", {plus_tangent, plus_rule}},
-        {"a-b", {minus_tangent, minus_rule}},
-        {"a*b", {times_tangent, times_rule}},
-        {"a/b", {divide_tangent, divide_rule}},
+        {"a+b", {CRAWLER_TANGENT(dx + dy), [](const Arguments x) { return x[0] + x[1]; }}},
+        {"a-b", {CRAWLER_TANGENT(dx - dy), [](const Arguments x) { return x[0] + -x[1]; }}},
+        {"a*b", {CRAWLER_TANGENT(dx * y + x * dy), times_rule}},
+        {"a/b", {CRAWLER_TANGENT((dx - f * dy) / y), divide_rule}},
         {"sign", steps(step_rule<sign_of_number>)},
         {"rint", steps(step_rule<std::rint>)},
         {"floor", steps(step_rule<std::floor>)},
@@ -492,6 +454,7 @@ namespace crawler
       };
       return list;
     }
+#undef CRAWLER_TANGENT
 #undef CRAWLER_FUNCTION
 #undef CRAWLER_DERIVATIVE
   } // namespace

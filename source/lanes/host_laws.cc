@@ -52,7 +52,7 @@ namespace crawler
       for (std::size_t i = 0; i < n; ++i)
         x_[i] = points_[i] + at.u[i];
       if (at.c_x != nullptr)
-        scene_.ground.profile->values_and_slopes(x_, {at.c, n}, {at.c_x, n});
+        scene_.ground.profile->values(x_, {at.c, n}, {at.c_x, n});
       else
         scene_.ground.profile->values(x_, {at.c, n});
       good = good && are_positive({at.c, n});

@@ -216,15 +216,16 @@ namespace crawler
   }
 
   void
-  require_valid(const Axis &axis,
+  require_valid(const std::string &entry,
+                const std::vector<std::string> &values,
                 const std::string &name,
                 Declarations &declarations,
                 const std::filesystem::path &folder)
   {
     try
     {
-      for (const std::string &value : axis.values)
-        declarations.set(axis.entry, value, folder);
+      for (const std::string &value : values)
+        declarations.set(entry, value, folder);
     }
     catch (const InputError &error)
     {

@@ -96,16 +96,6 @@ namespace crawler
       else
         return fmt::format("{}", value);
     }
-
-    /// Hint naming the nearest word of a choice.
-    std::string
-    nearest_word(const std::string &value, const std::vector<std::string> &words)
-    {
-      if (value.empty())
-        return "";
-      const auto near = nearest_names(value, words, 1);
-      return near.empty() ? "" : "; the nearest is " + quoted_list(near);
-    }
   } // namespace
 
   Declarations::Declarations(std::string only)
@@ -353,7 +343,7 @@ namespace crawler
                                  value,
                                  entry.expected,
                                  is_number ? number_hint(trimmed(value)) : "",
-                                 nearest_word(value, entry.values.words)),
+                                 value.empty() ? "" : nearest_hint(value, entry.values.words)),
                      entry.path);
   }
 

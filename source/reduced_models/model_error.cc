@@ -273,7 +273,7 @@ namespace crawler
   }
 
   ModelErrors
-  estimate_model_errors(const Scene &scene, const StiffStrain &strain)
+  estimate_model_errors(const Scene &scene, const StrainHistory &strain)
   {
     constexpr std::size_t most = 512;
     constexpr double tolerance = 0.1;

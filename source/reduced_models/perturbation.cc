@@ -57,7 +57,7 @@ namespace crawler
     const double c = wave_.speed, D = displacement(t), V = velocity(t);
     ReducedFields fields;
     fields.strain.resize(points.size());
-    LeadingOrderStrain(wave_).at(points)->strain(t, fields.strain);
+    leading_order_strain(wave_).at(points)->strain(t, fields.strain);
     for (std::size_t i = 0; i < points.size(); ++i)
     {
       const double s = points[i];
@@ -84,6 +84,6 @@ namespace crawler
     const auto n_of = [](const double n) {
       return static_cast<unsigned int>(std::min<double>(most, per_wave * std::ceil(n) + 1));
     };
-    return find_extremes(LeadingOrderStrain(wave_), 1., 1., n_of(waves), n_of(waves * std::max(1., strides)));
+    return find_extremes(leading_order_strain(wave_), 1., 1., n_of(waves), n_of(waves * std::max(1., strides)));
   }
 } // namespace crawler

@@ -12,10 +12,10 @@ namespace crawler
     if (is_prescribed())
       strain_ = scene_.active_stress->prescribed_strain();
     else if (wave_)
-      strain_ = &leading_order_.emplace(*wave_);
+      strain_ = &approximate_.emplace(leading_order_strain(*wave_));
     else if (scene_.active_stress->rate_at({0.}) != nullptr)
     {
-      const StrainHistory &stiff = stiff_.emplace(scene_);
+      const StrainHistory &stiff = approximate_.emplace(stiff_strain(scene_));
       if (!find_jump(stiff, 1., 1.))
         strain_ = &stiff;
     }
@@ -29,7 +29,7 @@ namespace crawler
     if (wave_)
       return estimate_model_errors(scene_, *wave_);
     if (strain_ != nullptr)
-      return estimate_model_errors(scene_, *stiff_);
+      return estimate_model_errors(scene_, *strain_);
     return {};
   }
 } // namespace crawler

@@ -19,7 +19,6 @@ namespace crawler
 
     GivenMotion motion;
     std::vector<double> m, by_B, by_rate;
-    bool is_possible = true;
   };
 
   StrainFunctional::StrainFunctional(const unsigned int n_space_panels, const unsigned int n_time_panels)
@@ -49,20 +48,20 @@ namespace crawler
     return samples;
   }
 
-  void
+  bool
   StrainFunctional::evaluate(const std::size_t time,
                              const StrainSamples &samples,
                              const BodyAtPoints &body,
                              State &state) const
   {
     const double *const e = &samples.strain[time * points_.size()], *const e_t = &samples.rate[time * points_.size()];
-    state.is_possible = std::all_of(e, e + points_.size(), [](const double one) { return 1. + one > 0.; });
-    if (!state.is_possible)
-      return;
+    if (!std::all_of(e, e + points_.size(), [](const double one) { return 1. + one > 0.; }))
+      return false;
     state.motion.find(space_, {e, n_}, {e_t, n_}, body, /*with_slopes=*/true);
     space_.running_integral(state.motion.gv, state.m);
     for (std::size_t i = 0; i < n_; ++i)
       state.m[i] -= body.elastic_modulus[i] * e[i];
+    return true;
   }
 
   std::optional<StrainFunctional::Values>
@@ -73,8 +72,7 @@ namespace crawler
     Values values{};
     for (std::size_t time = 0; time < times_.size(); ++time)
     {
-      evaluate(time, samples, body, state);
-      if (!state.is_possible)
+      if (!evaluate(time, samples, body, state))
         return std::nullopt;
       const double *const e = &samples.strain[time * points_.size()], *const e_t = &samples.rate[time * points_.size()];
       double dissipation_rate = 0., positive_power = 0., square = 0., elastic_energy = 0.;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/parameters/declarations.h>
-#include <crawler/scene/active_stress/none.h>
 #include <crawler/scene/active_stress/shaped_wave.h>
 #include <crawler/scene/active_stress_library.h>
 #include <crawler/scene/scene.h>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <type_traits>
 
 namespace crawler
@@ -52,6 +52,24 @@ namespace crawler
         terms.push_back(create_term(term, terms.size() + 1, scene));
       return std::make_unique<Sum>(std::move(terms), scene.body.length, scene.end_time);
     }
+
+    /// No actuation: m = 0.
+    class NoActiveStress : public KnownStress
+    {
+    public:
+      std::optional<Bounds>
+      bounds(const Box &) const override
+      {
+        return Bounds{0., 0.};
+      }
+
+    private:
+      std::unique_ptr<ActiveStressAtPoints>
+      evaluator(const std::vector<double> &, bool) const override
+      {
+        return stress_at_points([](double, const std::span<double> m) { std::ranges::fill(m, 0.); });
+      }
+    };
 
     /// Makes a wave by Fourier coefficients or of any shape.
     std::unique_ptr<ActiveStress>
@@ -103,21 +121,29 @@ namespace crawler
       using P                                  = ActiveStressParameters;
       static const std::vector<Generator> list = {
         {"none",
-         NoActiveStress::description,
+         "no actuation, m = 0",
          [](const P &, const Scene &) -> std::unique_ptr<ActiveStress> { return std::make_unique<NoActiveStress>(); }},
-        {"optimal wave", OptimalWave::description, create_any_optimal_wave},
-        {"travelling wave", TravellingWave::description, create<TravellingWave, &P::travelling_wave>},
-        {"standing wave", StandingWave::description, create<StandingWave, &P::standing_wave>},
-        {"pulse", Pulse::description, create<Pulse, &P::pulse>},
-        {"expression", Expression::description, create<Expression, &P::expression>},
-        {"prescribed strain", PrescribedStrain::description, create_prescribed_strain},
-        {"two-level wave", TwoLevelWave::description, create<TwoLevelWave, &P::two_level_wave>},
-        {"library", Library::description, create<Library, &P::library>},
-        {"segments", Segments::description, create<Segments, &P::segments>},
-        {"strain feedback", StrainFeedback::description, create<StrainFeedback, &P::strain_feedback>},
-        {"table", ActiveStressTable::description, create<ActiveStressTable, &P::table>},
-        {"modes", Modes::description, create<Modes, &P::modes>},
-        {name_of_sum, Sum::description, create_sum},
+        {"optimal wave",
+         "the wave of largest displacement for a given energy, to leading order in chi",
+         create_any_optimal_wave},
+        {"travelling wave",
+         "a sine or square wave that runs along the body",
+         create<TravellingWave, &P::travelling_wave>},
+        {"standing wave", "a wave whose nodes stay in place", create<StandingWave, &P::standing_wave>},
+        {"pulse", "a bump that runs along the body, once or repeatedly", create<Pulse, &P::pulse>},
+        {"expression", "a formula of s and t", create<Expression, &P::expression>},
+        {"prescribed strain", "the stress that produces a given strain", create_prescribed_strain},
+        {"two-level wave",
+         "the two-level strain that goes farthest of all for its work, and the stress that produces it",
+         create<TwoLevelWave, &P::two_level_wave>},
+        {"library", "a shared object that the user has compiled", create<Library, &P::library>},
+        {"segments", "actuated segments of a robot that switch one after the other", create<Segments, &P::segments>},
+        {"strain feedback",
+         "a formula of s, t, the stretch, its rate, and stretches nearby and before",
+         create<StrainFeedback, &P::strain_feedback>},
+        {"table", "samples over s and t in a CSV or HDF5 file", create<ActiveStressTable, &P::table>},
+        {"modes", "a sum of Fourier modes, or of Fourier modes and splines in time", create<Modes, &P::modes>},
+        {name_of_sum, "a sum and product of generators, each with a window in s and t", create_sum},
       };
       return list;
     }

@@ -32,12 +32,6 @@ namespace crawler
   }
 
   std::vector<double>
-  breaks_in_space(const ActiveStress &stress, const double length)
-  {
-    return distinct_breaks_in_space(stress.breaks_in_space(), length);
-  }
-
-  std::vector<double>
   distinct_breaks_in_space(std::vector<double> places, const double length)
   {
     std::vector<double> breaks = distinct(std::move(places), length, min_space_between_breaks);

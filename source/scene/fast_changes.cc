@@ -49,9 +49,7 @@ namespace crawler
         result.is_complete = boxes_.empty();
         for (const Part &part : boxes_)
           result.list.push_back({part.box.t_from, part.box.t_to, std::min(part.bound, rate_in(part.box))});
-        std::sort(result.list.begin(), result.list.end(), [](const FastChange &a, const FastChange &b) {
-          return a.from < b.from;
-        });
+        std::ranges::sort(result.list, {}, &FastChange::from);
         return result;
       }
 

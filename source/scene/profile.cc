@@ -39,15 +39,15 @@ namespace crawler
         return breaks_;
       }
 
-    private:
       void
-      evaluate(const std::span<const double> x, const std::span<double> f, const std::span<double> slope) const override
+      values(const std::span<const double> x, const std::span<double> f, const std::span<double> slope) const override
       {
         const std::span<const double> places[] = {x};
         const std::span<double> slopes[]       = {slope};
         gradient_.evaluate(places, f, slopes);
       }
 
+    private:
       mutable FormulaGradient gradient_; ///< holds intermediate values
       std::vector<double> breaks_;
     };
@@ -76,9 +76,8 @@ namespace crawler
         return spline_ && x_.size() > max_knots_of_splines ? std::vector<double>{x_.front(), x_.back()} : x_;
       }
 
-    private:
       void
-      evaluate(const std::span<const double> x, const std::span<double> f, const std::span<double> slope) const override
+      values(const std::span<const double> x, const std::span<double> f, const std::span<double> slope) const override
       {
         for (std::size_t i = 0; i < x.size(); ++i)
         {
@@ -89,6 +88,7 @@ namespace crawler
         }
       }
 
+    private:
       std::pair<double, double>
       at(const double x) const
       {
@@ -136,20 +136,18 @@ namespace crawler
         return result;
       }
 
-    private:
       void
-      evaluate(const std::span<const double> x, const std::span<double> f, const std::span<double> slope) const override
+      values(const std::span<const double> x, const std::span<double> f, const std::span<double> slope) const override
       {
         scaled_.assign(x.begin(), x.end());
         for (double &value : scaled_)
           value *= unit_;
-        if (slope.empty())
-          return profile_->values(scaled_, f);
-        profile_->values_and_slopes(scaled_, f, slope);
+        profile_->values(scaled_, f, slope);
         for (double &value : slope)
           value *= unit_;
       }
 
+    private:
       const std::shared_ptr<const Profile> profile_;
       const double unit_;
       mutable std::vector<double> scaled_;

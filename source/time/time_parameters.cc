@@ -68,11 +68,10 @@ namespace crawler
         throw InputError(
           fmt::format("the integrator \"{}\" is refused: {}; {} is expected", integrator, reason, quoted_list(names)),
           "Time/Integrator");
-      const auto near = nearest_names(integrator, names, 1);
       throw InputError(fmt::format("unknown integrator \"{}\"; {} is expected{}",
                                    integrator,
                                    quoted_list(names),
-                                   near.empty() ? "" : "; the nearest is " + quoted_list(near)),
+                                   nearest_hint(integrator, names)),
                        "Time/Integrator");
     }
     if (step_control == StepControl::fixed && !initial_step)

@@ -68,11 +68,11 @@ LLVMFuzzerTestOneInput(const std::uint8_t *data, const std::size_t size)
     if (kind == 0)
       csv_numbers(bytes.rest(), {"s", "value"}, "table", "");
     else if (kind <= 3)
-      read_grid_table(file_of(bytes.rest()), "m", "");
+      read_grid_table(file_of(bytes.rest()), "m", 0, "");
     else
     {
       static const std::vector<std::string> files = {hdf5_table(0), hdf5_table(1), hdf5_table(2), hdf5_table(3)};
-      read_grid_table(file_of(fuzz::damaged(files[kind - 4], bytes)), "m", "");
+      read_grid_table(file_of(fuzz::damaged(files[kind - 4], bytes)), "m", 0, "");
     }
   });
   return 0;

@@ -15,18 +15,11 @@ namespace crawler
    *    range) are the same.
    *  - HDF5: datasets s[ns], t[nt], both increasing, and NAME[nt,ns] in the root group, of any type of numbers. Throws
    * InputError for @p entry, with numbers of rows (the header is row 1) or indices (from 0), if there is no such file,
-   * if it does not have this form, if something is not a finite number, or if a point is missing or given twice.
+   * if it does not have this form, if something is not a finite number, if a point is missing or given twice, or if
+   * there are fewer than @p least values of s or t.
    */
   GridTable
-  read_grid_table(const std::string &file, const std::string &name, const std::string &entry);
-
-  /// Throws InputError for @p entry unless there are at least @p least @p values of @p name ("s").
-  void
-  require_number_of_values(const std::vector<double> &values,
-                           std::size_t least,
-                           const std::string &name,
-                           const std::string &file,
-                           const std::string &entry);
+  read_grid_table(const std::string &file, const std::string &name, std::size_t least, const std::string &entry);
 
   /// Throws InputError for @p entry unless @p values of @p name reach from 0 to @p end, the whole of @p what ("body").
   /// Gaps below a millionth of it, as in single precision, count as round-off: the first or last value is moved.

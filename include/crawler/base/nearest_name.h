@@ -11,6 +11,10 @@ namespace crawler
   std::vector<std::string>
   nearest_names(const std::string &name, const std::vector<std::string> &candidates, unsigned int count = 3);
 
+  /// "; the nearest is ...", to follow a list of what is expected where @p name was found; empty if none is near.
+  std::string
+  nearest_hint(const std::string &name, const std::vector<std::string> &candidates);
+
   /// The candidate of which @p name is most likely a misspelling, with at most a third of its letters wrong; nothing if
   /// there is none.
   std::vector<std::string>

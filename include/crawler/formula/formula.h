@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/formula/formula_operation.h>
+#include <crawler/formula/operation_rules.h>
 
 #include <cstddef>
 #include <memory>

@@ -10,13 +10,6 @@ namespace crawler
 {
   class Declarations;
 
-  /// An axis of a study: the values that one entry of the parameter file takes in turn.
-  struct Axis
-  {
-    std::string entry;               ///< values as in a parameter file, no two alike
-    std::vector<std::string> values; ///< as in a parameter file, no two alike
-  };
-
   /// Splits a text at separators and trims the parts. Separators within double quotes are skipped, as are those within
   /// parentheses, except semicolons.
   std::vector<std::string>
@@ -51,10 +44,11 @@ namespace crawler
   void
   require_distinct(const std::vector<std::string> &values, const std::string &name, const std::string &where = "");
 
-  /// Throws InputError, in the name of the entry @p name, unless the axis is that of an entry in @p declarations and
-  /// all its values are admissible there; file names are relative to @p folder. Leaves the entry at the last value.
+  /// Throws InputError, in the name of the entry @p name, unless @p entry is one of @p declarations and all values are
+  /// admissible there; file names are relative to @p folder. Leaves the entry at the last value.
   void
-  require_valid(const Axis &axis,
+  require_valid(const std::string &entry,
+                const std::vector<std::string> &values,
                 const std::string &name,
                 Declarations &declarations,
                 const std::filesystem::path &folder = "");

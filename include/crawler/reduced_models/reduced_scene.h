@@ -60,8 +60,7 @@ namespace crawler
     const Units units_;
     const Scene scene_;
     std::optional<NaturalWave> wave_;
-    std::optional<LeadingOrderStrain> leading_order_;
-    std::optional<StiffStrain> stiff_;
+    std::optional<StrainByEvaluators> approximate_; ///< if none is prescribed
     const StrainHistory *strain_ = nullptr;
   };
 } // namespace crawler

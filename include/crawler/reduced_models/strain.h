@@ -2,8 +2,8 @@
 #pragma once
 
 #include <crawler/scene/active_stress/optimal_wave.h>
+#include <crawler/scene/evaluators.h>
 #include <crawler/scene/scene.h>
-#include <crawler/scene/strain_history.h>
 
 #include <vector>
 
@@ -35,39 +35,11 @@ namespace crawler
 
   /// Strain of the optimal wave to leading order in chi (theory.md, section 3), in natural units: e = sum a (sin
   /// q(s+ct) - sin q s) + b (cos q(s+ct) - cos q s).
-  class LeadingOrderStrain : public StrainHistory
-  {
-  public:
-    explicit LeadingOrderStrain(NaturalWave wave)
-      : wave_(std::move(wave))
-    {
-    }
+  StrainByEvaluators
+  leading_order_strain(const NaturalWave &wave);
 
-    std::unique_ptr<StrainAtPoints>
-    at(const std::vector<double> &points) const override;
-    std::optional<FieldBounds>
-    bounds(const SpaceTimeBox &box) const override;
-
-  private:
-    const NaturalWave wave_;
-  };
-
-  /// Strain of a body so stiff that its elastic force balances the active stress at any time: e = -m/k.
-  class StiffStrain : public StrainHistory
-  {
-  public:
-    /// @p scene must outlive it, and its active stress must know its rate.
-    explicit StiffStrain(const Scene &scene)
-      : scene_(scene)
-    {
-    }
-
-    std::unique_ptr<StrainAtPoints>
-    at(const std::vector<double> &points) const override;
-    std::optional<FieldBounds>
-    bounds(const SpaceTimeBox &box) const override;
-
-  private:
-    const Scene &scene_;
-  };
+  /// Strain of a body so stiff that its elastic force balances the active stress at any time: e = -m/k. @p scene must
+  /// outlive it, and its active stress must know its rate.
+  StrainByEvaluators
+  stiff_strain(const Scene &scene);
 } // namespace crawler

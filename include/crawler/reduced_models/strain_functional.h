@@ -74,7 +74,8 @@ namespace crawler
 
   private:
     struct State;
-    void
+    /// Finds the state at one time; false if a stretch is not positive.
+    bool
     evaluate(std::size_t time, const StrainSamples &samples, const BodyAtPoints &body, State &state) const;
 
     const GaussPanels space_, time_;

@@ -22,10 +22,7 @@ namespace crawler
   /// small anyway.
   constexpr std::size_t max_knots_of_splines = 24;
 
-  /// Breaks of an active stress in (0, @p length), ascending, each once [length]; the ends of the body are none.
-  std::vector<double>
-  breaks_in_space(const ActiveStress &stress, double length);
-  /// Breaks in any list of places, treated likewise.
+  /// Breaks of a list in (0, @p length), ascending, each once [length]; the ends of the body are none.
   std::vector<double>
   distinct_breaks_in_space(std::vector<double> places, double length);
 

@@ -15,17 +15,9 @@ namespace crawler
   public:
     virtual ~Profile() = default;
 
-    /// Writes the factor [1] at the places @p x [length]; the second function also its derivative [1/length].
-    void
-    values(const std::span<const double> x, const std::span<double> f) const
-    {
-      evaluate(x, f, {});
-    }
-    void
-    values_and_slopes(const std::span<const double> x, const std::span<double> f, const std::span<double> slope) const
-    {
-      evaluate(x, f, slope);
-    }
+    /// Writes the factor [1] at the places @p x [length], and its derivative [1/length] unless @p slope is empty.
+    virtual void
+    values(std::span<const double> x, std::span<double> f, std::span<double> slope = {}) const = 0;
 
     /// Places where the factor is known to have a jump or a kink [length].
     virtual std::vector<double>
@@ -36,11 +28,6 @@ namespace crawler
 
     double
     value(double x) const;
-
-  private:
-    /// Evaluates; @p slope is empty if it is not wanted.
-    virtual void
-    evaluate(std::span<const double> x, std::span<double> f, std::span<double> slope) const = 0;
   };
 
   /// The factor at places; 1 where there is no profile.

@@ -66,29 +66,19 @@ namespace crawler
       int depth = 0;
       for (std::size_t i = 0; i < formula.size(); ++i)
       {
+        const auto refuse = [&](const std::string &why) {
+          throw InputError(fmt::format("error in the formula \"{}\" at position {}: {}", formula, i + 1, why),
+                           formula_entry);
+        };
         const char c = formula[i], before = i > 0 ? formula[i - 1] : ' ',
                    after = i + 1 < formula.size() ? formula[i + 1] : ' ';
         depth += (c == '(') - (c == ')');
         if (c == '*' && after == '*')
-          throw InputError(
-            fmt::format("error in the formula \"{}\" at position {}: found \"**\", but \"^\" is expected for a power",
-                        formula,
-                        i + 1),
-            formula_entry);
+          refuse("found \"**\", but \"^\" is expected for a power");
         if (c == ',' && depth == 0)
-          throw InputError(
-            fmt::format("error in the formula \"{}\" at position {}: one formula is expected, but there are "
-                        "several, separated by a comma",
-                        formula,
-                        i + 1),
-            formula_entry);
+          refuse("one formula is expected, but there are several, separated by a comma");
         if (c == '=' && after != '=' && std::string("=<>!").find(before) == std::string::npos)
-          throw InputError(
-            fmt::format(
-              "error in the formula \"{}\" at position {}: found \"=\", but \"==\" is expected for a comparison",
-              formula,
-              i + 1),
-            formula_entry);
+          refuse("found \"=\", but \"==\" is expected for a comparison");
       }
     }
 

@@ -352,30 +352,18 @@ namespace crawler
       generator_->report(out);
   }
 
-  namespace
-  {
-    GridTable
-    read(const std::string &name, const double length, const double end_time, const std::string &entry)
-    {
-      GridTable grid = read_grid_table(name, "strain", entry);
-      require_number_of_values(grid.s, 4, "s", name, entry);
-      require_number_of_values(grid.t, 4, "t", name, entry);
-      reach_ends(grid.s, length, "s", "body", name, entry);
-      reach_ends(grid.t, end_time, "t", "duration", name, entry);
-      return grid;
-    }
-  } // namespace
-
   std::unique_ptr<const StrainHistory>
   read_strain_table(const std::string &name, const double length, const double end_time, const std::string &entry)
   {
-    return std::make_unique<StrainByEvaluators>(
-      [table = std::make_shared<const GridInterpolation>(
-         read(name, length, end_time, entry), GridInterpolation::Method::cubic, GridInterpolation::Outside::go_on)](
-        const std::vector<double> &points) -> Strains {
-        const std::shared_ptr<GridInterpolation::AtPoints> at = table->at(points);
-        return {stress_at_points([at](const double t, const std::span<double> e) { at->values(t, e); }),
-                stress_at_points([at](const double t, const std::span<double> e_t) { at->rates(t, e_t); })};
-      });
+    GridTable grid = read_grid_table(name, "strain", 4, entry);
+    reach_ends(grid.s, length, "s", "body", name, entry);
+    reach_ends(grid.t, end_time, "t", "duration", name, entry);
+    const auto table = std::make_shared<const GridInterpolation>(
+      std::move(grid), GridInterpolation::Method::cubic, GridInterpolation::Outside::go_on);
+    return std::make_unique<StrainByEvaluators>([table](const std::vector<double> &points) -> Strains {
+      const std::shared_ptr<GridInterpolation::AtPoints> at = table->at(points);
+      return {stress_at_points([at](const double t, const std::span<double> e) { at->values(t, e); }),
+              stress_at_points([at](const double t, const std::span<double> e_t) { at->rates(t, e_t); })};
+    });
   }
 } // namespace crawler

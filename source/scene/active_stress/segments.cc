@@ -319,8 +319,7 @@ namespace crawler
                        parameters_.switching);
     if (parameters_.rate_limit && !smooth_)
     {
-      const Segment &slowest = *std::max_element(
-        segments_.begin(), segments_.end(), [](const Segment &a, const Segment &b) { return a.front < b.front; });
+      const Segment &slowest = *std::ranges::max_element(segments_, {}, &Segment::front);
       out << fmt::format("; the rate limit makes fronts of up to {:.4g} of a period", slowest.front);
     }
     out << fmt::format("; {} switching times\n", facts_.breaks_in_time.size());

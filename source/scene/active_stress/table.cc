@@ -70,10 +70,7 @@ namespace crawler
     GridTable
     read(const TableParameters &p, const double length, const double end_time)
     {
-      GridTable grid          = read_grid_table(p.file, "m", table_file_entry);
-      const std::size_t least = p.interpolation == "cubic" ? 4 : 2;
-      require_number_of_values(grid.s, least, "s", p.file, table_file_entry);
-      require_number_of_values(grid.t, least, "t", p.file, table_file_entry);
+      GridTable grid = read_grid_table(p.file, "m", p.interpolation == "cubic" ? 4 : 2, table_file_entry);
       for (double &s : grid.s)
         s *= p.unit_of_s;
       for (double &t : grid.t)

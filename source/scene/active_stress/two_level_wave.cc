@@ -20,19 +20,19 @@ namespace crawler
     double
     frequency_by_work(const TwoLevelWaveParameters &p, const Scene &scene, const double X)
     {
+      const auto refuse = [](const std::string &found_and_expected, const std::string &what) {
+        throw InputError(
+          fmt::format("{} is expected where the work is given, since the work of {} depends on the phase",
+                      found_and_expected,
+                      what),
+          two_level_wave_section + "Given by");
+      };
       if (!scene.profiles.is_plain())
-        throw InputError("the body is not uniform, but no profile is expected where the work is given, since the work "
-                         "of non-uniform bodies depends on the phase",
-                         two_level_wave_section + "Given by");
+        refuse("the body is not uniform, but no profile", "non-uniform bodies");
       if (p.wave_number != std::round(p.wave_number))
-        throw InputError(fmt::format("the wave number is {:g}, but a whole one is expected where the work is given, "
-                                     "since the work of other waves depends on the phase",
-                                     p.wave_number),
-                         two_level_wave_section + "Given by");
+        refuse(fmt::format("the wave number is {:g}, but a whole one", p.wave_number), "other waves");
       if (p.ramp_duration > 0.)
-        throw InputError("there is a ramp, but Ramp duration = 0 is expected where the work is given, since the work "
-                         "of the ramp depends on the phase",
-                         two_level_wave_section + "Given by");
+        refuse("there is a ramp, but Ramp duration = 0", "the ramp");
       const double L = scene.body.length,
                    c = std::sqrt(p.work / (scene.body.friction_coefficient * L * scene.end_time * X));
       return p.wave_number * c / L;

@@ -67,8 +67,11 @@ namespace crawler
     if (amplitude_ != 0. && phase_rate_ != 0.)
       facts_.repetition = {1. / std::abs(phase_rate_), envelope_.ramp_end()};
     facts_.has_rate        = !(profile_.jumps() && phase_rate_ != 0.);
-    facts_.breaks_in_space = places_of_jumps(length);
-    facts_.breaks_in_time  = times_of_own_jumps(end_time);
+    facts_.breaks_in_space = envelope_.breaks_in_space();
+    if (phase_rate_ == 0.)
+      for (const double s : times_of_jumps(profile_, wave_number_, start_, length))
+        facts_.breaks_in_space.push_back(s);
+    facts_.breaks_in_time = times_of_own_jumps();
   }
 
   /// Evaluates a sine with separate factors of s and t: p = sin x cos theta + cos x sin theta, theta = 2 pi phase_rate
@@ -126,28 +129,18 @@ namespace crawler
   }
 
   std::vector<double>
-  TravellingWave::places_of_jumps(const double length) const
-  {
-    std::vector<double> places = envelope_.breaks_in_space();
-    if (phase_rate_ == 0.)
-      for (const double s : times_of_jumps(profile_, wave_number_, start_, length))
-        places.push_back(s);
-    return places;
-  }
-
-  std::vector<double>
-  TravellingWave::times_of_own_jumps(const double end_time) const
+  TravellingWave::times_of_own_jumps() const
   {
     if (wave_number_ > 0.)
       return {};
     if (phase_rate_ >= 0.)
-      return times_of_jumps(profile_, phase_rate_, start_, end_time);
+      return times_of_jumps(profile_, phase_rate_, start_, end_time_);
     // Jumps are mirrored, since the phase runs backwards.
     std::vector<double> times;
     const double f = -phase_rate_;
-    for (const double x : profile_.breaks(start_ - f * end_time, start_))
+    for (const double x : profile_.breaks(start_ - f * end_time_, start_))
       times.push_back((start_ - x) / f);
-    return within(std::move(times), end_time);
+    return within(std::move(times), end_time_);
   }
 
   std::unique_ptr<const ActiveStress>

@@ -118,7 +118,6 @@ namespace crawler
                  file);
         constexpr std::size_t most = 10;
         const bool all_are_named   = names.size() <= most;
-        const auto near            = nearest_names(name, names, 1);
         refuse("\"{}\" has no column \"{}\", but {} is expected{}",
                file,
                name,
@@ -127,7 +126,7 @@ namespace crawler
                  : fmt::format("one of {} columns, {}, ...",
                                names.size(),
                                fmt::format("\"{}\"", fmt::join(names.begin(), names.begin() + most, "\", \""))),
-               near.empty() ? "" : "; the nearest is " + quoted_list(near));
+               nearest_hint(name, names));
       }
       if (std::find(found + 1, names.end(), name) != names.end())
         refuse("\"{}\" has more than one column \"{}\", but different names are expected", file, name);

@@ -136,9 +136,9 @@ namespace crawler
             fmt::format("\"{}\": \"{}\" cannot vary; an entry of another section is expected", axes_entry, axis.entry),
             axes_entry);
       Form scratch(file_);
-      require_valid({axis.entry, axis.values}, axes_entry, scratch.declarations, design_->folder());
+      require_valid(axis.entry, axis.values, axes_entry, scratch.declarations, design_->folder());
       if (axis.is_range) // most numbers in it are not whole
-        require_valid({axis.entry, {design_->value(number, 0)}}, axes_entry, scratch.declarations);
+        require_valid(axis.entry, {design_->value(number, 0)}, axes_entry, scratch.declarations);
     }
   }
 

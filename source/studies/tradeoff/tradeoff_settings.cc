@@ -43,12 +43,8 @@ namespace crawler
         const double x  = to_number(value).value_or(0.);
         const bool fits = !words.empty() ? std::ranges::find(words, value) != words.end()
                                          : x > 0. && (is_whole ? x <= largest && x == std::round(x) : x < 1.);
-        const auto near = nearest_names(value, words, 1);
         std::string why = reason_against(value);
-        if (!why.empty())
-          why = "; it is refused: " + why;
-        else if (!near.empty())
-          why = "; the nearest is " + quoted_list(near);
+        why             = !why.empty() ? "; it is refused: " + why : nearest_hint(value, words);
         if (!fits)
           throw InputError(fmt::format("\"{}\": found \"{}\", but {} is expected{}", name, value, expected, why), name);
         if (words.empty())

@@ -71,14 +71,14 @@ namespace
   {
     const test::TemporaryFolder folder;
     test::write_text(folder.path / "m.csv", content);
-    return read_grid_table((folder.path / "m.csv").string(), "m", "entry");
+    return read_grid_table((folder.path / "m.csv").string(), "m", 0, "entry");
   }
 
   /// What is wrong with this file, its name left out.
   std::string
   complaint_about(const std::filesystem::path &file)
   {
-    std::string message    = test::complaint_of([&]() { read_grid_table(file.string(), "m", ""); });
+    std::string message    = test::complaint_of([&]() { read_grid_table(file.string(), "m", 0, ""); });
     const std::string name = "\"" + file.string() + "\"";
     if (const auto place = message.find(name); place != std::string::npos)
       message.replace(place, name.size(), "FILE");

@@ -88,10 +88,11 @@ TEST(Axis, AllValuesAreCheckedAgainstTheDeclarations)
   declarations.enter("Body");
   declarations.number("Length", length, positive(), "length").means("Length.");
   declarations.leave();
-  require_valid({"Body/Length", {"1", "3"}}, name, declarations);
+  require_valid("Body/Length", {"1", "3"}, name, declarations);
   EXPECT_EQ(length, 3.);
-  for (const auto &[axis, part] : {std::pair(Axis{"Body/Length", {"2", "-1"}}, "a positive number is expected"),
-                                   std::pair(Axis{"Body/Lenght", {"2"}}, "nearest name is \"Length\"")})
-    test::expect_words(test::complaint_of([&, &axis = axis]() { require_valid(axis, name, declarations); }),
-                       {name + ": ", part});
+  const auto complaint_about = [&](const std::string &entry) {
+    return test::complaint_of([&]() { require_valid(entry, {"2", "-1"}, name, declarations); });
+  };
+  test::expect_words(complaint_about("Body/Length"), {name + ": ", "a positive number is expected"});
+  test::expect_words(complaint_about("Body/Lenght"), {name + ": ", "nearest name is \"Length\""});
 }

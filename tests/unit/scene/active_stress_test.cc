@@ -2,9 +2,8 @@
 #include "../../support/stress.h"
 #include "../../support/test.h"
 
-#include <crawler/scene/active_stress/expression.h>
-#include <crawler/scene/active_stress/none.h>
-#include <crawler/scene/active_stress/optimal_wave.h>
+#include <crawler/scene/active_stress_library.h>
+#include <crawler/scene/scene.h>
 
 using namespace crawler;
 
@@ -49,7 +48,9 @@ TEST(OptimalWave, IsTheFormulaOfThePaper)
 
 TEST(NoActiveStress, IsZero)
 {
-  for (const double m : test::values(NoActiveStress(), {0., 0.5, 1.}, 0.3))
+  ActiveStressParameters parameters;
+  parameters.generator = "none";
+  for (const double m : test::values(*create_active_stress(parameters, Scene()), {0., 0.5, 1.}, 0.3))
     EXPECT_EQ(m, 0.);
 }
 

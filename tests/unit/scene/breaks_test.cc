@@ -23,7 +23,7 @@ namespace
 TEST(Breaks, AreSortedDistinctAndInside)
 {
   using List = std::vector<double>;
-  EXPECT_EQ(breaks_in_space(*with({1.5, 0.5, 0., 2., 0.5 + 1e-10, -3., 7.}, {}), 2.), (List{0.5, 1.5}));
+  EXPECT_EQ(distinct_breaks_in_space({1.5, 0.5, 0., 2., 0.5 + 1e-10, -3., 7.}, 2.), (List{0.5, 1.5}));
   EXPECT_EQ(TimeSegments(*with({}, {3., 1., 4., 0., 1. + 1e-13, 9.}), 4.).breaks(), (List{0.25, 0.75}));
   EXPECT_TRUE(TimeSegments(*with({}, {}), 4.).breaks().empty());
 }

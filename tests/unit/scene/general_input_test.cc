@@ -87,7 +87,7 @@ TEST_F(ProfileFile, InterpolatesAndHolds)
   for (const double x : {0., 0.4, 1.9})
   {
     double f = 0., slope = 0.;
-    cubic->values_and_slopes({&x, 1}, {&f, 1}, {&slope, 1});
+    cubic->values({&x, 1}, {&f, 1}, {&slope, 1});
     EXPECT_NEAR(f, cubic_of(x), 2e-13);
     EXPECT_NEAR(slope, (1. - x + 0.9 * x * x) * f, 1e-12);
   }
@@ -100,7 +100,7 @@ TEST_F(ProfileFile, InterpolatesAndHolds)
   const auto scaled = in_units(linear, 10.);
   const double x    = 0.025;
   double f = 0., slope = 0.;
-  scaled->values_and_slopes({&x, 1}, {&f, 1}, {&slope, 1});
+  scaled->values({&x, 1}, {&f, 1}, {&slope, 1});
   EXPECT_DOUBLE_EQ(f, 1.5);
   EXPECT_DOUBLE_EQ(slope, 20.);
 }

@@ -28,8 +28,6 @@ namespace crawler
   class Expression : public KnownStress
   {
   public:
-    static constexpr const char *description = "a formula of s and t";
-
     /**
      * Throws InputError with the position if the formula or the list of constants has an error, or if the formula is
      * not a finite number somewhere in 0 <= s <= length, 0 <= t <= end_time (checked on a grid).

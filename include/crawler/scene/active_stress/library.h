@@ -33,8 +33,6 @@ namespace crawler
   class Library : public KnownStress
   {
   public:
-    static constexpr const char *description = "a shared object that the user has compiled";
-
     /**
      * Throws InputError if there is no such file, if it is not a shared object for this machine or not a plug-in of
      * this version, if it does not know one of the parameters, or, with its message, if it throws.

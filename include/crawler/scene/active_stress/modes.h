@@ -38,8 +38,6 @@ namespace crawler
   class Modes : public KnownStress
   {
   public:
-    static constexpr const char *description = "a sum of Fourier modes, or of Fourier modes and splines in time";
-
     /// Throws InputError if there are more coefficients than modes; missing ones are 0.
     Modes(const ModesParameters &parameters, double length, double end_time);
 

@@ -45,9 +45,6 @@ namespace crawler
   class OptimalWave : public KnownStress
   {
   public:
-    static constexpr const char *description =
-      "the wave of largest displacement for a given energy, to leading order in chi";
-
     /// Throws InputError if no wave spends the energy, if the requested root does not exist, or if the lists of
     /// coefficients do not fit together.
     OptimalWave(const OptimalWaveParameters &parameters, const Body &body, double end_time);

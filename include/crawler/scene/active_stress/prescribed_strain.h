@@ -48,8 +48,6 @@ namespace crawler
   class PrescribedStrain : public KnownStress
   {
   public:
-    static constexpr const char *description = "the stress that produces a given strain";
-
     /// Takes a @p scene complete but for the active stress, and a @p generator if the strain is generated: its values
     /// are read as strain [1]. Throws InputError if formula, file or numbers do not make sense, if 1 + e is not
     /// positive somewhere, if the strain jumps, or if the generator does not know its rate or depends on the stretch.

@@ -38,8 +38,6 @@ namespace crawler
   class Pulse : public KnownStress
   {
   public:
-    static constexpr const char *description = "a bump that runs along the body, once or repeatedly";
-
     /// Throws InputError if the window does not fit, if the pulses are closer than their width, or if the pulse does
     /// not reach the body before the end time.
     Pulse(const PulseParameters &parameters, double length, double end_time);

@@ -45,8 +45,6 @@ namespace crawler
   class Segments : public KnownStress
   {
   public:
-    static constexpr const char *description = "actuated segments of a robot that switch one after the other";
-
     /// Throws InputError if there are neither one nor N amplitudes, if smooth fronts do not fit into the period or are
     /// faster than the rate limit, or if there are more switchings until the end time than a run can have.
     Segments(const SegmentsParameters &parameters, double length, double end_time);

@@ -32,9 +32,6 @@ namespace crawler
   class StrainFeedback : public KnownStress
   {
   public:
-    static constexpr const char *description =
-      "a formula of s, t, the stretch, its rate, and stretches nearby and before";
-
     /// Throws InputError if the formula, the constants, the distance, the delay or the sensor do not make sense.
     StrainFeedback(const StrainFeedbackParameters &parameters, double length, double end_time);
 

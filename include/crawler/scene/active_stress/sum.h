@@ -47,8 +47,6 @@ namespace crawler
   class Sum : public KnownStress, public MovingJumps
   {
   public:
-    static constexpr const char *description = "a sum and product of generators, each with a window in s and t";
-
     /// Throws InputError if no term adds, or if terms use the stretch at different distances or with different delays.
     Sum(std::vector<SumTerm> terms, double length, double end_time);
 

@@ -30,8 +30,6 @@ namespace crawler
   class ActiveStressTable : public KnownStress
   {
   public:
-    static constexpr const char *description = "samples over s and t in a CSV or HDF5 file";
-
     /**
      * Reads the file (base/grid_table.h). Throws InputError if it cannot be read, if there are not enough values of s
      * or t (cubic: 4, linear: 2), if the samples do not reach from 0 to @p length and from 0 to @p end_time and no

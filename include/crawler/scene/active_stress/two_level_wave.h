@@ -38,9 +38,6 @@ namespace crawler
   class TwoLevelWave : public PrescribedStrain
   {
   public:
-    static constexpr const char *description =
-      "the two-level strain that goes farthest of all for its work, and the stress that produces it";
-
     /// Throws InputError if the strains are not in order, if the fronts do not fit, if there are too many periods, or
     /// if the work is given, but the wave number is not whole, there is a ramp, or the body varies.
     TwoLevelWave(const TwoLevelWaveParameters &parameters, const Scene &scene);

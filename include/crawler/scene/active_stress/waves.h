@@ -41,8 +41,6 @@ namespace crawler
   class TravellingWave : public KnownStress, public MovingJumps
   {
   public:
-    static constexpr const char *description = "a sine or square wave that runs along the body";
-
     /// Throws InputError if fronts or window do not fit, if a speed is given for wave number 0, or if there are more
     /// than 1e8 periods (1e6 if the whole body is switched at once).
     TravellingWave(const TravellingWaveParameters &parameters, double length, double end_time);
@@ -66,12 +64,9 @@ namespace crawler
     std::unique_ptr<ActiveStressAtPoints>
     sine_at(const std::vector<double> &points, bool rate) const;
 
-    /// Places in (0, @p length) where a steady square wave jumps; below, times in (0, @p end_time) when a uniform one
-    /// does.
+    /// Times when a uniform square wave jumps.
     std::vector<double>
-    places_of_jumps(double length) const;
-    std::vector<double>
-    times_of_own_jumps(double end_time) const;
+    times_of_own_jumps() const;
 
     const TravellingWaveParameters parameters_;
     const double length_, end_time_;
@@ -109,8 +104,6 @@ namespace crawler
   class StandingWave : public KnownStress
   {
   public:
-    static constexpr const char *description = "a wave whose nodes stay in place";
-
     /// Throws InputError if fronts or window do not fit, or if there are more than 1e8 periods (1e6 of a square wave).
     StandingWave(const StandingWaveParameters &parameters, double length, double end_time);
 
