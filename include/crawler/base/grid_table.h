@@ -20,6 +20,10 @@ namespace crawler
   GridTable
   read_grid_table(const std::string &file, const std::string &name, const std::string &entry);
 
+  /// Reads the samples of a grid from an HDF5 file (read_grid_table()). Throws InputError.
+  GridTable
+  read_hdf5_grid_table(const GridTableSource &source);
+
   /// Throws InputError for @p entry unless there are at least @p least @p values of @p name ("s").
   void
   require_number_of_values(const std::vector<double> &values,
