@@ -67,7 +67,6 @@ namespace crawler
         , keep_going_(keep_going)
         , results_(results)
         , sampler_(tables_->setup, Recorder::n_pieces)
-        , extremes_(*tables_)
       {
         look_inside = options.energy_balance;
       }
@@ -272,8 +271,12 @@ namespace crawler
         {
           if (!(step.stages[i].min_stretch > small_stretch))
             return false;
-          const auto [smallest, largest] = extremes_.look(
-            step, i, lane.recorder->result.min_stretch.value, lane.recorder->result.max_stretch.value, lane.breaks);
+          const auto [smallest, largest] = lane_extremes(*tables_,
+                                                         step,
+                                                         i,
+                                                         lane.recorder->result.min_stretch.value,
+                                                         lane.recorder->result.max_stretch.value,
+                                                         lane.breaks);
           lane.recorder->see_stretch(smallest, largest);
           if (options_.energy_balance)
             add_rates(lane, step, i);
@@ -346,7 +349,6 @@ namespace crawler
       const std::function<bool()> &keep_going_;
       Results &results_;
       LaneSampler sampler_;
-      const LaneExtremes extremes_;
       std::vector<Lane> lanes_;
       std::size_t next_ = 0;
       bool interrupted_ = false;
