@@ -283,10 +283,7 @@ namespace crawler
         }
         if (options_.energy_balance)
           lane.recorder->result.energy_balance->elastic_energy = step.elastic_energy;
-        const auto sample = [&](const double time) {
-          sampler_.sample(step, time);
-          return Recorder::BodySample{sampler_.displacement(), sampler_.mean_displacement()};
-        };
+        const auto sample    = [&](const double time) { return sampler_.sample(step, time); };
         const LaneStage &end = step.stages[n - 1];
         lane.recorder->see_step(step.time, step.is_output_time, end.min_stretch, end.max_stretch, sample);
         if (step.is_output_time && !lane.segments.is_last() && step.time == lane.segments.end())
