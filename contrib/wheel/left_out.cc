@@ -4,7 +4,7 @@
 // contrib/one_process/left_out.cc: commands with their files, tables in HDF5. MPI and PETSc have nothing to start.
 #include "../python/command.h"
 
-#include <crawler/base/grid_table_hdf5.h>
+#include <crawler/base/grid_table.h>
 #include <crawler/base/mpi_session.h>
 #include <crawler/base/versions.h>
 

@@ -54,12 +54,6 @@ namespace crawler
   }
 
   std::vector<double>
-  CubicSpline::curvatures(const std::span<const double> values) const
-  {
-    return curvatures(values, 1);
-  }
-
-  std::vector<double>
   CubicSpline::curvatures(const std::span<const double> values, const std::size_t n_splines) const
   {
     const std::size_t n = knots_.size(), last = n - 2, m = n_splines;

@@ -36,8 +36,6 @@ namespace crawler
     }
   }
 
-  GridInterpolation::~GridInterpolation() = default;
-
   CubicSpline::Place
   GridInterpolation::place_in_s(const double s) const
   {
@@ -132,13 +130,9 @@ namespace crawler
     }
     if (places_.empty())
       return;
-    const bool cubic      = owner_.in_s_.has_value();
-    const double *const y = at_knots_.data(), *const M = cubic ? y + owner_.grid_.s.size() : y;
+    const std::span<const double> y(at_knots_), M = owner_.in_s_ ? y.subspan(owner_.grid_.s.size()) : y;
     for (std::size_t p = 0; p < places_.size(); ++p)
-    {
-      const CubicSpline::Place &place = places_[p]; // c = d = 0 if linear
-      result[p] = place.a * y[place.i] + place.b * y[place.i + 1] + place.c * M[place.i] + place.d * M[place.i + 1];
-    }
+      result[p] = places_[p].value(y, M); // c = d = 0 if linear
   }
 
   void

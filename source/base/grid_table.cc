@@ -2,7 +2,6 @@
 #include <crawler/base/csv_numbers.h>
 #include <crawler/base/files.h>
 #include <crawler/base/grid_table.h>
-#include <crawler/base/grid_table_hdf5.h>
 #include <crawler/base/told_apart.h>
 
 #include <fmt/format.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/grid_table_hdf5.h>
-#include <crawler/base/hdf5_handle.h>
-#include <crawler/base/hdf5_trial.h>
+#include <crawler/base/grid_table.h>
+#include <crawler/base/hdf5_calls.h>
 #include <crawler/base/told_apart.h>
 
 #include <algorithm>

@@ -7,18 +7,6 @@
 
 namespace crawler
 {
-  namespace
-  {
-    /// Returns the last end of a UTF-8 character at or before a place.
-    std::size_t
-    end_of_character(const std::string &text, std::size_t place)
-    {
-      while (place > 0 && place < text.size() && (static_cast<unsigned char>(text[place]) & 0xc0) == 0x80)
-        --place;
-      return place;
-    }
-  } // namespace
-
   std::string
   with_plain_numbers(std::string text)
   {
@@ -76,6 +64,25 @@ namespace crawler
     return result;
   }
 
+  std::size_t
+  whole_characters(const std::string &text, const std::size_t width)
+  {
+    std::size_t size = std::min(text.size(), width);
+    if (size < text.size())
+      while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xc0) == 0x80)
+        --size;
+    return size;
+  }
+
+  std::string
+  shortened(const std::string &text, const std::size_t width)
+  {
+    if (text.size() <= width)
+      return text;
+    const std::string dots = "...";
+    return text.substr(0, whole_characters(text, width - dots.size())) + dots;
+  }
+
   std::string
   with_short_quotes(const std::string &text, const std::size_t most)
   {
@@ -92,8 +99,8 @@ namespace crawler
       if (quoted.size() <= most)
         result += quoted;
       else // cut at ends of UTF-8 characters
-        result += quoted.substr(0, end_of_character(quoted, shown)) + " ... (" + std::to_string(quoted.size()) +
-                  " characters) ... " + quoted.substr(end_of_character(quoted, quoted.size() - shown));
+        result += quoted.substr(0, whole_characters(quoted, shown)) + " ... (" + std::to_string(quoted.size()) +
+                  " characters) ... " + quoted.substr(whole_characters(quoted, quoted.size() - shown));
       result += '"';
       begin = close + 1;
     }

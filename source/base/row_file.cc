@@ -2,10 +2,9 @@
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
-#include <crawler/base/hdf5_trial.h>
-#include <crawler/base/hdf5_writing.h>
+#include <crawler/base/hdf5_calls.h>
+#include <crawler/base/plain_numbers.h>
 #include <crawler/base/row_file.h>
-#include <crawler/base/short_text.h>
 #include <crawler/base/stop_place.h>
 
 #include <boost/crc.hpp>

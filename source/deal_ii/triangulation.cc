@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/mesh/triangulation.h>
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/multithread_info.h>
 #include <deal.II/distributed/shared_tria.h>
 #include <deal.II/grid/tria_description.h>
@@ -16,7 +17,7 @@ namespace crawler
     {
     public:
       SharedTriangulation(MPI_Comm communicator, const std::vector<double> &ends)
-        : n_ranks_(number_of_ranks(communicator))
+        : n_ranks_(dealii::Utilities::MPI::n_mpi_processes(communicator))
         , shared_(communicator,
                   dealii::Triangulation<1>::none,
                   /*allow_artificial_cells=*/false,
@@ -74,14 +75,6 @@ namespace crawler
     private:
       using Shared   = dealii::parallel::shared::Triangulation<1>;
       using Iterator = dealii::Triangulation<1>::active_cell_iterator;
-
-      static unsigned int
-      number_of_ranks(MPI_Comm communicator)
-      {
-        int n = 1;
-        MPI_Comm_size(communicator, &n);
-        return static_cast<unsigned int>(n);
-      }
 
       /// The active cells from left to right; deal.II keeps them level by level.
       std::vector<Iterator>

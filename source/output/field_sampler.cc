@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/equation/crawler_equation.h>
 #include <crawler/output/field_sampler.h>
@@ -16,9 +17,8 @@ namespace crawler
     void
     require_finite(const std::vector<double> &m, const double t, const Discretization &discretization)
     {
-      int bad = std::all_of(m.begin(), m.end(), [](const double value) { return std::isfinite(value); }) ? 0 : 1;
-      MPI_Allreduce(MPI_IN_PLACE, &bad, 1, MPI_INT, MPI_MAX, discretization.communicator());
-      if (bad != 0)
+      const bool is_bad = !std::ranges::all_of(m, [](const double value) { return std::isfinite(value); });
+      if (is_true_anywhere(is_bad, discretization.communicator()))
         throw NonfiniteStress(fmt::format("the active stress at t = {:.9g} is not a finite number everywhere", t));
     }
   } // namespace

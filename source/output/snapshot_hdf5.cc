@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
-#include <crawler/base/hdf5_writing.h>
+#include <crawler/base/hdf5_calls.h>
 #include <crawler/output/scenery.h>
 #include <crawler/output/snapshot_hdf5.h>
 

@@ -67,7 +67,6 @@ namespace crawler
         , keep_going_(keep_going)
         , results_(results)
         , sampler_(tables_->setup, Recorder::n_pieces)
-        , extremes_(*tables_)
       {
         look_inside = options.energy_balance;
       }
@@ -272,18 +271,19 @@ namespace crawler
         {
           if (!(step.stages[i].min_stretch > small_stretch))
             return false;
-          const auto [smallest, largest] = extremes_.look(
-            step, i, lane.recorder->result.min_stretch.value, lane.recorder->result.max_stretch.value, lane.breaks);
+          const auto [smallest, largest] = lane_extremes(*tables_,
+                                                         step,
+                                                         i,
+                                                         lane.recorder->result.min_stretch.value,
+                                                         lane.recorder->result.max_stretch.value,
+                                                         lane.breaks);
           lane.recorder->see_stretch(smallest, largest);
           if (options_.energy_balance)
             add_rates(lane, step, i);
         }
         if (options_.energy_balance)
           lane.recorder->result.energy_balance->elastic_energy = step.elastic_energy;
-        const auto sample = [&](const double time) {
-          sampler_.sample(step, time);
-          return Recorder::BodySample{sampler_.displacement(), sampler_.mean_displacement()};
-        };
+        const auto sample    = [&](const double time) { return sampler_.sample(step, time); };
         const LaneStage &end = step.stages[n - 1];
         lane.recorder->see_step(step.time, step.is_output_time, end.min_stretch, end.max_stretch, sample);
         if (step.is_output_time && !lane.segments.is_last() && step.time == lane.segments.end())
@@ -346,7 +346,6 @@ namespace crawler
       const std::function<bool()> &keep_going_;
       Results &results_;
       LaneSampler sampler_;
-      const LaneExtremes extremes_;
       std::vector<Lane> lanes_;
       std::size_t next_ = 0;
       bool interrupted_ = false;

@@ -262,10 +262,7 @@ namespace crawler
       values.clear();
       for (std::size_t j = 0; j < spline.size(); ++j)
         values.push_back(of(j));
-      const auto M     = spline.curvatures(values);
-      const auto place = spline.place(t);
-      return place.a * values[place.i] + place.b * values[place.i + 1] + place.c * M[place.i] +
-             place.d * M[place.i + 1];
+      return spline.place(t).value(values, spline.curvatures(values));
     };
     const std::size_t first = samples_.size() - n_searched;
     const double moved      = samples_.back().displacement -
@@ -279,11 +276,7 @@ namespace crawler
         values.push_back(samples_[j].stretch[i]);
       const auto M = in_time.curvatures(values);
       for (unsigned int phase = 0; phase < n_phases; ++phase)
-      {
-        const auto place = in_time.place(start + period * (phase + 1) / n_phases);
-        stretch[phase][i] =
-          place.a * values[place.i] + place.b * values[place.i + 1] + place.c * M[place.i] + place.d * M[place.i + 1];
-      }
+        stretch[phase][i] = in_time.place(start + period * (phase + 1) / n_phases).value(values, M);
     }
     Gait gait{period, false, 1. / period, moved, wave(stretch, period)};
     if (steps_.size() >= 4 && steps_.front().time < start && steps_.back().energy_balance)

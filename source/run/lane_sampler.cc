@@ -35,13 +35,13 @@ namespace crawler
     }
   }
 
-  void
+  Recorder::BodySample
   LaneSampler::sample(const LaneStep &step, const double time)
   {
     state_within(step, setup_, time, u_);
-    mean_ = 0.;
+    double mean = 0.;
     for (std::size_t d = 0; d < u_.size(); ++d)
-      mean_ += integral_[d] * u_[d];
+      mean += integral_[d] * u_[d];
     const unsigned int nodes = setup_.degree + 1;
     const std::size_t n      = at_ends_.size();
     std::fill(at_ends_.begin(), at_ends_.end(), 0.);
@@ -54,5 +54,6 @@ namespace crawler
         for (std::size_t e = from; e < to; ++e)
           at_ends_[e] += shape_[i * n + e] * u[i];
     }
+    return {at_ends_, mean};
   }
 } // namespace crawler

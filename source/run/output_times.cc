@@ -6,6 +6,15 @@
 
 namespace crawler
 {
+  namespace
+  {
+    bool
+    is_same(const double a, const double b)
+    {
+      return std::abs(a - b) <= min_time_between_breaks;
+    }
+  } // namespace
+
   OutputTimes::OutputTimes(PictureTimes pictures, std::vector<double> needed, const bool is_dense)
     : pictures_(std::move(pictures))
     , step_ends_(std::move(needed))

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/clock.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/reduced_models/perturbation.h>
 #include <crawler/run/gait_efficiency.h>
 #include <crawler/run/recorder.h>
@@ -203,10 +204,7 @@ namespace crawler
     if (result.time.status != Status::finished || !period)
       return;
     GaitMeter meter(*period, false);
-    std::vector<double> ends;
-    for (unsigned int i = 0; i <= GaitMeter::n_pieces; ++i)
-      ends.push_back(static_cast<double>(i) / GaitMeter::n_pieces);
-    replay(meter.times(), ends, [&](const double t, const State &state) {
+    replay(meter.times(), equal_parts(0., 1., GaitMeter::n_pieces), [&](const double t, const State &state) {
       meter.see(state.fields.displacement, state.displacement);
       meter.see_extremes(result.min_stretch.value, result.max_stretch.value); // extremes of the whole motion
       meter.see_extremes(1. + state.smallest.strain, 1. + state.largest.strain);

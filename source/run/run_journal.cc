@@ -7,17 +7,10 @@
 
 namespace crawler
 {
-  void
-  RunJournal::Entry::exchange(Archive &archive)
-  {
-    archive(identity, result);
-  }
-
   RunJournal::RunJournal(const double interval, Write write)
     : interval_(interval)
     , write_(std::move(write))
-    , begin_(now())
-    , last_(begin_)
+    , last_(now())
   {
   }
 
@@ -25,9 +18,7 @@ namespace crawler
   RunJournal::load(std::string bytes)
   {
     Archive archive(std::move(bytes));
-    std::string state;
-    archive(ended_, identity_, state);
-    state_       = std::move(state);
+    archive(ended_, identity_, state_);
     was_written_ = true;
   }
 
@@ -40,10 +31,10 @@ namespace crawler
       if (ended_[i].identity == identity)
         return ended_[i].result;
       ended_.resize(i);
-      state_.reset();
+      state_.clear();
     }
     else if (identity_ != identity)
-      state_.reset();
+      state_.clear();
     identity_ = std::move(identity);
     return std::nullopt;
   }
@@ -69,7 +60,7 @@ namespace crawler
       return;
     ended_.push_back({std::move(identity_), result});
     identity_.clear();
-    state_.reset();
+    state_.clear();
     if (is_due())
       write();
   }
@@ -81,8 +72,7 @@ namespace crawler
       return;
     const double begin = now();
     Archive archive;
-    std::string state = state_.value_or("");
-    archive(ended_, identity_, state);
+    archive(ended_, identity_, state_);
     if (!write_(archive.bytes()))
       return;
     last_        = now();

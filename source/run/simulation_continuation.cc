@@ -98,33 +98,19 @@ namespace crawler
       build(std::move(next));
   }
 
-  /// States of all ranks that share the cells, on the first of them.
-  std::string
-  Simulation::together(const Archive &own) const
-  {
-    std::vector<std::string> states = gather(own.bytes(), communicator_);
-    return archived(states);
-  }
-
-  std::string
-  Simulation::own_part(const std::string &together) const
-  {
-    std::vector<std::string> states;
-    Archive all(together);
-    all(states);
-    if (states.size() != size_of(communicator_))
-      throw FileError("a saved state does not match the program: it was made by another number of ranks");
-    return states[rank_of(communicator_)];
-  }
-
-  /// Continues from the state that the journal has, if there is one.
+  /// Continues from the state that the journal has, if there is one: those of all ranks that share the cells.
   void
   Simulation::take_up()
   {
     if (run_->journal == nullptr || run_->journal->state() == nullptr)
       return;
-    Archive archive(own_part(*run_->journal->state()));
-    exchange(archive);
+    std::vector<std::string> states;
+    Archive all(*run_->journal->state());
+    all(states);
+    if (states.size() != size_of(communicator_))
+      throw FileError("a saved state does not match the program: it was made by another number of ranks");
+    Archive own(states[rank_of(communicator_)]);
+    exchange(own);
   }
 
   /// Gives the journal the state, if one is due or if the run @p stops.
@@ -140,9 +126,10 @@ namespace crawler
     const bool is_between = step.size > 0. && step.time < 1.; // not at the start of a part, nor at the end
     if (is_wanted != 0 && is_between)
     {
-      Archive archive;
-      exchange(archive);
-      journal->keep(together(archive));
+      Archive own;
+      exchange(own);
+      std::vector<std::string> states = gather(own.bytes(), communicator_); // on the first rank
+      journal->keep(archived(states));
     }
     else if (stops)
       journal->write();

@@ -47,9 +47,8 @@ namespace crawler
   {
     const LaneStepper &lanes       = *integrators_.lanes;
     const SimulationResult &record = result();
-    auto [smallest, largest] =
-      LaneExtremes(lanes.tables())
-        .look(lanes.lane_step(), i, record.min_stretch.value, record.max_stretch.value, run_->breaks);
+    auto [smallest, largest]       = lane_extremes(
+      lanes.tables(), lanes.lane_step(), i, record.min_stretch.value, record.max_stretch.value, run_->breaks);
     if (!run_->observers.empty() && i + 1 == lanes.tables().setup.n_stages)
     {
       const auto &[min, max] = run_->stretch;

@@ -29,13 +29,12 @@ namespace crawler
   Simulation::show_step(const Step &step, const std::span<const double> y)
   {
     const bool is_picture = run_->output_times.next() <= step.time + min_time_between_breaks;
-    const EnergyBalance none;
     show({step,
           y,
           v_,
           run_->integrals,
           run_->stretch,
-          result().energy_balance ? *result().energy_balance : none,
+          result().energy_balance.value_or(EnergyBalance()),
           /*is_step_end=*/true,
           is_picture ? &run_->output_times.picture() : nullptr});
     if (is_picture)
@@ -116,13 +115,12 @@ namespace crawler
     Step step           = run_->latest;
     step.size           = 0.;
     const PictureTimes::Time row{picture->value, {.is_snapshot = false, .is_row = true}};
-    const EnergyBalance none;
     show({step,
           y_,
           v_,
           mesh_.assembler->integrals(t, y_, v_),
           run_->stretch,
-          result().energy_balance ? *result().energy_balance : none,
+          result().energy_balance.value_or(EnergyBalance()),
           /*is_step_end=*/false,
           &row});
     result().output_seconds += now() - before;

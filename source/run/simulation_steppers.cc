@@ -11,20 +11,15 @@
 
 namespace crawler
 {
-  bool
-  Simulation::lanes_fit() const
-  {
-    return size_of(communicator_) == 1 && lane_method(scene_, time_, numerics_);
-  }
-
   /// Chooses the fused engine where it fits and has not given up, else PETSc. The unused one is not built.
   void
   Simulation::choose_stepper()
   {
-    if ((!run_ || !run_->lanes_gave_up) && lanes_fit())
+    const auto method = size_of(communicator_) == 1 ? lane_method(scene_, time_, numerics_) : std::nullopt;
+    if (method && (!run_ || !run_->lanes_gave_up))
     {
       if (!integrators_.lanes)
-        integrators_.lanes = std::make_unique<LaneStepper>(scene_, *lane_method(scene_, time_, numerics_));
+        integrators_.lanes = std::make_unique<LaneStepper>(scene_, *method);
       integrators_.present = integrators_.lanes.get();
     }
     else

@@ -102,10 +102,9 @@ namespace crawler
         }
         if (spline_)
         {
-          const auto p    = spline_->place(x);
-          const double *y = logarithms_.data() + p.i, *curvature = curvatures_.data() + p.i;
-          const double value = std::exp(p.a * y[0] + p.b * y[1] + p.c * curvature[0] + p.d * curvature[1]);
-          return {value, value * (p.da * y[0] + p.db * y[1] + p.dc * curvature[0] + p.dd * curvature[1])};
+          const auto place   = spline_->place(x);
+          const double value = std::exp(place.value(logarithms_, curvatures_));
+          return {value, value * place.derivative(logarithms_, curvatures_)};
         }
         const auto right   = static_cast<std::size_t>(std::upper_bound(x_.begin(), x_.end() - 1, x) - x_.begin());
         const double slope = (y_[right] - y_[right - 1]) / (x_[right] - x_[right - 1]);

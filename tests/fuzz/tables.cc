@@ -5,7 +5,7 @@
 #include <crawler/base/csv_numbers.h>
 #include <crawler/base/files.h>
 #include <crawler/base/grid_table.h>
-#include <crawler/base/hdf5_handle.h>
+#include <crawler/base/hdf5_calls.h>
 
 #include <fstream>
 #include <vector>

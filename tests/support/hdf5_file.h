@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/base/hdf5_handle.h>
+#include <crawler/base/hdf5_calls.h>
 
 #include <filesystem>
 #include <stdexcept>

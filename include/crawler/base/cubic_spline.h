@@ -25,21 +25,28 @@ namespace crawler
 
     explicit CubicSpline(std::vector<double> knots, Ends ends = Ends::not_a_knot);
 
-    /// Second derivatives at the knots of the spline through @p values (as long as the knots).
+    /// Second derivatives at the knots of the splines through @p values; these and the result are [knot][spline].
     std::vector<double>
-    curvatures(std::span<const double> values) const;
+    curvatures(std::span<const double> values, std::size_t n_splines = 1) const;
 
-    /// Version for many splines at a time: @p values and the result are [knot][spline].
-    std::vector<double>
-    curvatures(std::span<const double> values, std::size_t n_splines) const;
-
-    /// Interpolation weights at a place between knots: value = a y_i + b y_(i+1) + c M_i + d M_(i+1), with the values y
-    /// and curvatures M; likewise for the derivative.
+    /// Interpolation weights at a place between knots.
     struct Place
     {
       std::size_t i;
       double a, b, c, d;
       double da, db, dc, dd;
+
+      /// Value of the spline with the values @p y and curvatures @p M at the knots.
+      double
+      value(const std::span<const double> y, const std::span<const double> M) const
+      {
+        return a * y[i] + b * y[i + 1] + c * M[i] + d * M[i + 1];
+      }
+      double
+      derivative(const std::span<const double> y, const std::span<const double> M) const
+      {
+        return da * y[i] + db * y[i + 1] + dc * M[i] + dd * M[i + 1];
+      }
     };
 
     /// Finds the place of @p x; beyond the ends the outermost cubic continues.

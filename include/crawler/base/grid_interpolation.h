@@ -36,7 +36,6 @@ namespace crawler
     class AtPoints;
 
     GridInterpolation(GridTable grid, Method method, Outside outside);
-    ~GridInterpolation();
 
     /// Evaluator at the points, which refers to this object.
     std::unique_ptr<AtPoints>

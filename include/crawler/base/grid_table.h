@@ -21,6 +21,10 @@ namespace crawler
   GridTable
   read_grid_table(const std::string &file, const std::string &name, std::size_t least, const std::string &entry);
 
+  /// Reads the samples of a grid from an HDF5 file (read_grid_table()). Throws InputError.
+  GridTable
+  read_hdf5_grid_table(const GridTableSource &source);
+
   /// Throws InputError for @p entry unless @p values of @p name reach from 0 to @p end, the whole of @p what ("body").
   /// Gaps below a millionth of it, as in single precision, count as round-off: the first or last value is moved.
   void

@@ -16,6 +16,14 @@ namespace crawler
   std::string
   without_controls(const std::string &text, bool keep_lines = true);
 
+  /// Largest number of bytes of a UTF-8 @p text, at most @p width, that are whole characters.
+  std::size_t
+  whole_characters(const std::string &text, std::size_t width);
+
+  /// The text, cut and ended with dots if it is longer than @p width.
+  std::string
+  shortened(const std::string &text, std::size_t width);
+
   /// The text with quotations longer than @p most bytes cut in the middle.
   std::string
   with_short_quotes(const std::string &text, std::size_t most = 300);

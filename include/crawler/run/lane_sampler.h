@@ -2,8 +2,8 @@
 #pragma once
 
 #include <crawler/lanes/lane_tables.h>
+#include <crawler/run/recorder.h>
 
-#include <span>
 #include <vector>
 
 namespace crawler
@@ -16,21 +16,9 @@ namespace crawler
     /// @p setup is kept as a reference.
     LaneSampler(const LaneSetup &setup, unsigned int n_pieces);
 
-    /// Looks at a time in [step.time - step.size, step.time].
-    void
+    /// Sample at a time in [step.time - step.size, step.time], valid until the next one.
+    Recorder::BodySample
     sample(const LaneStep &step, double time);
-
-    /// Displacements [n_pieces + 1] of the last sample.
-    std::span<const double>
-    displacement() const
-    {
-      return at_ends_;
-    }
-    double
-    mean_displacement() const
-    {
-      return mean_;
-    }
 
   private:
     const LaneSetup &setup_;
@@ -38,6 +26,5 @@ namespace crawler
     std::vector<double> shape_;       ///< [degree + 1][n_pieces + 1] shape functions there
     std::vector<double> integral_;    ///< [unknowns] of each shape function
     std::vector<double> u_, at_ends_;
-    double mean_ = 0.;
   };
 } // namespace crawler

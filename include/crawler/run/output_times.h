@@ -43,13 +43,6 @@ namespace crawler
       archive(next_);
     }
 
-    /// True if two times are the same.
-    static bool
-    is_same(const double a, const double b)
-    {
-      return a - b <= min_time_between_breaks && b - a <= min_time_between_breaks;
-    }
-
   private:
     PictureTimes pictures_;
     std::vector<double> step_ends_;

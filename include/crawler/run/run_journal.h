@@ -39,7 +39,7 @@ namespace crawler
     const std::string *
     state() const
     {
-      return state_ && !state_->empty() ? &*state_ : nullptr;
+      return state_.empty() ? nullptr : &state_;
     }
 
     bool
@@ -85,16 +85,19 @@ namespace crawler
       SimulationResult result;
 
       void
-      exchange(Archive &archive);
+      exchange(Archive &archive)
+      {
+        archive(identity, result);
+      }
     };
 
     const double interval_;
     const Write write_;
-    double begin_, last_, cost_ = 0.; ///< cost of the latest write [s]
+    double last_, cost_ = 0.; ///< time and cost of the latest write [s]
     std::vector<Entry> ended_;
     std::size_t n_begun_ = 0; ///< runs of this process
     std::string identity_;    ///< of the present run
-    std::optional<std::string> state_;
+    std::string state_;       ///< of the present run; empty if it starts
     bool is_closed_ = false, was_written_ = false;
   };
 

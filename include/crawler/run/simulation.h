@@ -62,8 +62,6 @@ namespace crawler
     {
       return numerics_.mesh.tolerance > 0.;
     }
-    bool
-    lanes_fit() const;
     void
     choose_stepper();
     void
@@ -158,10 +156,6 @@ namespace crawler
     exchange(Archive &archive);
     void
     exchange_mesh(Archive &archive);
-    std::string
-    together(const Archive &own) const;
-    std::string
-    own_part(const std::string &together) const;
     void
     take_up();
     void

@@ -155,10 +155,7 @@ namespace crawler
     const auto M            = spline.curvatures(f);
     const Function function = [&](const std::span<const double> places, const std::span<double> values) {
       for (std::size_t j = 0; j < places.size(); ++j)
-      {
-        const auto p = spline.place(places[j]);
-        values[j]    = p.a * f[p.i] + p.b * f[p.i + 1] + p.c * M[p.i] + p.d * M[p.i + 1];
-      }
+        values[j] = spline.place(places[j]).value(f, M);
     };
     for (std::size_t i = 0; i + 1 < x.size(); ++i)
       add_panel(x[i + 1], coefficients(function, x[i], x[i + 1]));

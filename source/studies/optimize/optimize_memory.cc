@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/files.h>
 #include <crawler/base/plain_numbers.h>
-#include <crawler/base/short_text.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/optimize/optimize_memory.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/answer.h>
 #include <crawler/base/grid_samples.h>
-#include <crawler/base/short_text.h>
+#include <crawler/base/plain_numbers.h>
 #include <crawler/studies/sweep/cross_check.h>
 #include <crawler/studies/sweep/point_table.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
-#include <crawler/base/short_text.h>
+#include <crawler/base/plain_numbers.h>
 #include <crawler/base/versions.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/sensitivities.h>

@@ -3,7 +3,6 @@
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
 #include <crawler/base/plain_numbers.h>
-#include <crawler/base/short_text.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/core/input.h>

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <hdf5.h>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace crawler
+{
+  /// An object of HDF5, closed at the end of its life; nothing is closed if the identifier is negative, HDF5's sign of
+  /// a failed call.
+  class Hdf5Handle
+  {
+  public:
+    Hdf5Handle(const hid_t id, herr_t (*close)(hid_t))
+      : id_(id)
+      , close_(close)
+    {
+    }
+    Hdf5Handle(const Hdf5Handle &) = delete;
+    ~Hdf5Handle()
+    {
+      if (id_ >= 0)
+        close_(id_);
+    }
+    operator hid_t() const
+    {
+      return id_;
+    }
+
+  private:
+    const hid_t id_;
+    herr_t (*const close_)(hid_t);
+  };
+
+  namespace hdf5
+  {
+    /// Returns the @p result of a call that does @p what ("write", "create", "open", "read") with a file. Throws
+    /// FileError if it is negative, HDF5's sign of a failed call.
+    hid_t
+    checked(hid_t result, const std::filesystem::path &path, const std::string &what);
+
+    /// Throws FileError if there is no room for @p bytes beside @p path. HDF5 cannot close a file that it could not
+    /// write: it crashes at the end of the process.
+    void
+    require_space(const std::filesystem::path &path, double bytes);
+
+    /// Type of texts of @p width bytes (the caller closes it). UTF-8 labelled ASCII: Octave cannot read a group with
+    /// texts labelled UTF-8, and for pure ASCII, all texts but file names, it makes no difference.
+    hid_t
+    text_type(std::size_t width);
+
+    /// Writes a text attribute. Throws FileError.
+    void
+    write_attribute(hid_t object, const std::string &name, const std::string &text, const std::filesystem::path &path);
+
+    /// True if @p read, which reads the structure of the HDF5 file @p path, terminates. HDF5 1.10 crashes on some
+    /// damaged files and never ends on others, so a copy of this process tries first, once for each @p purpose and each
+    /// state of a file.
+    bool
+    is_harmless(const std::filesystem::path &path, const std::string &purpose, const std::function<void()> &read);
+  } // namespace hdf5
+} // namespace crawler
