@@ -34,8 +34,9 @@ namespace crawler
     /// Largest tolerance with pictures, relative to the wanted error, since the displacement within a step of radau 5
     /// or 9 has an error of up to half the tolerance; and its floor, as a part of the length.
     constexpr double tolerance_of_pictures = 2., min_tolerance_of_pictures = 1e-13;
-    /// Runs long_run times as long as their first strides that do not end when cycles repeat have their numerics
-    /// chosen by those strides. Strides are slow to repeat below this stiffness, in natural units of a stride.
+    /// Runs long_run times as long as their first strides that do not end when cycles repeat, or whose pilots do not,
+    /// have their numerics chosen by those strides. Strides are slow to repeat below this stiffness, in natural units
+    /// of a stride.
     constexpr double first_strides = 3., long_run = 4., min_settling_stiffness = 0.02;
     /// Relative error that very soft bodies may have on adaptive meshes, whatever Accuracy is.
     constexpr double soft_error = 3e-3;
@@ -60,10 +61,11 @@ namespace crawler
       }
 
       NumericsChoice
-      choose()
+      choose(const bool must_settle = false)
       {
-        const Scene &scene = pilots_.scene;
-        choice_.is_users   = own_.n_cells || has_own_steps_ || own_.mesh_tolerance;
+        pilots_.must_settle = must_settle;
+        const Scene &scene  = pilots_.scene;
+        choice_.is_users    = own_.n_cells || has_own_steps_ || own_.mesh_tolerance;
         if (own_.formulation != FormulationEntry::stretch && own_.n_cells && has_own_steps_ &&
             own_.mesh != MeshKind::adaptive)
         {
@@ -298,8 +300,7 @@ namespace crawler
       Scene scene_;
     };
 
-    /// End of the first strides of a run, if it has many more and they are all computed: numerics good for these are
-    /// good for all.
+    /// End of the first strides of a run, if it has many more: numerics good for these are good for all.
     std::optional<double>
     end_of_first_strides(const RunParameters &parameters, const Scene &scene)
     {
@@ -307,10 +308,17 @@ namespace crawler
       if (!gait || parameters.time.step_control != StepControl::adaptive || parameters.discretization.n_cells ||
           parameters.time.tolerance)
         return std::nullopt;
-      const double softness = scene.body.elastic_modulus / natural_units(scene).force * gait->period / scene.end_time;
-      const bool settles = cycle_wish(parameters, scene, /*has_pictures=*/false) && softness > min_settling_stiffness;
-      const double end   = gait->from + first_strides * gait->period;
-      return !settles && scene.end_time > long_run * end ? std::optional(end) : std::nullopt;
+      const double end = gait->from + first_strides * gait->period;
+      return scene.end_time > long_run * end ? std::optional(end) : std::nullopt;
+    }
+
+    /// True if strides should soon repeat, so that they need not all be computed.
+    bool
+    may_settle(const RunParameters &parameters, const Scene &scene)
+    {
+      const double period   = scene.active_stress->repetition()->period,
+                   softness = scene.body.elastic_modulus / natural_units(scene).force * period / scene.end_time;
+      return cycle_wish(parameters, scene, /*has_pictures=*/false) && softness > min_settling_stiffness;
     }
   } // namespace
 
@@ -324,6 +332,14 @@ namespace crawler
     {
       if (const auto end = end_of_first_strides(parameters, scene))
       {
+        if (may_settle(parameters, scene))
+          try
+          {
+            return Chooser(communicator, parameters, scene, keep_going).choose(/*must_settle=*/true);
+          }
+          catch (const PilotsUnsettled &) // coarse steps keep cycles from repeating
+          {
+          }
         const Beginning beginning(scene, *end);
         NumericsChoice choice = Chooser(communicator, parameters, beginning.scene(), keep_going).choose();
         if (std::isfinite(choice.wanted_error) || choice.is_of_several_runs())

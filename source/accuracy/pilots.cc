@@ -9,7 +9,7 @@ namespace crawler
 {
   namespace
   {
-    constexpr unsigned int max_pilot_steps = 100000;
+    constexpr unsigned int max_pilot_steps = 100000, max_settling_steps = 20000;
     /// Relative accuracy of the displacement for pilots that end when their cycles repeat.
     constexpr double pilot_accuracy = 1e-2;
     /// First step of methods that start with their full order, relative to the duration.
@@ -40,12 +40,17 @@ namespace crawler
   SimulationResult
   Pilots::run(const Numerics &numerics, const ResolutionWish resolution)
   {
-    Simulation simulation(communicator, scene, time, numerics);
+    TimeParameters own = time;
+    if (must_settle)
+      own.max_steps = std::min(own.max_steps, max_settling_steps);
+    Simulation simulation(communicator, scene, own, numerics);
     ++n;
     SimulationResult result =
       simulation.run({}, {.energy_balance = false, .resolution = resolution, .cycles = cycles}, {}, keep_going);
     if (result.time.status == Status::stopped && result.time.reason.empty())
       throw PilotsInterrupted();
+    if (must_settle && result.time.reason == "step_limit")
+      throw PilotsUnsettled();
     // Displacements that are 0 whatever the numerics are tell nothing about them; the deformation at the end does,
     // while the largest one depends on where steps end.
     if (scene.keeps_its_centre())

@@ -6,6 +6,7 @@
 #include "../support/test.h"
 #include "../support/with_breaks.h"
 
+#include <crawler/accuracy/pilots.h>
 #include <crawler/time/integrators.h>
 
 using namespace crawler;
@@ -296,6 +297,18 @@ TEST(Jumps, OfManyCyclesNeedNoMoreCells)
   const auto choice       = choose_numerics(MPI_COMM_WORLD, run.parameters, run.scene);
   EXPECT_GE(choice->numerics.grading.levels, 1u);
   EXPECT_LT(choice->numerics.n_cells, 100u);
+}
+
+/// Pilots of a scene whose cycles should repeat are given up if they do not in many steps.
+TEST(Pilots, ThatDoNotSettleAreGivenUp)
+{
+  const test::LaneRun run(test::set("T = 5000; expression; Active stress = 0.1*sin(2*pi*(s+t))*(1+0.1*sin(3.883*t))"),
+                          "automatic",
+                          {.degree = 4, .n_cells = 4, .tolerance = 1e-4, .initial_step = 1e-5});
+  const KeepGoing keep_going;
+  Pilots pilots(MPI_COMM_SELF, run.parameters, run.scene, keep_going);
+  pilots.must_settle = true;
+  EXPECT_THROW(pilots.run(run.numerics, ResolutionWish::size), PilotsUnsettled);
 }
 
 /// A robot that repeats its cycle: the run ends early, at a break, and knows the displacement at the end.

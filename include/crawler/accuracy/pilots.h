@@ -23,12 +23,17 @@ namespace crawler
   {
   };
 
+  /// Exception for a pilot of many steps whose cycles should repeat and do not.
+  struct PilotsUnsettled
+  {
+  };
+
   /// Pilot runs of a scene, coarse and with loose tolerances, and what the last one that counts has measured.
   struct Pilots
   {
     Pilots(MPI_Comm communicator, const RunParameters &parameters, const Scene &scene, const KeepGoing &keep_going);
 
-    /// Runs the scene (collective). Throws PilotsInterrupted.
+    /// Runs the scene (collective). Throws PilotsInterrupted, and PilotsUnsettled if it must settle.
     SimulationResult
     run(const Numerics &numerics, ResolutionWish resolution);
 
@@ -94,6 +99,7 @@ namespace crawler
     SimulationResult last = {};    ///< last run that counts
     double size           = 0.;    ///< size of its displacement; 0 if that is not known [length]
     unsigned int n        = 0;     ///< number of runs
+    bool must_settle      = false; ///< pilots must end early, as their cycles repeat
     bool inverts_at_end   = false; ///< an end inverts at the same time in the last two
   };
 } // namespace crawler
