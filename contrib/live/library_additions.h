@@ -122,11 +122,13 @@ namespace std
       return std::count_if(
         std::begin(range), std::end(range), [&](const auto &x) { return std::invoke(projection, x) == value; });
     }
-    template <typename Range, typename Value>
+    template <typename Range, typename Value, typename Order = std::less<>, typename Projection = Itself>
     auto
-    upper_bound(Range &&range, const Value &value)
+    upper_bound(Range &&range, const Value &value, Order order = {}, Projection projection = {})
     {
-      return std::upper_bound(std::begin(range), std::end(range), value);
+      return std::upper_bound(std::begin(range), std::end(range), value, [&](const auto &bound, const auto &x) {
+        return std::invoke(order, bound, std::invoke(projection, x));
+      });
     }
     template <typename Range>
     void

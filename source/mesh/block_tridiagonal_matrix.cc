@@ -27,15 +27,14 @@ namespace crawler
     reduced_rhs_.resize(discretization.n_active_ranks() + 1);
   }
 
-  template <typename Number>
+  template <>
   void
-  BlockTridiagonalMatrix<Number>::multiply(const std::span<const Number> x,
-                                           const std::span<Number> y) const requires std::is_same_v<Number, double>
+  BlockTridiagonalMatrix<double>::multiply(const std::span<const double> x, const std::span<double> y) const
   {
     const auto &d    = *discretization_;
     const auto local = d.to_local(x, x_local_);
     local_.assign(d.n_local(), 0.);
-    block_tridiagonal_kernels<Number>(d.element().degree)
+    block_tridiagonal_kernels<double>(d.element().degree)
       .multiply(d.n_local_cells(), blocks_.data(), local.data(), local_.data());
     d.add_to_owned(local_, y);
   }

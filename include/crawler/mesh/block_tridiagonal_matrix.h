@@ -4,7 +4,6 @@
 #include <crawler/mesh/discretization.h>
 
 #include <complex>
-#include <type_traits>
 #include <utility>
 
 namespace crawler
@@ -33,9 +32,9 @@ namespace crawler
       return blocks_;
     }
 
-    /// y = A x for owned vectors (collective).
+    /// y = A x for owned vectors (collective); only of a real matrix.
     void
-    multiply(std::span<const Number> x, std::span<Number> y) const requires std::is_same_v<Number, double>;
+    multiply(std::span<const Number> x, std::span<Number> y) const;
 
     /// Computes the factors (collective). Returns false on all ranks if a pivot vanishes or is not finite.
     bool
