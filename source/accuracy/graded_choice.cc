@@ -118,10 +118,10 @@ namespace crawler
           if (!run(now_, result_))
             return std::nullopt;
         }
-        if (chooses_tolerance)
-          while (try_one(time_change_, [](Numerics &n) { n.tolerance *= finer_tolerance; }))
-          {
-          }
+        const auto with_finer_steps = [](Numerics &n) { n.tolerance *= finer_tolerance; };
+        while (chooses_tolerance && try_one(time_change_, with_finer_steps))
+        {
+        }
         const auto one_more_level   = [](Numerics &n) { ++n.grading.levels; };
         const auto with_finer_ratio = [](Numerics &n) { n.grading = finer(n.grading); };
         const auto with_more_cells  = [this](Numerics &n) {
@@ -143,7 +143,7 @@ namespace crawler
           {
             again = true;
             if (chooses_tolerance && cells_change > falling * last)
-              take_finer_steps();
+              try_one(time_change_, with_finer_steps, /*in_any_case=*/true);
           }
           if (is_too_fine_ && cells_change <= last_part * wanted_)
           {
@@ -192,42 +192,22 @@ namespace crawler
         return possible_;
       }
 
-      /// True if the displacement with numerics @p next differs; @p change is the difference.
+      /// Tries a refinement, which changes the displacement by @p change, and keeps it if that matters, or @p
+      /// in_any_case; false if it is not kept.
       bool
-      matters(const Numerics &next, SimulationResult &result, double &change)
-      {
-        if (!run(next, result))
-          return false;
-        change = std::abs(result.displacement - result_.displacement);
-        return change > graded_change * wanted_;
-      }
-
-      /// Makes one refinement if it matters.
-      template <typename Refinement>
-      bool
-      try_one(double &change, const Refinement &refinement)
+      try_one(double &change, const auto &refinement, const bool in_any_case = false)
       {
         Numerics next = now_;
         refinement(next);
         SimulationResult result;
-        if (!matters(next, result, change))
+        if (!run(next, result))
+          return false;
+        change = std::abs(result.displacement - result_.displacement);
+        if (!in_any_case && !(change > graded_change * wanted_))
           return false;
         now_    = next;
         result_ = result;
         return true;
-      }
-
-      void
-      take_finer_steps()
-      {
-        Numerics next = now_;
-        next.tolerance *= finer_tolerance;
-        SimulationResult result;
-        if (!run(next, result))
-          return;
-        time_change_ = std::abs(result.displacement - result_.displacement);
-        now_         = next;
-        result_      = result;
       }
 
       /// Sets the wanted error of a displacement like the last one; false if that is 0.
@@ -251,16 +231,9 @@ namespace crawler
       climb(double &change, const auto &one_more_level)
       {
         do
-        {
-          Numerics next = now_;
-          one_more_level(next);
-          SimulationResult result;
-          if (!run(next, result))
+          if (!try_one(change, one_more_level, /*in_any_case=*/true))
             return;
-          change  = std::abs(result.displacement - result_.displacement);
-          now_    = next;
-          result_ = result;
-        } while (measure() && change > gain_of_level() * graded_change * wanted_);
+        while (measure() && change > gain_of_level() * graded_change * wanted_);
       }
 
       Pilots &pilots_;
