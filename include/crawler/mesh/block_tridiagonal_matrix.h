@@ -58,4 +58,8 @@ namespace crawler
     mutable std::vector<Number> local_, reduced_rhs_;
     mutable std::vector<Number> x_local_;
   };
+
+  template <>
+  void
+  BlockTridiagonalMatrix<double>::multiply(std::span<const double> x, std::span<double> y) const;
 } // namespace crawler
