@@ -7,11 +7,14 @@ cannot tell, and refusals.
 """
 import contextlib
 import io
+import os
 import pathlib
 import pickle
 import re
+import signal
 import sys
 import tempfile
+import threading
 import unittest
 import unittest.mock
 import warnings
@@ -23,6 +26,7 @@ import crawler  # noqa: E402
 from crawler.fitting import prepared  # noqa: E402
 from crawler.fitting.fit import Problem, _looked_at  # noqa: E402
 from crawler.fitting.model import Model  # noqa: E402
+from crawler.fitting.starts import _without_signals  # noqa: E402
 from crawler.fitting.uncertainty import covariance, curvature_bias, undetermined_directions  # noqa: E402
 from crawler.measured import Samples, Settings, prepare, read_samples  # noqa: E402
 
@@ -568,6 +572,23 @@ class Screen(unittest.TestCase):
     def test_says_what_other_processes_do(self):
         last = [line for line in self.lines(0, starts=2, workers=2) if line.startswith("searches on 2 processes")][-1]
         self.assertRegex(last, r": [1-9]\d* runs, residuals 0\.\d+ so far")
+
+
+class Workers(unittest.TestCase):
+    """Processes that share the starts."""
+
+    def test_signal_of_another_thread_waits_until_they_are_known(self):
+        def signal_here():
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
+            os.kill(os.getpid(), signal.SIGINT)
+
+        ended, thread = False, threading.Thread(target=signal_here)
+        with self.assertRaises(KeyboardInterrupt):
+            with _without_signals():
+                thread.start()
+                thread.join()
+                ended = True
+        self.assertTrue(ended)
 
 
 class Files(unittest.TestCase):

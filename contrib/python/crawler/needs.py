@@ -113,16 +113,22 @@ def number(text):
     return float(text) if text not in ("", None) else float("nan")
 
 
-def read_rows(path):
-    """Rows of a CSV file of the program, as dictionaries of texts. Raises FileError if it cannot be read, and InputError
-    if it is no such file."""
+@contextlib.contextmanager
+def open_table(path, errors="strict"):
+    """Opens a CSV file of the program. Raises FileError if it cannot be read, and InputError if it is no such file."""
     try:
-        with open(path, newline="", encoding="utf-8") as file:
-            return list(csv.DictReader(file))
+        with open(path, newline="", encoding="utf-8", errors=errors) as file:
+            yield file
     except OSError as error:
         raise FileError(f'cannot read "{path}": {error.strerror or error}') from None
     except (ValueError, csv.Error) as error:
         raise InputError(f'"{path}" is no table of crawler ({error})') from None
+
+
+def read_rows(path):
+    """Rows of a CSV file of the program, as dictionaries of texts."""
+    with open_table(path) as file:
+        return list(csv.DictReader(file))
 
 
 # Mistakes on a command line, in the words of argparse and in those of the program.

@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from .arguments import checked
-from .needs import FileError
+from .needs import FileError, open_table
 
 
 class Numbers(dict):
@@ -178,7 +178,7 @@ def table_of(columns):
 def read_columns(path):
     """Reads a CSV file of the program: {heading: column}, arrays where all cells are numbers or empty (NaN), else lists
     of texts. Incomplete rows, left by an interrupted run, are skipped."""
-    with open(path, newline="", encoding="utf-8", errors="replace") as file:
+    with open_table(path, "replace") as file:
         names, *rows = list(csv.reader(line.replace("\0", "") for line in file)) or [[]]
     rows, columns = [row for row in rows if len(row) == len(names)], {}
     for name, cells in zip(names, zip(*rows) if rows else [()] * len(names)):

@@ -53,7 +53,7 @@ def lines_of(found):
         yield f"{name:{width}}  {value_in_words(one)}{interval}"
     if found.status != "finished":
         return
-    fits = (f"chi-square {goodness.chi_square:.5g} with {goodness.degrees_of_freedom} degrees of freedom (probability {goodness.probability:.2g})"
+    fits = (f"chi-square {goodness.chi_square:.5g} (degrees of freedom: {goodness.degrees_of_freedom}, probability {goodness.probability:.2g})"
             if goodness.deviation_is_given else f"standard deviation of a datum {goodness.series[0]['deviation']:.3g}, from the residuals")
     yield f"data: {goodness.n_data}, variables: {len(found.variables)}, further unknowns for origin and places: {goodness.n_constants}; {fits}"
     for one in goodness.series if len(goodness.series) > 1 else ():

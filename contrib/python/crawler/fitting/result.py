@@ -190,7 +190,7 @@ def _does_not_fit(goodness):
     chi_square, freedom, p_value = (goodness[key] for key in ("chi_square", "degrees_of_freedom", "probability"))
     if p_value is not None and p_value < UNLIKELY:
         units = f" ({UNITS})" if chi_square > MUCH * freedom else ""
-        yield (f"the scene does not fit the data: chi-square is {chi_square:.4g} with {freedom} degrees of freedom (probability {p_value:.1g}), so "
+        yield (f"the scene does not fit the data: chi-square is {chi_square:.4g} (degrees of freedom: {freedom}, probability {p_value:.1g}), so "
                f"the deviations are too small; {_largest_in_words(goodness)}; another scene, or another standard deviation, is expected{units}")
     elif goodness["n_data"] * probability(goodness["largest_residual"]["deviations"] ** 2, 1) < OUTLYING:
         yield f"{_largest_in_words(goodness)}: more than noise gives, perhaps an outlier"
@@ -241,8 +241,8 @@ def _notes(best, variables, goodness, data, model):
         yield (f"there is no deviation of {', '.join(missing)}: derivatives of a scene that does not fit cannot tell whether the data determine "
                f"{'it' if len(missing) == 1 else 'them'}")
     if (goodness["probability"] or 0) > 1 - UNLIKELY:
-        yield (f"the data are nearer to the scene than their standard deviations allow: chi-square is {goodness['chi_square']:.4g} with "
-               f"{goodness['degrees_of_freedom']} degrees of freedom; the deviations are too large, or the scene has the noise of the data")
+        yield (f"the data are nearer to the scene than their standard deviations allow: chi-square is {goodness['chi_square']:.4g} "
+               f"(degrees of freedom: {goodness['degrees_of_freedom']}); the deviations are too large, or the scene has the noise of the data")
     if (parameters["Active stress/Generator"], parameters["Active stress/Prescribed strain/Given by"]) == ("prescribed strain", "table") and data.places.size:
         yield ("the strain of the table is taken as exact: if it was made of these tracks its noise counts as motion, and the deviations of the "
                "variables are too small by a factor of two or more; fits of copies of the tracks with noise added, each with its table, show the scatter")

@@ -7,6 +7,7 @@ import math
 import multiprocessing
 import signal
 import sys
+import threading
 import types
 from multiprocessing import resource_tracker
 
@@ -124,8 +125,12 @@ def _searched_by_others(problem, missing, workers):
 @contextlib.contextmanager
 def _without_signals():
     """Starts of processes within: none of them gets a signal that is for the parent, which ends them; nor does Python's
-    process for semaphores, after which each of these would print an error."""
-    main, before = sys.modules["__main__"], signal.pthread_sigmask(signal.SIG_BLOCK, STOPPING)
+    process for semaphores, after which each of these would print an error. A signal that another thread gets waits for
+    the end, too: an exception within would leave a process that nobody knows."""
+    main, before, came = sys.modules["__main__"], signal.pthread_sigmask(signal.SIG_BLOCK, STOPPING), []
+    here = threading.current_thread() is threading.main_thread()  # where Python runs all handlers
+    handlers = {number: signal.signal(number, lambda number, _frame: came.append(number))
+                for number in STOPPING if here and callable(signal.getsignal(number))}
     sys.modules["__main__"] = types.ModuleType("__main__")  # which workers import, instead of running a user's script
     try:
         resource_tracker.ensure_running()
@@ -134,6 +139,10 @@ def _without_signals():
     finally:
         sys.modules["__main__"] = main
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+        for number in came:
+            signal.raise_signal(number)
 
 
 def _begin_worker(kind, model, n_runs, least):
