@@ -23,8 +23,8 @@ namespace crawler
     constexpr double part_of_gain = 0.5;
     /// Accuracy from which on the coarse ratio has never mattered.
     constexpr double coarse_ratio_is_enough = 1e-5;
-    /// Relative change of the displacement assumed for the tolerance beyond which that is set anew.
-    constexpr double same_size = 0.1;
+    /// Largest tolerance, relative to the expected displacement, and its relative change that counts.
+    constexpr double largest_tolerance = 1e-3, same_size = 0.1;
     /// Ratio of two successive changes by more cells above which they show errors of the time steps, not of the mesh.
     constexpr double falling = 0.35;
     /// Limits at which the search is given up.
@@ -92,10 +92,11 @@ namespace crawler
         now_.n_cells = std::max(now_.n_cells, min_graded_cells(n_pieces_ - 1, now_.grading)); // fewer are the same mesh
         while (layer > 0. && smallest_size(pilots_.scene, now_) > std::max(layer, smallest_layer))
           ++now_.grading.levels;
+        // Coarse meshes or steps can lose a stretch that is not lost, also where many cycles make the displacement
+        // large.
+        double largest = largest_tolerance * pilots_.scale;
         if (chooses_tolerance)
-          now_.tolerance = 1e-3 * pilots_.scale;
-        // Coarse meshes or steps can lose a stretch that is not lost.
-        double largest = 1e-2 * pilots_.scale; // tolerance
+          now_.tolerance = largest;
         for (unsigned int beginnings = 1; !run(now_, result_); ++beginnings)
         {
           if (beginnings == max_beginnings)
@@ -108,13 +109,13 @@ namespace crawler
         // Tolerance relative to a size that the runs tell.
         for (unsigned int i = 0; i < 2; ++i)
         {
-          const double before = wanted_;
+          const double before = now_.tolerance;
           if (!measure())
             return std::nullopt;
-          if (std::abs(wanted_ - before) < same_size * wanted_)
-            break;
           if (chooses_tolerance)
             now_.tolerance = std::min(largest, first_tolerance() * wanted_);
+          if (std::abs(now_.tolerance - before) <= same_size * before)
+            break;
           if (!run(now_, result_))
             return std::nullopt;
         }

@@ -203,6 +203,25 @@ TEST(MeshFamily, IsChosenWhereTheStretchIsSmallOrTheBodySoft)
             Formulation::position);
 }
 
+/// The files of a run have all of its cycles, while those of its numbers end when they repeat.
+TEST(MeshFamily, NumbersNeedFewerCyclesThanFiles)
+{
+  const Parameters parameters = test::parameters_with(test::set("p = 2; k = 0.5; T = 20; Accuracy = 1e-2; segments"));
+  const Scene scene           = parameters.create_scene();
+  const auto choice           = choose_numerics(MPI_COMM_SELF, parameters, scene);
+  ASSERT_TRUE(choice && choice->is_family);
+  SimulationResult files;
+  const auto simulate = [&](const NumericsChoice &chosen) {
+    return files = Simulation(MPI_COMM_SELF, scene, parameters.time, chosen.numerics).run({}, {});
+  };
+  const SimulationResult numbers =
+    run_to_accuracy(MPI_COMM_SELF, parameters, scene, *choice, simulate, {}, /*writes=*/true, {}).result;
+  EXPECT_EQ(files.time.time, scene.end_time);
+  EXPECT_FALSE(files.cycles);
+  EXPECT_TRUE(numbers.cycles);
+  EXPECT_NEAR(numbers.displacement, files.displacement, numbers.error->total);
+}
+
 /// Whoever does not want to wait gets no answer.
 TEST(MeshFamily, CanBeStopped)
 {
