@@ -24,7 +24,6 @@ namespace crawler
     add_extremes(const std::string &name,
                  const GaitValues &here,
                  LimitedValues GaitValues::*block,
-                 const std::size_t n,
                  std::vector<Checked> &list)
     {
       const std::vector<double> &values = (here.*block).values;
@@ -32,16 +31,15 @@ namespace crawler
       for (const auto place : {least, most})
       {
         const auto p = static_cast<std::size_t>(place - values.begin());
-        list.push_back(
-          {fmt::format("{} {}", place == least ? "smallest" : "largest", name),
-           [=](const GaitValues &there) { return (there.*block).values[p]; },
-           [=](const GaitValues &there, const std::size_t i) { return (*(there.*block).jacobian)[p * n + i]; }});
+        list.push_back({fmt::format("{} {}", place == least ? "smallest" : "largest", name),
+                        [=](const GaitValues &there) { return (there.*block).values[p]; },
+                        [=](const GaitValues &there, const std::size_t i) { return (there.*block).gradients[i][p]; }});
       }
     }
 
-    /// Numbers that the study wants or limits, for @p n variables.
+    /// Numbers that the study wants or limits.
     std::vector<Checked>
-    numbers_to_check(const GaitValues &here, const GaitWishes &wishes, const std::size_t n)
+    numbers_to_check(const GaitValues &here, const GaitWishes &wishes)
     {
       std::vector<Checked> list;
       for (std::size_t k = 0; k < gait_numbers.size(); ++k)
@@ -50,11 +48,11 @@ namespace crawler
                           [k](const GaitValues &there) { return there.numbers[k]; },
                           [k](const GaitValues &there, const std::size_t i) { return there.gradients[k][i]; }});
       if (wishes.strain && std::ranges::find(here.strain_by_differences, true) == here.strain_by_differences.end())
-        add_extremes("strain", here, &GaitValues::strain, n, list);
+        add_extremes("strain", here, &GaitValues::strain, list);
       if (wishes.stress)
-        add_extremes("stress", here, &GaitValues::stress, n, list);
+        add_extremes("stress", here, &GaitValues::stress, list);
       if (wishes.stress_rate)
-        add_extremes("stress rate", here, &GaitValues::stress_rate, n, list);
+        add_extremes("stress rate", here, &GaitValues::stress_rate, list);
       return list;
     }
 
@@ -84,7 +82,7 @@ namespace crawler
     const double step = noise > 0. ? 0.5 * std::cbrt(noise) : 1e-6, tolerance = noise > 0. ? 20. * noise / step : 1e-5;
     const GaitValues here = model.evaluate(x, /*with_gradients=*/true);
     here.require_start();
-    const std::vector<Checked> list = numbers_to_check(here, wishes, x.size());
+    const std::vector<Checked> list = numbers_to_check(here, wishes);
     std::vector<std::size_t> checked;
     for (std::size_t i = 0; i < x.size(); ++i)
       if (here.by_differences.empty() || !here.by_differences[i])

@@ -79,7 +79,7 @@ namespace crawler
 
     /// Writes the optimum as a parameter file, and runs it in a folder of its own. Returns the summary of the run, and
     /// true if it ended as it should.
-    std::pair<std::string, bool>
+    std::pair<nlohmann::ordered_json, bool>
     run_optimum(OptimizeCases &cases, const StartResult &start, const StudyFolder &folder)
     {
       const std::string effective = cases.effective(); // before its values are replaced
@@ -104,7 +104,8 @@ namespace crawler
       fs::create_directories(place);
       const bool is_good =
         run(MPI_COMM_SELF, one, read_file(MPI_COMM_SELF, one.file, one.overrides)) == ExitCode::finished;
-      return {fs::exists(place / "summary.json") ? read_whole_file(place / "summary.json") : "{}", is_good};
+      const std::string summary = fs::exists(place / "summary.json") ? read_whole_file(place / "summary.json") : "{}";
+      return {nlohmann::ordered_json::parse(summary), is_good};
     }
 
     struct Ending
@@ -200,28 +201,26 @@ namespace crawler
       const fs::path &path = folder.path;
       Log &log             = folder.log;
       memory.arrange(starts);
-      const OptimizeResults results(cases.names(), memory.starts());
+      OptimizeResults results(cases.names(), memory.starts());
       const auto n_neighbours =
         static_cast<std::size_t>(std::ranges::count_if(starts, [](const StartName &one) { return one.neighbour > 0; }));
       for (const auto &[file, group] : {std::pair(OptimizeMemory::evaluations_file, OptimizeMemory::evaluations_group),
                                         std::pair(OptimizeMemory::file, OptimizeMemory::group)})
         write_table_csv(MPI_COMM_SELF, path / file, group, (path / file).replace_extension("csv"));
-      std::vector<std::string> summaries;
       bool runs_are_good = true;
       for (const std::size_t best : results.best)
       {
         const auto [summary, is_good] = run_optimum(cases, results.starts[best], folder);
-        summaries.push_back(summary);
+        results.runs.push_back(summary);
         runs_are_good = runs_are_good && is_good;
       }
-      write_file(path / "optima.csv", csv(optimum_table(results, path, summaries)));
+      write_file(path / "optima.csv", csv(optimum_table(results, path)));
       const Ending end         = ending_of(results, runs_are_good, stop, clock);
       const std::string status = !stop.empty() ? "stopped" : end.code == ExitCode::finished ? "finished" : "failed";
       const double seconds     = clock.seconds(); // without pictures
-      write_file(
-        path / "summary.json",
-        optimize_json(results, summaries, status, end.reason, end.warning, seconds, folder.options.command_line));
-      for (const std::string &line : in_words(results, cases, summaries))
+      write_file(path / "summary.json",
+                 optimize_json(results, status, end.reason, end.warning, seconds, folder.options.command_line));
+      for (const std::string &line : in_words(results, cases))
         log.line(line);
       if (!results.best.empty())
         draw("optimize", path, log);
@@ -295,7 +294,7 @@ namespace crawler
   ExitCode
   optimize(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
   {
-    StudyClock clock("Optimize");
+    StudyClock clock;
     Log log(rank_of(communicator) == 0, options);
     OptimizeCases cases(communicator, file);
     if (options.check_gradient)
@@ -315,7 +314,7 @@ namespace crawler
       if (memory->starts().empty())
         remove_optima(folder.path);
     });
-    clock.set_limit(cases.parameters().optimize.time_limit);
+    clock.set_limit(cases.parameters().optimize.time_limit, "Optimize/Time limit");
     const SearchesMade searches =
       make_searches(communicator, cases, memory.get(), folder, [&]() { return clock.is_over(); });
     const std::string stop = clock.reason(communicator, searches.are_whole);
@@ -347,7 +346,7 @@ namespace crawler
         const GaitRecord record = problem.record(problem.to_y(start.x));
         log.line(fmt::format("  The start{}: {} {:.6g}, which {}.",
                              cases.are_several() ? " with " + cases.in_words(number) : "",
-                             cases.names().objective,
+                             cases.names().objective.name,
                              record.objective,
                              record.violation <= problem.admissible()
                                ? "is within all limits"

@@ -35,11 +35,7 @@ namespace crawler
   {
     if (!trimmed(parameters().sweep.axes).empty())
       points_ = std::make_unique<SweepPoints>(communicator, file);
-    names_.objective = parameters().optimize.objective;
-    names_.unit      = names_.objective == "displacement"    ? "length"
-                       : names_.objective == "speed"         ? "length/time"
-                       : names_.objective.ends_with("merit") ? "1"
-                                                             : "force";
+    names_.objective = objective_of(parameters().optimize);
     file.placing_errors([&]() {
       if (points_)
         for (const SweepAxis &axis : points_->design().axes())
@@ -79,7 +75,7 @@ namespace crawler
     const Declarations &entries       = scenes->form.declarations;
     const OptimizeParameters &problem = scenes->form.parameters.optimize;
     scenes->form.parameters.create_scene();
-    its.sign = problem.direction == "forward" ? 1. : -1.;
+    its.objective = objective_of(problem);
     for (const Variable &variable : scenes->variables)
     {
       its.paths.push_back(variable.path);

@@ -43,7 +43,7 @@ namespace crawler
         if (!record.problem.empty() || record.violation > problem.admissible())
           return std::nullopt;
         const std::vector<GaitRecord> both = {own.best, record};
-        const bool is_better               = &GaitProblem::best_of(both, wishes, problem.admissible()) == &both[1] &&
+        const bool is_better = &GaitProblem::best_of(both, objective_of(wishes), problem.admissible()) == &both[1] &&
                                (!own.is_admissible() || std::abs(record.objective - own.best.objective) >
                                                           more * problem.admissible() * std::abs(own.best.objective));
         return is_better ? std::optional(record) : std::nullopt;

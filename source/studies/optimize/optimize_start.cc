@@ -90,6 +90,7 @@ namespace crawler
         , stops_(stops)
         , wanted_(family.form.parameters.optimize)
         , parameters_(wanted_)
+        , objective_(objective_of(wanted_))
         , start_(x)
         , x_(x)
       {
@@ -198,7 +199,7 @@ namespace crawler
           result_.best =
             optimum != nullptr
               ? *optimum
-              : GaitProblem::best_of(std::span(result_.records).subspan(comparable_), wanted_, problem.admissible());
+              : GaitProblem::best_of(std::span(result_.records).subspan(comparable_), objective_, problem.admissible());
         };
         if (multipliers_.size() != problem.lower().size())
           multipliers_.clear();
@@ -240,9 +241,7 @@ namespace crawler
       moves() const
       {
         constexpr double min_motion = 1e-12;
-        const bool is_cost          = wanted_.objective == "cost of transport"; // positive in the wanted direction
-        const double sign           = wanted_.direction == "forward" || is_cost ? 1. : -1.;
-        return sign * result_.best.objective > min_motion;
+        return objective_.turned(result_.best.objective) > min_motion;
       }
 
       /// Finds the point nearest to the start that the limits admit, between the start and the result. A start far
@@ -274,7 +273,7 @@ namespace crawler
       {
         state_.evaluations = result_.records.size() + problem.records().size();
         if (!problem.records().empty())
-          state_.best = GaitProblem::best_of(problem.records(), wanted_, problem.admissible()).objective;
+          state_.best = GaitProblem::best_of(problem.records(), objective_, problem.admissible()).objective;
       }
 
       bool
@@ -288,7 +287,6 @@ namespace crawler
       void
       judge()
       {
-        const bool is_cost = wanted_.objective == "cost of transport";
         if (result_.has_converged && !moves())
         {
           result_.has_converged = false;
@@ -306,7 +304,7 @@ namespace crawler
         {
           if (!result_.is_admissible()) // multipliers are meaningless then
             limit.multiplier = NAN;
-          if (is_cost) // the multiplier is that of D/W
+          if (objective_.is_inverse) // the multiplier is that of D/W
             limit.multiplier *= -result_.best.objective * result_.best.objective;
           for (const LimitEntry &entry : limit_entries) // wanted value, not the tightened one
             if (entry.name == limit.name)
@@ -319,6 +317,7 @@ namespace crawler
       const std::function<bool()> &stops_;
       OptimizeParameters wanted_;
       OptimizeParameters parameters_; ///< with limits that may be tightened
+      const GaitObjective objective_;
       const std::vector<double> start_;
       std::vector<double> x_, multipliers_;
       double scale_           = 1.; ///< scale of the objective, for the multipliers

@@ -39,8 +39,7 @@ namespace crawler
     {
     public:
       SimulatedGait(SceneFamily &family, const GaitWishes wishes, std::function<bool()> interrupted)
-        : family_(family)
-        , wishes_(wishes)
+        : GaitModel(family, wishes)
         , interrupted_(std::move(interrupted))
       {
         if (wishes.numbers[GaitNumber::mean_square])
@@ -48,68 +47,6 @@ namespace crawler
             "the mean-square strain is limited at the kinematic level only; Model = kinematic, or another "
             "limit, is expected",
             "Optimize/Mean-square strain");
-      }
-
-      GaitValues
-      evaluate(const std::vector<double> &x, const bool with_gradients, const std::vector<std::size_t> &places) override
-      {
-        GaitValues values;
-        try
-        {
-          if (latest_.empty() || latest_x_ != x)
-          {
-            latest_   = answers({x});
-            latest_x_ = x;
-            latest_extremes_.clear();
-          }
-          const Task &task = latest_.front();
-          values.problem   = problem_of(task);
-          if (!values.problem.empty())
-            return values;
-          values.numbers = numbers(task);
-          for (std::size_t i = 0; i < gait_numbers.size(); ++i)
-            if (wishes_.numbers[i] && !std::isfinite(values.numbers[i]))
-              values.problem =
-                i == GaitNumber::speed
-                  ? "the speed is not known, since the active stress does not tell the duration of a stride"
-                  : "a work is not known there";
-          if (wishes_.strain)
-          {
-            if (latest_extremes_.empty())
-              latest_extremes_ = extremes(task);
-            for (const StretchPlace &one : latest_extremes_)
-              values.strain.values.push_back(one.value - 1.);
-          }
-          if (wishes_.stress)
-            values.stress = family_.stress(x, /*rate=*/false, with_gradients);
-          if (wishes_.stress_rate)
-            values.stress_rate = family_.stress(x, /*rate=*/true, with_gradients);
-          if (with_gradients && values.problem.empty())
-          {
-            for (auto &gradient : values.gradients)
-              gradient.assign(x.size(), 0.);
-            values.by_differences.assign(x.size(), true);
-            values.strain_by_differences.assign(x.size(), wishes_.strain);
-            if (wishes_.strain)
-              strain_jacobian_.assign(latest_extremes_.size() * x.size(), 0.);
-            add_adjoint_gradients(x, task, wishes_.strain ? with_extremes(places) : places, values);
-            values.gradients[GaitNumber::friction_time] = family_.differences(
-              x,
-              [](const Parameters &there) {
-                return std::vector<double>(1,
-                                           there.time.end_time / (there.body.friction_coefficient * there.body.length));
-              },
-              1e-3);
-            add_differences(x, values);
-            if (wishes_.strain)
-              values.strain.jacobian = std::make_shared<const std::vector<double>>(strain_jacobian_);
-          }
-        }
-        catch (const InputError &error)
-        {
-          values.problem = error.what();
-        }
-        return values;
       }
 
       bool
@@ -152,6 +89,49 @@ namespace crawler
       }
 
     private:
+      void
+      compute(const std::vector<double> &x,
+              const bool with_gradients,
+              const std::vector<std::size_t> &places,
+              GaitValues &values) override
+      {
+        if (latest_.empty() || latest_x_ != x)
+        {
+          latest_   = answers({x});
+          latest_x_ = x;
+          latest_extremes_.clear();
+        }
+        const Task &task = latest_.front();
+        if (const std::string problem = problem_of(task); !problem.empty())
+          throw InputError(problem);
+        values.numbers = numbers(task);
+        for (std::size_t i = 0; i < gait_numbers.size(); ++i)
+          if (wishes_.numbers[i] && !std::isfinite(values.numbers[i]))
+            throw InputError(
+              i == GaitNumber::speed
+                ? "the speed is not known, since the active stress does not tell the duration of a stride"
+                : "a work is not known there");
+        if (wishes_.strain && latest_extremes_.empty())
+          latest_extremes_ = extremes(task);
+        for (const StretchPlace &one : latest_extremes_)
+          values.strain.values.push_back(one.value - 1.);
+        if (!with_gradients)
+          return;
+        values.by_differences.assign(x.size(), true);
+        values.strain_by_differences.assign(x.size(), wishes_.strain);
+        values.strain.gradients.assign(x.size(), std::vector<double>(latest_extremes_.size()));
+        add_adjoint_gradients(x, task, wishes_.strain ? with_extremes(places) : places, values);
+        const auto times = family_.differences(
+          x,
+          [](const Parameters &there) {
+            return std::vector<double>(1, there.time.end_time / (there.body.friction_coefficient * there.body.length));
+          },
+          1e-3);
+        for (std::size_t i = 0; i < x.size(); ++i)
+          values.gradients[GaitNumber::friction_time][i] = times[i][0];
+        add_differences(x, values);
+      }
+
       std::vector<Task>
       answers(const std::vector<std::vector<double>> &places)
       {
@@ -284,19 +264,13 @@ namespace crawler
         for (std::size_t i = 0; i < x.size(); ++i)
         {
           const auto around = family_.stencil(x, i, /*relative_step=*/1e-3);
-          bool is_similar   = true;
           for (const auto &point : around)
             if (point.offset != 0.)
-            {
               scenes[i].push_back(family_.parameters(point.x).create_scene());
-              is_similar = is_similar && have_similar_breaks(*task.scene, scenes[i].back());
-            }
-          if (!is_similar)
+          if (!std::ranges::all_of(scenes[i], [&](const Scene &s) { return have_similar_breaks(*task.scene, s); }))
             continue;
           const bool is_one_sided = around[0].offset == 0.;
-          const double apart      = around[is_one_sided ? 1 : 2].offset;
-          const auto &its         = scenes[i];
-          variations.push_back({{{its.data(), &its[1], &its[2], &its[3]}}, apart, is_one_sided});
+          variations.push_back({scenes[i], around[is_one_sided ? 1 : 2].offset, is_one_sided});
           own.push_back(i);
         }
         try
@@ -319,7 +293,7 @@ namespace crawler
             if (!wishes_.strain || !std::ranges::all_of(strains, [](const auto &one) { return one.has_value(); }))
               continue;
             for (std::size_t e = 0; e < strains.size(); ++e)
-              strain_jacobian_[near[e] * x.size() + i] = *strains[e];
+              values.strain.gradients[i][near[e]] = *strains[e];
             values.strain_by_differences[i] = false;
           }
         }
@@ -389,18 +363,15 @@ namespace crawler
             continue;
           const std::vector<StretchPlace> extremes_there = extremes(tasks[j]);
           for (std::size_t e = 0; e < latest_extremes_.size(); ++e)
-            strain_jacobian_[e * x.size() + i] += change(extremes_there[e].value, latest_extremes_[e].value);
+            values.strain.gradients[i][e] += change(extremes_there[e].value, latest_extremes_[e].value);
         }
       }
 
-      SceneFamily &family_;
-      const GaitWishes wishes_;
       const std::function<bool()> interrupted_;
       std::optional<std::size_t> n_boxes_in_time_; ///< where strains are limited
       std::vector<double> latest_x_;               ///< variables of the following members
       std::vector<Task> latest_;                   ///< single task, with the answer there
       std::vector<StretchPlace> latest_extremes_;  ///< extremes in the boxes, if strains are limited
-      std::vector<double> strain_jacobian_;        ///< [extreme][variable]
     };
   } // namespace
 

@@ -18,13 +18,13 @@ namespace crawler
     {
       std::vector<std::string> values; ///< values of the axes, as written in a parameter file
       std::vector<std::string> paths;  ///< paths of the variables
-      double sign;                     ///< sign of the wanted direction
+      GaitObjective objective;
     };
     std::vector<std::string> axes;
     std::vector<Case> cases;
     std::vector<std::string> paths, units; ///< variables of any case
     std::vector<std::string> limits;       ///< entries that limit any case
-    std::string objective, unit;           ///< objective and its unit
+    GaitObjective objective;               ///< objective of all, but for the wanted direction
   };
 
   /// Problems that an optimisation solves one by one: the points of section Sweep, or the file as it is if that has no
