@@ -73,11 +73,7 @@ namespace crawler
       std::error_code error;
       if (fs::exists(folder / study_lock_name, error))
         return FileLock(folder / study_lock_name).lock() == FileLock::State::mine; // otherwise it is still running
-      if (fs::exists(folder / "restart.dat", error))
-        return true;
-      std::ifstream in(folder / "summary.json");
-      const auto summary = nlohmann::json::parse(in, nullptr, /*allow_exceptions=*/false);
-      return summary.is_object() && summary.value("status", nlohmann::json()) == "stopped";
+      return fs::exists(folder / "restart.dat", error) || status_in(folder) == "stopped";
     }
 
     /// The folder, which is made now unless it exists.
@@ -181,6 +177,15 @@ namespace crawler
                                    folder.string(),
                                    fmt::join(changes, ", "),
                                    fmt::join(free_entries, " and ")));
+  }
+
+  std::string
+  status_in(const fs::path &folder)
+  {
+    std::ifstream in(folder / "summary.json");
+    const auto summary = nlohmann::json::parse(in, nullptr, /*allow_exceptions=*/false);
+    const auto status  = summary.is_object() ? summary.value("status", nlohmann::json()) : nlohmann::json();
+    return status.is_string() ? status.get<std::string>() : "";
   }
 
   bool

@@ -8,32 +8,14 @@
 
 namespace crawler
 {
-  GaitWishes
-  GaitProblem::wishes(const OptimizeParameters &p)
-  {
-    GaitWishes wishes;
-    const GaitObjective objective             = objective_of(p);
-    wishes.numbers[objective.motion]          = true;
-    wishes.numbers[objective.energy]          = objective.power_of_energy != 0.;
-    wishes.numbers[GaitNumber::friction_time] = objective.power_of_time != 0.;
-    for (const LimitEntry &limit : limit_entries)
-      if (limit.number && p.*limit.value)
-        wishes.numbers[*limit.number] = true;
-    wishes.strain      = p.smallest_strain || p.largest_strain;
-    wishes.stress      = p.largest_stress.has_value();
-    wishes.stress_rate = p.largest_stress_rate.has_value();
-    return wishes;
-  }
-
   GaitProblem::GaitProblem(GaitModel &model,
                            const OptimizeParameters &parameters,
-                           const std::vector<Variable> &variables,
                            const std::vector<double> &start,
-                           std::function<bool()> stops,
+                           std::function<bool(const GaitProblem &)> stops,
                            const OptimizeParameters *const closer)
     : model_(model)
     , parameters_(parameters)
-    , variables_(variables)
+    , variables_(model.family.variables)
     , stops_(std::move(stops))
     , objective_(objective_of(parameters))
   {
@@ -181,7 +163,7 @@ namespace crawler
   const GaitProblem::Point &
   GaitProblem::at(const std::vector<double> &y, const bool with_gradients, const std::vector<double> &forces)
   {
-    if (stops_())
+    if (stops_ && stops_(*this))
       throw GaitModel::Interrupted();
     const std::vector<std::size_t> places = pulling_places(forces);
     if (y == latest_y_ && ((latest_has_gradients_ && std::ranges::includes(latest_places_, places)) || !with_gradients))

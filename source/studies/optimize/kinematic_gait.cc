@@ -34,8 +34,8 @@ namespace crawler
     class KinematicGait : public GaitModel
     {
     public:
-      KinematicGait(SceneFamily &family, const GaitWishes wishes, const std::vector<double> &start)
-        : GaitModel(family, wishes)
+      KinematicGait(SceneFamily &its_family, const std::vector<double> &start)
+        : GaitModel(its_family)
         , start_(start)
       {
         constexpr unsigned int most = 128;
@@ -67,7 +67,7 @@ namespace crawler
         std::optional<State> possible;
         try
         {
-          possible.emplace(family_.parameters(x));
+          possible.emplace(family.parameters(x));
         }
         catch (const InputError &) // inversion between the points of the grid
         {
@@ -96,7 +96,7 @@ namespace crawler
       std::pair<double, double>
       extreme_strains(const std::vector<double> &x) override
       {
-        const State state(family_.parameters(x));
+        const State state(family.parameters(x));
         const StrainExtremes extremes =
           find_extremes(*state.reduced.strain(), 1., 1., 16 * n_space_ + 1, 16 * n_time_ + 1);
         return {extremes.smallest.strain, extremes.largest.strain};
@@ -118,7 +118,7 @@ namespace crawler
               const std::vector<std::size_t> &,
               GaitValues &result) override
       {
-        const auto state      = linear_ ? linear_->state : std::make_shared<const State>(family_.parameters(x));
+        const auto state      = linear_ ? linear_->state : std::make_shared<const State>(family.parameters(x));
         const Samples samples = linear_ ? linear_->at(x) : sample(*state);
         const auto values     = grid_->values(samples.on_grid, state->body(*grid_));
         if (!values)
@@ -127,7 +127,7 @@ namespace crawler
         if (const double efficiency = result.numbers[GaitNumber::efficiency]; efficiency > 1. + accurate_enough)
           throw InputError(
             fmt::format("gait_efficiency: the gait efficiency is {:.8g}, but no gait can exceed 1", efficiency));
-        if (wishes_.strain)
+        if (wishes.strain)
           result.strain.values = samples.limited;
         if (with_gradients)
           add_gradients(x, *state, samples, result);
@@ -192,7 +192,7 @@ namespace crawler
       sample(const State &state) const
       {
         Samples samples{grid_->sample(*state.reduced.strain()), {}};
-        if (!wishes_.strain)
+        if (!wishes.strain)
           return samples;
         std::vector<double> strain(n_limited_s_ + 1);
         const auto at = state.reduced.strain()->at(equal_parts(0., 1., n_limited_s_));
@@ -263,9 +263,9 @@ namespace crawler
       linear_about(const std::vector<double> &start, const bool nearly_inverts) const
       {
         const double step     = nearly_inverts ? 1e-4 : 1e-2;
-        const auto &variables = family_.variables;
+        const auto &variables = family.variables;
         const auto n          = static_cast<double>(start.size());
-        const auto base       = std::make_shared<const State>(family_.parameters(start));
+        const auto base       = std::make_shared<const State>(family.parameters(start));
         Linear linear{start, base, sample(*base)};
         // Small changes: at large values the strain may not be admissible.
         const auto away = [&](const std::size_t i, const double part) {
@@ -277,7 +277,7 @@ namespace crawler
           std::vector<double> x = start;
           const double d        = away(i, step);
           x[i] += d;
-          const State state(family_.parameters(x));
+          const State state(family.parameters(x));
           if (!state.is_like(*base))
             return std::nullopt;
           Samples samples = sample(state);
@@ -290,7 +290,7 @@ namespace crawler
           for (std::size_t i = 0; i < x.size(); ++i)
             x[i] = nearly_inverts ? std::clamp((1. - part) * x[i], variables[i].from, variables[i].to) // tamer
                                   : x[i] + away(i, part / (3. * n) * (1. + 0.3 * std::sin(static_cast<double>(i))));
-          if (!linear.gives(sample(State(family_.parameters(x))), x))
+          if (!linear.gives(sample(State(family.parameters(x))), x))
             return std::nullopt;
         }
         return linear;
@@ -343,7 +343,7 @@ namespace crawler
           }
         if (!linear_)
           choose_limited_places(/*many=*/false);
-        else if (wishes_.strain)
+        else if (wishes.strain)
           leave_out_places();
       }
 
@@ -380,9 +380,9 @@ namespace crawler
           for (std::size_t i = 0; i < x.size(); ++i)
           {
             ByGaitNumber<double> derivatives{};
-            for (const auto &point : family_.stencil(x, i, step))
+            for (const auto &point : family.stencil(x, i, step))
             {
-              const State there(family_.parameters(point.x));
+              const State there(family.parameters(point.x));
               const Samples its = sample(there);
               own_slopes[i].add(point.weight, its);
               only_strain[i] = only_strain[i] && there.is_like(state);
@@ -401,7 +401,7 @@ namespace crawler
         const std::vector<Samples> &slopes = linear_ ? linear_->slopes : own_slopes;
         const Units &units                 = state.reduced.units();
         const auto put = [&](const StrainFunctional::Number number, const GaitNumber::Index what, const double unit) {
-          if (!wishes_.numbers[what])
+          if (!wishes.numbers[what])
             return;
           const StrainSamples weights = grid_->weights(number, samples.on_grid, state.body(*grid_));
           for (std::size_t i = 0; i < x.size(); ++i)
@@ -429,8 +429,8 @@ namespace crawler
   } // namespace
 
   std::unique_ptr<GaitModel>
-  kinematic_gait(SceneFamily &family, const GaitWishes &wishes, const std::vector<double> &start)
+  kinematic_gait(SceneFamily &family, const std::vector<double> &start)
   {
-    return std::make_unique<KinematicGait>(family, wishes, start);
+    return std::make_unique<KinematicGait>(family, start);
   }
 } // namespace crawler

@@ -244,7 +244,7 @@ namespace crawler
       {
         if (accuracy)
           scenes->form.declarations.set("Accuracy", to_text(*accuracy));
-        model = make_gait_model(*scenes, x, []() { return false; });
+        model = make_gait_model(*scenes, x);
       }
     };
 
@@ -268,12 +268,11 @@ namespace crawler
       {
         CaseStart start(cases, number, std::min(accuracy, accurate));
         const SceneFamily &family = *start.scenes;
-        const auto wishes         = GaitProblem::wishes(start.scenes->form.parameters.optimize);
         if (number == 0)
           introduce(cases, *start.model, {}, log);
         if (cases.are_several())
           log.line("Case " + cases.in_words(number));
-        auto result = check_gradient(*start.model, family, wishes, start.x, log);
+        auto result = check_gradient(*start.model, start.x, log);
         if (!result)
         {
           for (std::size_t i = 0; i < start.x.size(); ++i)
@@ -282,7 +281,7 @@ namespace crawler
             start.x[i] += start.x[i] + shift <= family.variables[i].to ? shift : -shift;
           }
           log.line(fmt::format("Near the start, with all variables {:g} % of their size away:", 100. * beside));
-          result = check_gradient(*start.model, family, wishes, start.x, log);
+          result = check_gradient(*start.model, start.x, log);
         }
         agrees = agrees && result.value_or(true);
         start.scenes->form.declarations.set("Accuracy", to_text(accuracy));
@@ -339,10 +338,7 @@ namespace crawler
         const CaseStart start(cases, number);
         if (number == 0)
           introduce(cases, *start.model, cases.notes(file), log);
-        GaitProblem problem(
-          *start.model, start.scenes->form.parameters.optimize, start.scenes->variables, start.x, []() {
-            return false;
-          });
+        GaitProblem problem(*start.model, start.scenes->form.parameters.optimize, start.x);
         const GaitRecord record = problem.record(problem.to_y(start.x));
         log.line(fmt::format("  The start{}: {} {:.6g}, which {}.",
                              cases.are_several() ? " with " + cases.in_words(number) : "",

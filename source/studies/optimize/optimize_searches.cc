@@ -37,8 +37,8 @@ namespace crawler
       const OptimizeParameters wishes = family->form.parameters.optimize;
       try
       {
-        const auto model = make_gait_model(*family, x, []() { return false; });
-        GaitProblem problem(*model, wishes, variables, x, []() { return false; });
+        const auto model = make_gait_model(*family, x);
+        GaitProblem problem(*model, wishes, x);
         const GaitRecord record = problem.record(problem.to_y(x));
         if (!record.problem.empty() || record.violation > problem.admissible())
           return std::nullopt;

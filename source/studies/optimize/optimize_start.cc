@@ -32,10 +32,7 @@ namespace crawler
     };
 
     std::vector<LimitedExtreme>
-    limited_extremes(const OptimizeParameters &wanted,
-                     GaitModel &model,
-                     SceneFamily &family,
-                     const std::vector<double> &x)
+    limited_extremes(const OptimizeParameters &wanted, GaitModel &model, const std::vector<double> &x)
     {
       std::vector<LimitedExtreme> list;
       const auto add = [&](std::optional<double> OptimizeParameters::*limit, const double value) {
@@ -49,9 +46,9 @@ namespace crawler
         add(&OptimizeParameters::largest_strain, largest);
       }
       if (wanted.largest_stress)
-        add(&OptimizeParameters::largest_stress, family.largest_stress(x, /*rate=*/false));
+        add(&OptimizeParameters::largest_stress, model.family.largest_stress(x, /*rate=*/false));
       if (wanted.largest_stress_rate)
-        add(&OptimizeParameters::largest_stress_rate, family.largest_stress(x, /*rate=*/true));
+        add(&OptimizeParameters::largest_stress_rate, model.family.largest_stress(x, /*rate=*/true));
       return list;
     }
 
@@ -166,7 +163,7 @@ namespace crawler
             return; // tighter limits would not help
           if (is_fine && !is_rough)
           {
-            const auto extremes = limited_extremes(wanted_, *model, family_, x_);
+            const auto extremes = limited_extremes(wanted_, *model, x_);
             if (!tighten(parameters_, wanted_, extremes, std::min(promised, result_.admissible)))
             {
               for (const LimitedExtreme &one : extremes)
@@ -186,14 +183,11 @@ namespace crawler
       improve(GaitModel &model, const bool is_rough)
       {
         constexpr double roughly = 1e-3, max_unused = 0.01;
-        const GaitProblem *current = nullptr;
-        const auto stops           = [&]() {
-          if (current != nullptr)
-            see(*current);
+        const auto stops = [&](const GaitProblem &so_far) {
+          see(so_far);
           return stops_();
         };
-        GaitProblem problem(model, wanted_, family_.variables, x_, stops, &parameters_);
-        current         = &problem;
+        GaitProblem problem(model, wanted_, x_, stops, &parameters_);
         const auto keep = [&](const GaitRecord *const optimum) {
           result_.records.insert(result_.records.end(), problem.records().begin(), problem.records().end());
           result_.best =
@@ -250,7 +244,7 @@ namespace crawler
       as_near_as_limits_admit(GaitModel &model)
       {
         constexpr unsigned int n_bisections = 12;
-        GaitProblem problem(model, wanted_, family_.variables, start_, stops_);
+        GaitProblem problem(model, wanted_, start_, [&](const GaitProblem &) { return stops_(); });
         const auto at = [&, end = result_.best.x](const double part) {
           std::vector<double> x(end.size());
           for (std::size_t i = 0; i < x.size(); ++i)
@@ -341,15 +335,14 @@ namespace crawler
   make_gait_model(SceneFamily &family, const std::vector<double> &start, const std::function<bool()> &stops)
   {
     const Parameters parameters = family.parameters(start);
-    const GaitWishes wishes     = GaitProblem::wishes(parameters.optimize);
     const ModelChoice model     = choose_model(parameters, parameters.create_scene());
     if (model.model == Model::perturbation)
       throw InputError("the perturbation level gives the leading order only, which has no best gait; kinematic, "
                        "nonlinear or linear is expected",
                        "Model");
     if (model.model == Model::kinematic)
-      return kinematic_gait(family, wishes, start);
-    return simulated_gait(family, wishes, stops);
+      return kinematic_gait(family, start);
+    return simulated_gait(family, stops);
   }
 
   StartResult

@@ -82,6 +82,23 @@ namespace crawler
         at(t, std::span(m).subspan(1ul * j++ * n_s, n_s));
       return m;
     }
+
+    GaitWishes
+    wishes_of(const OptimizeParameters &p)
+    {
+      GaitWishes wishes;
+      const GaitObjective objective             = objective_of(p);
+      wishes.numbers[objective.motion]          = true;
+      wishes.numbers[objective.energy]          = objective.power_of_energy != 0.;
+      wishes.numbers[GaitNumber::friction_time] = objective.power_of_time != 0.;
+      for (const LimitEntry &limit : limit_entries)
+        if (limit.number && p.*limit.value)
+          wishes.numbers[*limit.number] = true;
+      wishes.strain      = p.smallest_strain || p.largest_strain;
+      wishes.stress      = p.largest_stress.has_value();
+      wishes.stress_rate = p.largest_stress_rate.has_value();
+      return wishes;
+    }
   } // namespace
 
   GaitObjective
@@ -191,6 +208,12 @@ namespace crawler
     return std::max(-extremes.smallest.strain, extremes.largest.strain);
   }
 
+  GaitModel::GaitModel(SceneFamily &its_family)
+    : family(its_family)
+    , wishes(wishes_of(family.form.parameters.optimize))
+  {
+  }
+
   GaitValues
   GaitModel::evaluate(const std::vector<double> &x, const bool with_gradients, const std::vector<std::size_t> &places)
   {
@@ -200,10 +223,10 @@ namespace crawler
       if (with_gradients)
         values.gradients.fill(std::vector<double>(x.size()));
       compute(x, with_gradients, places, values);
-      if (wishes_.stress)
-        values.stress = family_.stress(x, /*rate=*/false, with_gradients);
-      if (wishes_.stress_rate)
-        values.stress_rate = family_.stress(x, /*rate=*/true, with_gradients);
+      if (wishes.stress)
+        values.stress = family.stress(x, /*rate=*/false, with_gradients);
+      if (wishes.stress_rate)
+        values.stress_rate = family.stress(x, /*rate=*/true, with_gradients);
     }
     catch (const InputError &error)
     {

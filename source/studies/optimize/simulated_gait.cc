@@ -38,8 +38,8 @@ namespace crawler
     class SimulatedGait : public GaitModel
     {
     public:
-      SimulatedGait(SceneFamily &family, const GaitWishes wishes, std::function<bool()> interrupted)
-        : GaitModel(family, wishes)
+      SimulatedGait(SceneFamily &its_family, std::function<bool()> interrupted)
+        : GaitModel(its_family)
         , interrupted_(std::move(interrupted))
       {
         if (wishes.numbers[GaitNumber::mean_square])
@@ -80,7 +80,7 @@ namespace crawler
       double
       noise() const override
       {
-        return family_.form.parameters.accuracy;
+        return family.form.parameters.accuracy;
       }
       std::string
       description() const override
@@ -106,22 +106,22 @@ namespace crawler
           throw InputError(problem);
         values.numbers = numbers(task);
         for (std::size_t i = 0; i < gait_numbers.size(); ++i)
-          if (wishes_.numbers[i] && !std::isfinite(values.numbers[i]))
+          if (wishes.numbers[i] && !std::isfinite(values.numbers[i]))
             throw InputError(
               i == GaitNumber::speed
                 ? "the speed is not known, since the active stress does not tell the duration of a stride"
                 : "a work is not known there");
-        if (wishes_.strain && latest_extremes_.empty())
+        if (wishes.strain && latest_extremes_.empty())
           latest_extremes_ = extremes(task);
         for (const StretchPlace &one : latest_extremes_)
           values.strain.values.push_back(one.value - 1.);
         if (!with_gradients)
           return;
         values.by_differences.assign(x.size(), true);
-        values.strain_by_differences.assign(x.size(), wishes_.strain);
+        values.strain_by_differences.assign(x.size(), wishes.strain);
         values.strain.gradients.assign(x.size(), std::vector<double>(latest_extremes_.size()));
-        add_adjoint_gradients(x, task, wishes_.strain ? with_extremes(places) : places, values);
-        const auto times = family_.differences(
+        add_adjoint_gradients(x, task, wishes.strain ? with_extremes(places) : places, values);
+        const auto times = family.differences(
           x,
           [](const Parameters &there) {
             return std::vector<double>(1, there.time.end_time / (there.body.friction_coefficient * there.body.length));
@@ -139,8 +139,8 @@ namespace crawler
         for (const auto &x : places)
         {
           tasks.emplace_back();
-          tasks.back().parameters = family_.parameters(x);
-          tasks.back().gait       = wishes_.numbers[GaitNumber::speed];
+          tasks.back().parameters = family.parameters(x);
+          tasks.back().gait       = wishes.numbers[GaitNumber::speed];
         }
         compute_all(tasks, HUGE_VAL, interrupted_);
         if (interrupted_())
@@ -239,9 +239,9 @@ namespace crawler
       {
         std::vector<Quantity> wanted;
         for (std::size_t k = 0; k < gait_numbers.size(); ++k)
-          if (wishes_.numbers[k] && gait_numbers[k].quantity && *gait_numbers[k].quantity != Quantity::speed)
+          if (wishes.numbers[k] && gait_numbers[k].quantity && *gait_numbers[k].quantity != Quantity::speed)
             wanted.push_back(*gait_numbers[k].quantity);
-        if (wishes_.numbers[GaitNumber::speed])
+        if (wishes.numbers[GaitNumber::speed])
           wanted.push_back(Quantity::stride); // the speed comes with it
         return wanted;
       }
@@ -263,10 +263,10 @@ namespace crawler
         std::vector<std::size_t> own;
         for (std::size_t i = 0; i < x.size(); ++i)
         {
-          const auto around = family_.stencil(x, i, /*relative_step=*/1e-3);
+          const auto around = family.stencil(x, i, /*relative_step=*/1e-3);
           for (const auto &point : around)
             if (point.offset != 0.)
-              scenes[i].push_back(family_.parameters(point.x).create_scene());
+              scenes[i].push_back(family.parameters(point.x).create_scene());
           if (!std::ranges::all_of(scenes[i], [&](const Scene &s) { return have_similar_breaks(*task.scene, s); }))
             continue;
           const bool is_one_sided = around[0].offset == 0.;
@@ -282,7 +282,7 @@ namespace crawler
             const std::size_t i = own[v];
             bool is_known       = true;
             for (std::size_t k = 0; k < gait_numbers.size(); ++k)
-              if (wishes_.numbers[k] && gait_numbers[k].quantity)
+              if (wishes.numbers[k] && gait_numbers[k].quantity)
               {
                 const auto &value      = gradient.quantities[v][static_cast<std::size_t>(*gait_numbers[k].quantity)];
                 is_known               = is_known && value.has_value();
@@ -290,7 +290,7 @@ namespace crawler
               }
             values.by_differences[i] = !is_known;
             const auto &strains      = gradient.stretches[v];
-            if (!wishes_.strain || !std::ranges::all_of(strains, [](const auto &one) { return one.has_value(); }))
+            if (!wishes.strain || !std::ranges::all_of(strains, [](const auto &one) { return one.has_value(); }))
               continue;
             for (std::size_t e = 0; e < strains.size(); ++e)
               values.strain.gradients[i][near[e]] = *strains[e];
@@ -302,7 +302,7 @@ namespace crawler
           if (interrupted_())
             throw Interrupted();
           values.by_differences.assign(x.size(), true);
-          values.strain_by_differences.assign(x.size(), wishes_.strain);
+          values.strain_by_differences.assign(x.size(), wishes.strain);
         }
       }
 
@@ -314,7 +314,7 @@ namespace crawler
         std::vector<std::pair<std::size_t, double>> weights; // variable and weight of each place
         for (std::size_t i = 0; i < x.size(); ++i)
           if (values.by_differences[i] || values.strain_by_differences[i])
-            for (const auto &point : family_.stencil(x, i, step))
+            for (const auto &point : family.stencil(x, i, step))
             {
               places.push_back(point.x);
               weights.emplace_back(i, point.weight);
@@ -376,8 +376,8 @@ namespace crawler
   } // namespace
 
   std::unique_ptr<GaitModel>
-  simulated_gait(SceneFamily &family, const GaitWishes &wishes, std::function<bool()> interrupted)
+  simulated_gait(SceneFamily &family, std::function<bool()> interrupted)
   {
-    return std::make_unique<SimulatedGait>(family, wishes, std::move(interrupted));
+    return std::make_unique<SimulatedGait>(family, std::move(interrupted));
   }
 } // namespace crawler

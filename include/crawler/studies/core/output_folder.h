@@ -43,6 +43,10 @@ namespace crawler
     FolderLock(const std::filesystem::path &folder, Log &log);
   };
 
+  /// Status that the summary.json in a folder has; empty if there is none.
+  std::string
+  status_in(const std::filesystem::path &folder);
+
   /// Returns true if the folder is empty except perhaps for a lock.
   bool
   is_free(const std::filesystem::path &folder);

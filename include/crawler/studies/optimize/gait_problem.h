@@ -57,14 +57,9 @@ namespace crawler
     /// Throws InputError if the start has a problem; GaitModel::Interrupted as soon as @p stops returns true.
     GaitProblem(GaitModel &model,
                 const OptimizeParameters &parameters,
-                const std::vector<Variable> &variables,
                 const std::vector<double> &start,
-                std::function<bool()> stops,
-                const OptimizeParameters *closer = nullptr);
-
-    /// Selection of the numbers in objective and limits.
-    static GaitWishes
-    wishes(const OptimizeParameters &parameters);
+                std::function<bool(const GaitProblem &)> stops = {},
+                const OptimizeParameters *closer               = nullptr);
 
     struct Point
     {
@@ -172,8 +167,8 @@ namespace crawler
 
     GaitModel &model_;
     const OptimizeParameters parameters_;
-    const std::vector<Variable> variables_;
-    const std::function<bool()> stops_;
+    const std::vector<Variable> &variables_;
+    const std::function<bool(const GaitProblem &)> stops_;
     const GaitObjective objective_;
     std::vector<Limit> limits_; ///< those of numbers first
     std::size_t n_numbers_ = 0;

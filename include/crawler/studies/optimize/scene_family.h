@@ -95,12 +95,11 @@ namespace crawler
   class GaitModel
   {
   public:
-    GaitModel(SceneFamily &family, const GaitWishes &wishes)
-      : family_(family)
-      , wishes_(wishes)
-    {
-    }
+    explicit GaitModel(SceneFamily &its_family);
     virtual ~GaitModel() = default;
+
+    SceneFamily &family;
+    const GaitWishes wishes; ///< what the objective and the limits of the family need
 
     /// A gait that cannot be computed (the body inverts, a formula has no value) has a problem. Derivatives of the
     /// strain are certain to exist only at @p places and for the smallest and the largest strain. Throws Interrupted.
@@ -139,18 +138,15 @@ namespace crawler
             bool with_gradients,
             const std::vector<std::size_t> &places,
             GaitValues &values) = 0;
-
-    SceneFamily &family_;
-    const GaitWishes wishes_;
   };
 
   /// Makes the model of gaits of the kinematic level. Throws InputError if the start does not make a scene with a given
   /// strain.
   std::unique_ptr<GaitModel>
-  kinematic_gait(SceneFamily &family, const GaitWishes &wishes, const std::vector<double> &start);
+  kinematic_gait(SceneFamily &family, const std::vector<double> &start);
 
   /// Makes the model of gaits of the levels that are simulated. @p interrupted is called after every step. Throws
   /// InputError for a wish that only the kinematic level fulfils.
   std::unique_ptr<GaitModel>
-  simulated_gait(SceneFamily &family, const GaitWishes &wishes, std::function<bool()> interrupted);
+  simulated_gait(SceneFamily &family, std::function<bool()> interrupted);
 } // namespace crawler
