@@ -26,6 +26,8 @@ namespace crawler
     values.require_start();
     for (Limit &limit : limits_)
     {
+      if (limit.scale == 0.) // the strain must not be negative
+        limit.scale = 1.;
       limit.size = limit.of(values).values.size();
       lower_.insert(lower_.end(), limit.size, limit.lower / limit.scale);
       upper_.insert(upper_.end(), limit.size, limit.upper / limit.scale);

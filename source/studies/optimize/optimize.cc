@@ -82,7 +82,6 @@ namespace crawler
     std::pair<nlohmann::ordered_json, bool>
     run_optimum(OptimizeCases &cases, const StartResult &start, const StudyFolder &folder)
     {
-      const std::string effective = cases.effective(); // before its values are replaced
       const auto family           = cases.family(start.number_of_case);
       const Parameters parameters = family->parameters(start.best.x);
       const std::string number    = cases.are_several() ? fmt::format("-{}", start.number_of_case + 1) : "";
@@ -91,7 +90,7 @@ namespace crawler
       const fs::path file = folder.path / ("optimum" + number + ".prm"), place = folder.path / ("best" + number);
       write_file(file,
                  "# The best gait: what differs from the file that was optimised.\ninclude parameters.prm\n" +
-                   changes(entries, ParameterFile::from_text(effective, "parameters.prm")));
+                   changes(entries, ParameterFile::from_text(cases.effective(), "parameters.prm")));
       entries.set("Sweep/Axes", parameters.sweep.axes);
       CommandOptions one = folder.options;
       one.file           = file.string();
