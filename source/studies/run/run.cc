@@ -3,6 +3,7 @@
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/accuracy/swept_error.h>
+#include <crawler/base/archive.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
@@ -42,14 +43,11 @@ namespace crawler
     void
     agree_on_failure(MPI_Comm communicator, TimeOutcome &outcome)
     {
-      const std::string text =
-        first_text(outcome.status == Status::none ? "" : outcome.reason + "\n" + outcome.message, communicator);
+      const std::string text = first_text(outcome.status == Status::none ? "" : archived(outcome), communicator);
       if (text.empty())
         return;
-      const std::size_t split = text.find('\n');
-      outcome.status          = Status::failed;
-      outcome.reason          = text.substr(0, split);
-      outcome.message         = text.substr(split + 1);
+      Archive archive(text);
+      archive(outcome);
     }
 
     /// Progress of a run: a bar, or a line at every tenth of the duration.
