@@ -114,7 +114,7 @@ namespace crawler
           Direction &direction = directions_.emplace_back();
           direction.changes.resize(all_quantities.size() + stretches.size());
           for (std::size_t k = 0; k < 4; ++k)
-            direction.forces[k] = std::make_unique<ForcesOfScene>(*variation.scenes[k], run.scene, cells_.points());
+            direction.forces[k] = std::make_unique<ForcesOfScene>(variation.scenes[k], run.scene, cells_.points());
         }
         find_stride(variations);
         for (const Quantity quantity : quantities)
@@ -405,7 +405,7 @@ namespace crawler
         for (std::size_t i = 0; i < variations.size(); ++i)
           for (std::size_t k = 0; k < 4; ++k)
           {
-            const auto other           = last_stride_of(*variations[i].scenes[k]);
+            const auto other           = last_stride_of(variations[i].scenes[k]);
             directions_[i].strides[k]  = other.value_or(1.);
             directions_[i].has_strides = directions_[i].has_strides && other;
           }

@@ -366,6 +366,10 @@ def test_obstacles(place):
                "Optimize/Largest strain=automatic", "Optimize/Starts=1")
     expect(free.returncode == 0 and summary(place / "free")["displacement"] > 0.022,
            f"work alone: {free.returncode}, {free.stdout}{free.stderr}")
+    # Without a strain below 0 there is no scale for it.
+    longer = run("optimize_harmonics", place / "longer", "Optimize/Smallest strain=0", "Optimize/Largest strain=automatic")
+    expect(longer.returncode == 0 and "Smallest strain = 0 holds it back" in longer.stdout,
+           f"no strain below 0: {longer.returncode}, {longer.stdout}{longer.stderr}")
     # A limit that is exceeded has a name.
     against = run("optimize_robot", place / "against", "Optimize/Largest stress rate=1e-3", "Optimize/Most iterations=2",
                   f"Optimize/Variables={LAG} : 0.1 to 0.2")

@@ -298,7 +298,7 @@ def test_two_at_once(folder):
         return process
 
     with Paused(command, "write:summary.json:STOP", folder) as first:
-        checks.refused(call(command, folder), "another study is writing to")
+        checks.refused(call(command, folder), "a run or study is writing to")
         with waits() as second:  # noted once; then it ends at once
             while second.poll() is None:
                 second.terminate()

@@ -95,7 +95,7 @@ namespace
     }
     EXPECT_TRUE(RecordedRun::is_possible(scene, time, numerics(scene)));
     const RecordedRun run(scene, time, numerics(scene), {});
-    const Variation variation = {{{&near[0], &near[1], &near[2], &near[3]}}, step};
+    const Variation variation = {near, step};
     EXPECT_TRUE(have_similar_breaks(scene, near.front())) << entry;
     Both both = {gradient_of(run, {&variation, 1}, all_quantities).quantities.front(), {}, numbers[1]};
     for (std::size_t i = 0; i < all_quantities.size(); ++i)
@@ -218,7 +218,7 @@ TEST(RunGradient, OfJumpsAtTheEndThereIsNone)
   std::vector<Scene> near;
   for (const int i : {-2, -1, 1, 2})
     near.push_back(scene_of(robot, "Active stress/Segments/Frequency", 1. + i * 1e-3));
-  const Variation variation = {{{&near[0], &near[1], &near[2], &near[3]}}, 1e-3};
+  const Variation variation = {near, 1e-3};
   const RecordedRun run(
     scene, test::parameters_with(robot).time, numerics_for(scene, "radau 9", 8, 1e-8, {2, 0.25}), {});
   EXPECT_FALSE(derivative(run, variation));
@@ -230,12 +230,13 @@ TEST(RunGradient, ToOneSide)
   const Scene scene         = test::parameters_with(wave).create_scene();
   const TimeParameters time = test::parameters_with(wave).time;
   const double step         = 1e-3;
-  std::vector<Scene> scenes;
-  for (const int i : {-4, -3, -2, -1, 1, 2, 3, 4})
+  std::vector<Scene> scenes, downwards;
+  for (const int i : {-2, -1, 1, 2, 3, 4})
     scenes.push_back(scene_of(wave, "Body/Elastic modulus", 1. + i * step));
-  const Variation variations[] = {{{{&scenes[2], &scenes[3], &scenes[4], &scenes[5]}}, step},
-                                  {{{&scenes[4], &scenes[5], &scenes[6], &scenes[7]}}, step, true},
-                                  {{{&scenes[3], &scenes[2], &scenes[1], &scenes[0]}}, -step, true}};
+  for (const int i : {-1, -2, -3, -4})
+    downwards.push_back(scene_of(wave, "Body/Elastic modulus", 1. + i * step));
+  const std::span all(scenes);
+  const Variation variations[] = {{all.first(4), step}, {all.subspan(2), step, true}, {downwards, -step, true}};
   const RecordedRun run(scene, time, numerics_for(scene, "radau 9", 6, 1e-8), {});
   const auto derivatives = gradient_of(run, variations, all_quantities).quantities;
   for (const std::size_t one_sided : {1, 2})
@@ -256,7 +257,7 @@ TEST(RunGradient, ConvergesAsTheDisplacementDoes)
   std::vector<Scene> near;
   for (const int i : {-2, -1, 1, 2})
     near.push_back(scene_of(wave, "Body/Elastic modulus", 1. + i * step));
-  const Variation variation  = {{{&near[0], &near[1], &near[2], &near[3]}}, step};
+  const Variation variation  = {near, step};
   const auto derivative_with = [&](const char *integrator, const unsigned int n_cells, const double tolerance) {
     const RecordedRun run(scene, time, numerics_for(scene, integrator, n_cells, tolerance), {});
     return derivative(run, variation).value();
@@ -282,8 +283,7 @@ TEST(RunGradient, LocalSensitivitiesAddUp)
     k.push_back(scene_of(fixed, "Body/Elastic modulus", 1. + i * step));
     gamma.push_back(scene_of(fixed, "Body/Friction coefficient", 1. + i * step));
   }
-  const Variation variations[] = {{{{&k[0], &k[1], &k[2], &k[3]}}, step},
-                                  {{{&gamma[0], &gamma[1], &gamma[2], &gamma[3]}}, step}};
+  const Variation variations[] = {{k, step}, {gamma, step}};
   const Numerics numerics      = numerics_for(own, "radau 9", 8, 1e-10);
   const RecordedRun run(own, time, numerics, {});
   const RunGradient gradient = gradient_of(run, variations, {{Quantity::displacement}});
@@ -329,7 +329,7 @@ TEST(RunGradient, OfStretches)
     seen.push_back(static_cast<const Kymograph &>(*observers.front()).rows().stretch);
     ASSERT_EQ(seen.back().size(), times.size());
   }
-  const Variation variation  = {{{&near[0], &near[1], &near[2], &near[3]}}, step};
+  const Variation variation  = {near, step};
   const RunGradient gradient = gradient_of(run, {&variation, 1}, {}, places);
   for (std::size_t i = 0; i < places.size(); ++i)
   {

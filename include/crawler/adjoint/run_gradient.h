@@ -11,11 +11,11 @@
 
 namespace crawler
 {
-  /// Scenes in which one number p differs by d times -2, -1, 1 and 2, or 1, 2, 3 and 4 to one side. All
+  /// Four scenes in which one number p differs by d times -2, -1, 1 and 2, or 1, 2, 3 and 4 to one side. All
   /// have_similar_breaks().
   struct Variation
   {
-    std::array<const Scene *, 4> scenes;
+    std::span<const Scene> scenes;
     double step;               ///< d, in units of p
     bool is_one_sided = false; ///< true where p is at a limit
   };

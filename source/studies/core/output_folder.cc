@@ -73,20 +73,7 @@ namespace crawler
       std::error_code error;
       if (fs::exists(folder / study_lock_name, error))
         return FileLock(folder / study_lock_name).lock() == FileLock::State::mine; // otherwise it is still running
-      if (fs::exists(folder / "restart.dat", error))
-        return true;
-      std::ifstream in(folder / "summary.json");
-      const auto summary = nlohmann::json::parse(in, nullptr, /*allow_exceptions=*/false);
-      return summary.is_object() && summary.value("status", nlohmann::json()) == "stopped";
-    }
-
-    /// True if the folder is empty except perhaps for a lock.
-    bool
-    is_free(const fs::path &folder)
-    {
-      std::error_code error;
-      const fs::directory_iterator files(folder, error), end;
-      return std::all_of(begin(files), end, [](const auto &file) { return file.path().filename() == study_lock_name; });
+      return fs::exists(folder / "restart.dat", error) || status_in(folder) == "stopped";
     }
 
     /// The folder, which is made now unless it exists.
@@ -192,26 +179,45 @@ namespace crawler
                                    fmt::join(free_entries, " and ")));
   }
 
-  FolderLock::FolderLock(const fs::path &folder, const bool overwrite)
-    : FileLock(made(folder) / study_lock_name)
+  std::string
+  status_in(const fs::path &folder)
   {
-    if (lock() == State::of_another_process)
-      throw InputError("a run or study is writing to \"" + folder.string() +
-                       "\"; wait for it to end, or give another folder with --output");
-    try
-    {
-      require_usable(folder, overwrite || is_free(folder)); // the previous owner of the lock may have written
-    }
-    catch (...)
-    {
-      remove();
-      throw;
-    }
+    std::ifstream in(folder / "summary.json");
+    const auto summary = nlohmann::json::parse(in, nullptr, /*allow_exceptions=*/false);
+    const auto status  = summary.is_object() ? summary.value("status", nlohmann::json()) : nlohmann::json();
+    return status.is_string() ? status.get<std::string>() : "";
   }
 
-  FolderLock::~FolderLock()
+  bool
+  is_free(const fs::path &folder)
   {
-    remove();
+    std::error_code error;
+    const fs::directory_iterator files(folder, error), end;
+    return std::all_of(begin(files), end, [](const auto &file) { return file.path().filename() == study_lock_name; });
+  }
+
+  FolderLock::FolderLock(const fs::path &folder, Log &log)
+    : FileLock(made(folder) / study_lock_name)
+  {
+    constexpr std::chrono::milliseconds longest_wait(5000), pause(100);
+    State state = lock();
+    if (state == State::of_another_process)
+      log.line(fmt::format("A run or study is writing to \"{}\"; it may be about to end: waiting for at most {} s",
+                           folder.string(),
+                           longest_wait.count() / 1000));
+    for (auto waited = pause; state == State::of_another_process && waited < longest_wait; waited += pause)
+    {
+      std::this_thread::sleep_for(pause);
+      state = lock();
+    }
+    if (state == State::of_another_process)
+      throw InputError(fmt::format("a run or study is writing to \"{}\"; wait for it to end, or give another folder "
+                                   "with --output",
+                                   folder.string()));
+    if (state == State::not_offered)
+      log.warn(fmt::format("warning: this file system has no locks, so nothing keeps another run or study from writing "
+                           "to \"{}\"",
+                           folder.string()));
   }
 
   void
@@ -270,30 +276,6 @@ namespace crawler
   }
 
   void
-  StudyFolder::lock()
-  {
-    constexpr std::chrono::milliseconds longest_wait(5000), pause(100);
-    lock_.emplace(made(path) / study_lock_name);
-    FileLock::State state = lock_->lock();
-    if (state == FileLock::State::of_another_process)
-      log.line(fmt::format("Another study is writing to \"{}\"; it may be about to end: waiting for at most {} s",
-                           path.string(),
-                           longest_wait.count() / 1000));
-    for (auto waited = pause; state == FileLock::State::of_another_process && waited < longest_wait; waited += pause)
-    {
-      std::this_thread::sleep_for(pause);
-      state = lock_->lock();
-    }
-    if (state == FileLock::State::of_another_process)
-      throw InputError(fmt::format(
-        "another study is writing to \"{}\"; wait for it to end, or give another folder with --output", path.string()));
-    if (state == FileLock::State::not_offered)
-      log.warn(fmt::format("warning: this file system has no locks, so nothing keeps another study from writing to "
-                           "\"{}\"",
-                           path.string()));
-  }
-
-  void
   StudyFolder::leaving_if_refused(const std::function<void()> &work)
   {
     try
@@ -319,7 +301,7 @@ namespace crawler
     };
     require_own();
     require_usable(path, options.resume || options.overwrite);
-    lock();
+    lock_.emplace(path, log);
     remove_locks_of_mpi(path);
     leaving_if_refused(require_own); // the previous owner of the lock may have changed it
     if (options.resume && has_results())

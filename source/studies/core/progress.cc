@@ -11,9 +11,6 @@ namespace crawler
 {
   namespace
   {
-    constexpr double between_bars  = 0.1; ///< [s]
-    constexpr double between_waits = 3.;
-
     /// Number of characters of a text in UTF-8.
     std::size_t
     length_of(const std::string &text)
@@ -48,15 +45,23 @@ namespace crawler
   }
 
   bool
-  ProgressBar::is_due() const
+  ProgressBar::is_bar_due() const
   {
-    return log_.status_width() > 0 && now() >= last_ + between_bars;
+    constexpr double between_bars = 0.1; // [s]
+    return log_.status_width() > 0 && now() >= last_bar_ + between_bars;
   }
 
   void
-  ProgressBar::show(const std::optional<double> done, const std::string &text)
+  ProgressBar::show(const std::optional<double> done, const std::string &text, const std::string &line_of_log)
   {
-    last_                        = now();
+    if (is_line_due())
+    {
+      last_line_ = now();
+      log_.progress(line_of_log);
+    }
+    if (!is_bar_due())
+      return;
+    last_bar_                    = now();
     const double gone            = seconds();
     constexpr unsigned int n_bar = 24;
     const double swing           = 0.5 - 0.5 * std::cos(2. * gone); // position of a moving bar
@@ -77,23 +82,10 @@ namespace crawler
     log_.show_status(line);
   }
 
-  WaitProgress::WaitProgress(Log &log, std::string what)
-    : log_(log)
-    , what_(std::move(what))
-    , bar_(log)
-    , next_line_(between_waits)
-  {
-  }
-
   void
   WaitProgress::step()
   {
-    if (bar_.seconds() >= next_line_)
-    {
-      next_line_ += between_waits;
-      log_.progress(fmt::format("  {} ... {:.0f} s", what_, bar_.seconds()));
-    }
     if (bar_.is_due())
-      bar_.show(std::nullopt, what_);
+      bar_.show(std::nullopt, what_, fmt::format("  {} ... {:.0f} s", what_, bar_.seconds()));
   }
 } // namespace crawler

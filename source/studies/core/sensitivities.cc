@@ -73,6 +73,15 @@ namespace crawler
       return {differentiated_numbers[number].of(result), error};
     }
 
+    void
+    add(EntrySensitivity &entry, const std::size_t number, const double value, const double error)
+    {
+      if (number > 0)
+        return entry.others.push_back({differentiated_numbers[number].key, value, error});
+      entry.value = value;
+      entry.error = error;
+    }
+
     /// Weights of the middle and of the four other places.
     using Weights = std::array<double, 5>;
 
@@ -156,13 +165,7 @@ namespace crawler
         const double error = value.error + std::abs(value.value - coarse.value) + std::abs(kink.value);
         if (!std::isfinite(error))
           continue;
-        if (number == 0)
-        {
-          sensitivity.value = value.value;
-          sensitivity.error = error;
-        }
-        else
-          sensitivity.others.push_back({differentiated_numbers[number].key, value.value, error});
+        add(sensitivity, number, value.value, error);
       }
       if (!sensitivity.value)
         sensitivity.reason = "the error of the displacement is not known";
@@ -252,13 +255,7 @@ namespace crawler
                                                                             : wanted_factor;
         const double error   = measured_factor * std::abs(*finer[i] - *values[i]) +
                              factor * std::max(accuracy, of_number) * (size + by_size) + round_off * size;
-        if (i == 0)
-        {
-          entry.value = values[i];
-          entry.error = error;
-        }
-        else
-          entry.others.push_back({differentiated_numbers[i].key, *values[i], error});
+        add(entry, i, *values[i], error);
       }
     }
 
@@ -277,8 +274,7 @@ namespace crawler
       for (Varied &one : varied)
         if (!one.scenes.empty())
         {
-          const auto &scenes = one.scenes;
-          variations.push_back({{{&scenes[0], &scenes[1], &scenes[2], &scenes[3]}}, one.step, one.is_one_sided});
+          variations.push_back({one.scenes, one.step, one.is_one_sided});
           known.push_back(&one.sensitivity);
         }
       const RecordedRun run(scene, time, choice.numerics, keep_going);

@@ -83,66 +83,67 @@ namespace crawler
         list.push_back(fmt::format(fmt::runtime(what), name) + fmt::format(" was {} and is {}", was, is));
   }
 
+  bool
+  StudyClock::is_over()
+  {
+    constexpr double between_looks = 0.5; // [s]
+    if (!reason_.empty())
+      return true;
+    if (signal_.arrived())
+      reason_ = "signal";
+    else if (limit_ && seconds() >= *limit_)
+      reason_ = "time_limit";
+    else if (!stop_file_.empty() && now() >= last_look_ + between_looks)
+    {
+      std::error_code ignored;
+      if (std::filesystem::exists(stop_file_, ignored))
+        reason_ = "stop_file";
+      last_look_ = now();
+    }
+    return !reason_.empty();
+  }
+
+  bool
+  StudyClock::is_over_anywhere(MPI_Comm communicator)
+  {
+    return is_true_anywhere(is_over(), communicator);
+  }
+
+  std::string
+  StudyClock::in_words(const std::string &reason) const
+  {
+    return "stopped by " + (reason == "signal"      ? "a signal"
+                            : reason == "stop_file" ? "the file \"" + stop_file_.string() + "\""
+                                                    : limit_in_words_);
+  }
+
   namespace
   {
-    /// Progress of a study of many runs: a bar, or a line every few seconds, with parts done, speed, and time left.
-    class StudyProgress
+    /// Shows how many of the points are done, the speed, and the time left. If there is a single point, its @p state is
+    /// the whole report.
+    void
+    show_points(ProgressBar &bar, const SharedWork &work, const WorkQueue::Done &so_far)
     {
-    public:
-      /// @p parts names the @p n_parts parts, as "points".
-      StudyProgress(Log &log, const unsigned long n_parts, std::string parts)
-        : log_(log)
-        , n_parts_(n_parts)
-        , parts_(std::move(parts))
-        , bar_(log)
-      {
-      }
-
-      bool
-      is_due() const
-      {
-        return bar_.is_due() || is_line_due();
-      }
-
-      /// @p remark stands at the end of the line. @p state describes the part in progress; if there is a single part,
-      /// it is the whole report.
-      void
-      report(const unsigned long done, const std::string &remark, const std::string &state)
-      {
-        const bool is_single = n_parts_ == 1 && !state.empty();
-        const double seconds = bar_.seconds(), rate = done / seconds;
-        const std::string words =
-          is_single ? state : fmt::format("{} of {} {}, {:.3g} {}/s", done, n_parts_, parts_, rate, parts_);
-        const std::string end = remark + (is_single || state.empty() ? "" : "; this one: " + state);
-        if (is_line_due())
-        {
-          last_line_ = now();
-          log_.progress(is_single ? fmt::format("  {}, {}", words, duration_in_words(seconds))
-                                  : fmt::format("  {:3.0f} %  {}, {}{}",
-                                                100. * done / n_parts_,
-                                                words,
-                                                done > 0 ? duration_in_words((n_parts_ - done) / rate) + " left"
-                                                         : "time left not known yet",
-                                                end));
-        }
-        if (bar_.is_due())
-          bar_.show(is_single ? std::nullopt : std::optional(static_cast<double>(done) / n_parts_), words + end);
-      }
-
-    private:
-      bool
-      is_line_due() const
-      {
-        constexpr double between_lines = 5.; // [s]
-        return now() >= last_line_ + between_lines;
-      }
-
-      Log &log_;
-      const unsigned long n_parts_;
-      const std::string parts_;
-      ProgressBar bar_;
-      double last_line_ = now();
-    };
+      const std::string state = work.state ? work.state() : "";
+      const bool is_single    = work.n_points == 1 && !state.empty();
+      const double seconds = bar.seconds(), rate = so_far.done / seconds;
+      const std::string words =
+        is_single ? state
+                  : fmt::format("{} of {} {}, {:.3g} {}/s", so_far.done, work.n_points, work.points, rate, work.points);
+      const std::string end = (so_far.failed > 0 ? fmt::format(", {} not finished", so_far.failed) : "") +
+                              (is_single || state.empty() ? "" : "; this one: " + state);
+      const double done = static_cast<double>(so_far.done) / work.n_points;
+      bar.show(is_single ? std::nullopt : std::optional(done),
+               words + end,
+               is_single
+                 ? fmt::format("  {}, {}", words, duration_in_words(seconds))
+                 : fmt::format("  {:3.0f} %  {}, {}{}",
+                               100. * done,
+                               words,
+                               so_far.done > 0 ? duration_in_words((work.n_points - so_far.done) / rate) + " left"
+                                               : "time left not known yet",
+                               end));
+    }
   } // namespace
 
   bool
@@ -152,13 +153,10 @@ namespace crawler
     std::string problem;
     {
       WorkQueue queue(communicator, work.n_parts, work.besides);
-      StudyProgress progress(log, work.n_points, work.points);
+      ProgressBar bar(log, /*between_lines=*/5.);
       const auto show_progress = [&]() {
-        if (rank_of(communicator) != 0 || !progress.is_due())
-          return;
-        const auto all = queue.so_far();
-        progress.report(
-          all.done, all.failed > 0 ? fmt::format(", {} not finished", all.failed) : "", work.state ? work.state() : "");
+        if (rank_of(communicator) == 0 && bar.is_due())
+          show_points(bar, work, queue.so_far());
       };
       const auto stops = [&]() {
         queue.serve();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/studies/optimize/gait_problem.h>
-#include <crawler/studies/optimize/scene_family.h>
 
 #include <fmt/format.h>
 
@@ -9,90 +8,37 @@
 
 namespace crawler
 {
-  namespace
-  {
-    constexpr double refused = 1e10; ///< objective where there is a problem
-
-    double
-    sign_of_direction(const OptimizeParameters &parameters)
-    {
-      return parameters.direction == "forward" ? 1. : -1.;
-    }
-  } // namespace
-
-  GaitWishes
-  GaitProblem::wishes(const OptimizeParameters &p)
-  {
-    GaitWishes wishes;
-    const auto want = [&](const GaitNumber::Index number, const bool is_wanted) {
-      wishes.numbers[number] |= is_wanted;
-    };
-    want(GaitNumber::displacement, p.objective != "speed");
-    want(GaitNumber::speed, p.objective == "speed");
-    want(GaitNumber::work, p.objective == "merit" || p.objective == "cost of transport");
-    want(GaitNumber::friction_time, p.objective.ends_with("merit"));
-    want(GaitNumber::dissipation, p.objective == "periodic merit");
-    for (const LimitEntry &limit : limit_entries)
-      if (limit.number)
-        want(*limit.number, (p.*limit.value).has_value());
-    wishes.strain      = p.smallest_strain || p.largest_strain;
-    wishes.stress      = p.largest_stress.has_value();
-    wishes.stress_rate = p.largest_stress_rate.has_value();
-    return wishes;
-  }
-
   GaitProblem::GaitProblem(GaitModel &model,
                            const OptimizeParameters &parameters,
-                           const std::vector<Variable> &variables,
                            const std::vector<double> &start,
-                           std::function<bool()> stops,
+                           std::function<bool(const GaitProblem &)> stops,
                            const OptimizeParameters *const closer)
     : model_(model)
     , parameters_(parameters)
-    , variables_(variables)
+    , variables_(model.family.variables)
     , stops_(std::move(stops))
+    , objective_(objective_of(parameters))
   {
-    const OptimizeParameters &p = parameters;
     for (const LimitEntry &limit : limit_entries)
-      if (limit.number && p.*limit.value)
-        number_limits_.push_back({*limit.number, limit.name, *(p.*limit.value)});
-    const OptimizeParameters &own = closer != nullptr ? *closer : p;
-    if (p.smallest_strain || p.largest_strain)
-    {
-      const double lower = p.smallest_strain.value_or(-HUGE_VAL), upper = p.largest_strain.value_or(HUGE_VAL);
-      block_limits_.push_back({&GaitValues::strain,
-                               p.smallest_strain ? "Smallest strain" : "",
-                               p.largest_strain ? "Largest strain" : "",
-                               own.smallest_strain.value_or(lower),
-                               own.largest_strain.value_or(upper),
-                               std::max(p.smallest_strain ? -lower : 0., p.largest_strain ? upper : 0.),
-                               lower,
-                               upper});
-    }
-    const auto limit_size = [&](LimitedValues GaitValues::*values, const char *name, const auto limit) {
-      if (const std::optional<double> wanted = p.*limit)
-        block_limits_.push_back({values, name, name, -*(own.*limit), *(own.*limit), *wanted, -*wanted, *wanted});
-    };
-    limit_size(&GaitValues::stress, "Largest stress", &OptimizeParameters::largest_stress);
-    limit_size(&GaitValues::stress_rate, "Largest stress rate", &OptimizeParameters::largest_stress_rate);
-    lower_.assign(number_limits_.size(), -HUGE_VAL);
-    upper_.assign(number_limits_.size(), 1.);
+      if (const std::optional<double> wanted = parameters.*limit.value)
+        add_limit(limit, *wanted, closer != nullptr ? *(closer->*limit.value) : *wanted);
     const GaitValues values = model.evaluate(start, /*with_gradients=*/false);
     values.require_start();
-    for (const BlockLimit &limit : block_limits_)
+    for (Limit &limit : limits_)
     {
-      block_sizes_.push_back((values.*limit.values).values.size());
-      lower_.insert(lower_.end(), block_sizes_.back(), limit.lower / limit.scale);
-      upper_.insert(upper_.end(), block_sizes_.back(), limit.upper / limit.scale);
+      if (limit.scale == 0.) // the strain must not be negative
+        limit.scale = 1.;
+      limit.size = limit.of(values).values.size();
+      lower_.insert(lower_.end(), limit.size, limit.lower / limit.scale);
+      upper_.insert(upper_.end(), limit.size, limit.upper / limit.scale);
     }
-    const double first = std::abs(objective(values, nullptr));
+    std::vector<double> none;
+    const double first = std::abs(objective(values, none));
     if (!std::isfinite(first))
-      throw InputError(
-        fmt::format(
-          "the start has no {}, since its work is {:g}; a start that takes work is expected",
-          parameters.objective,
-          values.numbers[parameters.objective == "periodic merit" ? GaitNumber::dissipation : GaitNumber::work]),
-        "Optimize/Variables");
+      throw InputError(fmt::format("the start has no {}, since its work is {:g}; a start that takes work is expected",
+                                   objective_.name,
+                                   values.numbers[objective_.energy]),
+                       "Optimize/Variables");
     if (first > 0.)
       scale_ = first;
     // Starts with hardly any motion say little about the attainable magnitude.
@@ -106,13 +52,45 @@ namespace crawler
     records_.clear();
   }
 
+  void
+  GaitProblem::add_limit(const LimitEntry &entry, const double wanted, const double own)
+  {
+    const auto known =
+      std::ranges::find_if(limits_, [&](const Limit &limit) { return !entry.number && limit.values == entry.values; });
+    Limit &limit = known != limits_.end() ? *known : limits_.emplace_back(Limit{entry.number, entry.values});
+    n_numbers_ += entry.number ? 1 : 0;
+    limit.scale = std::max(limit.scale, std::abs(wanted));
+    if (entry.is_upper)
+    {
+      limit.upper_name   = entry.name;
+      limit.upper        = own;
+      limit.wanted_upper = wanted;
+    }
+    if (entry.is_lower)
+    {
+      limit.lower_name   = entry.name;
+      limit.lower        = entry.is_upper ? -own : own;
+      limit.wanted_lower = entry.is_upper ? -wanted : wanted;
+    }
+  }
+
+  LimitedValues
+  GaitProblem::Limit::of(const GaitValues &gait) const
+  {
+    if (!number)
+      return gait.*values;
+    LimitedValues one{{gait.numbers[*number]}, {}};
+    for (const double derivative : gait.gradients[*number])
+      one.gradients.push_back({derivative});
+    return one;
+  }
+
   std::vector<double>
   GaitProblem::to_x(const std::vector<double> &y) const
   {
     std::vector<double> x(y.size());
     for (std::size_t i = 0; i < y.size(); ++i)
-      x[i] = std::clamp(
-        variables_[i].from + y[i] * (variables_[i].to - variables_[i].from), variables_[i].from, variables_[i].to);
+      x[i] = std::clamp(variables_[i].from + y[i] * range(i), variables_[i].from, variables_[i].to);
     return x;
   }
 
@@ -121,40 +99,28 @@ namespace crawler
   {
     std::vector<double> y(x.size());
     for (std::size_t i = 0; i < x.size(); ++i)
-      y[i] = (x[i] - variables_[i].from) / (variables_[i].to - variables_[i].from);
+      y[i] = (x[i] - variables_[i].from) / range(i);
     return y;
   }
 
-  /// Objective in the user's units, to be maximised; of the cost of transport its inverse.
+  /// Objective in the user's units, to be maximised, and its gradient if the gait has those of its numbers.
   double
-  GaitProblem::objective(const GaitValues &values, std::vector<double> *const gradient) const
+  GaitProblem::objective(const GaitValues &values, std::vector<double> &gradient) const
   {
-    const double sign = sign_of_direction(parameters_);
-    // f = sign D^1 W^power T^power
-    const GaitNumber::Index first = parameters_.objective == "speed" ? GaitNumber::speed : GaitNumber::displacement;
-    const bool is_merit           = parameters_.objective.ends_with("merit");
-    const GaitNumber::Index energy =
-      parameters_.objective == "periodic merit" ? GaitNumber::dissipation : GaitNumber::work;
-    const double power_of_W = is_merit                                       ? -0.5
-                              : parameters_.objective == "cost of transport" ? -1.
-                                                                             : 0.,
-                 power_of_T = is_merit ? -0.5 : 0.;
-    const double D = values.numbers[first], W = values.numbers[energy], T = values.numbers[GaitNumber::friction_time];
-    if (power_of_W != 0. && !(W > 0.))
+    const GaitObjective &f = objective_;
+    const double D = values.numbers[f.motion], E = values.numbers[f.energy];
+    if (f.power_of_energy != 0. && !(E > 0.))
       return NAN;
     const double by_D =
-      sign * (power_of_W != 0. ? std::pow(W, power_of_W) : 1.) * (power_of_T != 0. ? std::pow(T, power_of_T) : 1.);
-    if (gradient != nullptr)
+      f.sign * std::pow(E, f.power_of_energy) * std::pow(values.numbers[GaitNumber::friction_time], f.power_of_time);
+    gradient = values.gradients[f.motion];
+    for (std::size_t i = 0; i < gradient.size(); ++i)
     {
-      gradient->assign(variables_.size(), 0.);
-      for (std::size_t i = 0; i < variables_.size(); ++i)
-      {
-        (*gradient)[i] = by_D * values.gradients[first][i];
-        if (power_of_W != 0.)
-          (*gradient)[i] += by_D * D * power_of_W / W * values.gradients[energy][i];
-        if (power_of_T != 0.)
-          (*gradient)[i] += by_D * D * power_of_T / T * values.gradients[GaitNumber::friction_time][i];
-      }
+      gradient[i] *= by_D;
+      for (const auto &[number, power] :
+           {std::pair(f.energy, f.power_of_energy), std::pair(GaitNumber::friction_time, f.power_of_time)})
+        if (power != 0.)
+          gradient[i] += by_D * D * power / values.numbers[number] * values.gradients[number][i];
     }
     return by_D * D;
   }
@@ -163,132 +129,73 @@ namespace crawler
   GaitProblem::pulling_places(const std::vector<double> &forces) const
   {
     std::vector<std::size_t> places;
-    if (!forces.empty() && !block_limits_.empty() && block_limits_.front().values == &GaitValues::strain)
-      for (std::size_t p = 0; p < block_sizes_.front(); ++p)
-        if (forces[number_limits_.size() + p] != 0.)
+    if (!forces.empty() && limits_.size() > n_numbers_ && limits_[n_numbers_].values == &GaitValues::strain)
+      for (std::size_t p = 0; p < limits_[n_numbers_].size; ++p)
+        if (forces[n_numbers_ + p] != 0.)
           places.push_back(p);
     return places;
   }
 
-  GaitProblem::Violation
-  GaitProblem::set_constraints(const GaitValues &values, const bool with_gradients)
+  void
+  GaitProblem::set_constraints(const GaitValues &values, GaitRecord &record)
   {
-    Violation worst;
-    const auto see = [&worst](const double excess, const std::string &name) {
-      if (excess > worst.size)
-        worst = {excess, name};
+    const auto see = [&](const double excess, const std::string &name) {
+      if (excess > record.violation)
+      {
+        record.violation   = excess;
+        record.worst_limit = name;
+      }
     };
     std::size_t next = 0;
-    for (const NumberLimit &limit : number_limits_)
+    for (const Limit &limit : limits_)
     {
-      latest_.constraints[next] = values.numbers[limit.number] / limit.value;
-      see(latest_.constraints[next] - 1., limit.name);
-      ++next;
-      if (!with_gradients)
-        continue;
-      latest_.rows.push_back(values.gradients[limit.number]);
-      for (std::size_t i = 0; i < latest_.rows.back().size(); ++i)
-        latest_.rows.back()[i] *= (variables_[i].to - variables_[i].from) / limit.value;
-    }
-    for (const BlockLimit &limit : block_limits_)
-    {
-      const LimitedValues &own = values.*limit.values;
+      const LimitedValues own = limit.of(values);
+      for (std::size_t i = 0; i < own.gradients.size(); ++i)
+        for (std::size_t p = 0; p < limit.size; ++p)
+          latest_.jacobian[i][next + p] = own.gradients[i][p] * (range(i) / limit.scale);
       for (const double value : own.values)
       {
         latest_.constraints[next++] = value / limit.scale;
         see((value - limit.wanted_upper) / limit.scale, limit.upper_name);
         see((limit.wanted_lower - value) / limit.scale, limit.lower_name);
       }
-      latest_.blocks.push_back(own.jacobian);
     }
-    return worst;
   }
 
   const GaitProblem::Point &
   GaitProblem::at(const std::vector<double> &y, const bool with_gradients, const std::vector<double> &forces)
   {
-    if (stops_())
+    if (stops_ && stops_(*this))
       throw GaitModel::Interrupted();
     const std::vector<std::size_t> places = pulling_places(forces);
     if (y == latest_y_ && ((latest_has_gradients_ && std::ranges::includes(latest_places_, places)) || !with_gradients))
       return latest_;
-    const bool is_new           = y != latest_y_;
-    const std::vector<double> x = to_x(y);
-    const GaitValues values     = model_.evaluate(x, with_gradients, places);
-    latest_y_                   = y;
-    latest_has_gradients_       = with_gradients;
-    latest_places_              = places;
-    latest_                     = {};
-    latest_.gradient.assign(y.size(), 0.);
-    latest_.constraints.assign(lower_.size(), 0.);
-    std::vector<double> gradient;
-    const bool is_possible = values.problem.empty();
-    const double f         = is_possible ? objective(values, with_gradients ? &gradient : nullptr) : NAN;
-    Violation violation;
-    latest_.problem = !is_possible ? values.problem : with_gradients ? values.problem_of_gradients : "";
-    if (!std::isfinite(f))
-      latest_.objective = refused;
-    else
+    const bool is_new        = y != latest_y_;
+    const GaitValues values  = model_.evaluate(to_x(y), with_gradients, places);
+    latest_y_                = y;
+    latest_has_gradients_    = with_gradients;
+    latest_places_           = places;
+    constexpr double refused = 1e10;
+    latest_                  = {refused, {}, std::vector<double>(lower_.size()), {}, values.problem};
+    if (with_gradients)
+      latest_.jacobian.assign(y.size(), latest_.constraints);
+    if (with_gradients && values.problem.empty())
+      latest_.problem = values.problem_of_gradients;
+    const double f = values.problem.empty() ? objective(values, latest_.gradient) : NAN;
+    GaitRecord record{to_x(y), objective_.turned(f), values.numbers, 0., values.problem};
+    if (std::isfinite(f))
     {
       latest_.objective = -f / scale_;
-      if (with_gradients)
-        for (std::size_t i = 0; i < y.size(); ++i)
-          latest_.gradient[i] = -gradient[i] * (variables_[i].to - variables_[i].from) / scale_;
-      violation = set_constraints(values, with_gradients);
+      for (std::size_t i = 0; i < latest_.gradient.size(); ++i)
+        latest_.gradient[i] = -latest_.gradient[i] * range(i) / scale_;
+      set_constraints(values, record);
     }
+    else
+      latest_.gradient.clear();
+    latest_.gradient.resize(y.size());
     if (is_new)
-    {
-      const double shown = parameters_.objective == "cost of transport" ? 1. / f : sign_of_direction(parameters_) * f;
-      records_.push_back({x, shown, values.numbers, violation.size, values.problem, violation.of});
-    }
+      records_.push_back(std::move(record));
     return latest_;
-  }
-
-  void
-  GaitProblem::apply_jacobian(const Point &point, const std::vector<double> &v, std::vector<double> &result) const
-  {
-    std::size_t next    = 0;
-    const std::size_t n = v.size();
-    result.assign(lower_.size(), 0.);
-    for (const auto &row : point.rows)
-    {
-      for (std::size_t i = 0; i < n; ++i)
-        result[next] += row[i] * v[i];
-      ++next;
-    }
-    next = number_limits_.size();
-    for (std::size_t b = 0; b < point.blocks.size(); ++b)
-    {
-      std::vector<double> scaled(n);
-      for (std::size_t i = 0; i < n; ++i)
-        scaled[i] = v[i] * (variables_[i].to - variables_[i].from) / block_limits_[b].scale;
-      const std::vector<double> &rows = *point.blocks[b];
-      for (std::size_t p = 0; p < block_sizes_[b]; ++p, ++next)
-        for (std::size_t i = 0; i < n; ++i)
-          result[next] += rows[p * n + i] * scaled[i];
-    }
-  }
-
-  void
-  GaitProblem::apply_transposed(const Point &point, const std::vector<double> &v, std::vector<double> &result) const
-  {
-    const std::size_t n = variables_.size();
-    result.assign(n, 0.);
-    for (std::size_t r = 0; r < point.rows.size(); ++r)
-      for (std::size_t i = 0; i < n; ++i)
-        result[i] += v[r] * point.rows[r][i];
-    std::size_t next = number_limits_.size();
-    for (std::size_t b = 0; b < point.blocks.size(); ++b)
-    {
-      std::vector<double> sum(n);
-      const std::vector<double> &rows = *point.blocks[b];
-      for (std::size_t p = 0; p < block_sizes_[b]; ++p, ++next)
-        if (v[next] != 0.)
-          for (std::size_t i = 0; i < n; ++i)
-            sum[i] += v[next] * rows[p * n + i];
-      for (std::size_t i = 0; i < n; ++i)
-        result[i] += sum[i] * (variables_[i].to - variables_[i].from) / block_limits_[b].scale;
-    }
   }
 
   const GaitRecord &
@@ -314,14 +221,10 @@ namespace crawler
 
   const GaitRecord &
   GaitProblem::best_of(const std::span<const GaitRecord> records,
-                       const OptimizeParameters &parameters,
+                       const GaitObjective &objective,
                        const double admissible)
   {
-    const bool is_cost = parameters.objective == "cost of transport";
-    const double sign  = sign_of_direction(parameters);
-    const auto rank    = [&](const GaitRecord &record) {
-      return is_cost ? 1. / record.objective : sign * record.objective;
-    };
+    const auto rank        = [&](const GaitRecord &record) { return objective.turned(record.objective); };
     const GaitRecord *best = &records.front();
     for (const GaitRecord &record : records)
     {
@@ -352,13 +255,10 @@ namespace crawler
   {
     std::vector<GaitLimit> list;
     std::size_t next = 0;
-    for (const NumberLimit &limit : number_limits_)
-      list.push_back({limit.name, limit.value, std::max(multipliers[next++], 0.) * scale_ / limit.value});
-    for (std::size_t b = 0; b < block_limits_.size(); ++b)
+    for (const Limit &limit : limits_)
     {
-      const BlockLimit &limit = block_limits_[b];
       double of_lower = 0., of_upper = 0.;
-      for (std::size_t p = 0; p < block_sizes_[b]; ++p, ++next)
+      for (std::size_t p = 0; p < limit.size; ++p, ++next)
         (multipliers[next] > 0. ? of_upper : of_lower) += std::abs(multipliers[next]) * scale_ / limit.scale;
       if (limit.lower_name == limit.upper_name)
         list.push_back({limit.upper_name, limit.upper, of_lower + of_upper});

@@ -24,7 +24,6 @@ namespace crawler
     add_extremes(const std::string &name,
                  const GaitValues &here,
                  LimitedValues GaitValues::*block,
-                 const std::size_t n,
                  std::vector<Checked> &list)
     {
       const std::vector<double> &values = (here.*block).values;
@@ -32,16 +31,15 @@ namespace crawler
       for (const auto place : {least, most})
       {
         const auto p = static_cast<std::size_t>(place - values.begin());
-        list.push_back(
-          {fmt::format("{} {}", place == least ? "smallest" : "largest", name),
-           [=](const GaitValues &there) { return (there.*block).values[p]; },
-           [=](const GaitValues &there, const std::size_t i) { return (*(there.*block).jacobian)[p * n + i]; }});
+        list.push_back({fmt::format("{} {}", place == least ? "smallest" : "largest", name),
+                        [=](const GaitValues &there) { return (there.*block).values[p]; },
+                        [=](const GaitValues &there, const std::size_t i) { return (there.*block).gradients[i][p]; }});
       }
     }
 
-    /// Numbers that the study wants or limits, for @p n variables.
+    /// Numbers that the study wants or limits.
     std::vector<Checked>
-    numbers_to_check(const GaitValues &here, const GaitWishes &wishes, const std::size_t n)
+    numbers_to_check(const GaitValues &here, const GaitWishes &wishes)
     {
       std::vector<Checked> list;
       for (std::size_t k = 0; k < gait_numbers.size(); ++k)
@@ -50,11 +48,11 @@ namespace crawler
                           [k](const GaitValues &there) { return there.numbers[k]; },
                           [k](const GaitValues &there, const std::size_t i) { return there.gradients[k][i]; }});
       if (wishes.strain && std::ranges::find(here.strain_by_differences, true) == here.strain_by_differences.end())
-        add_extremes("strain", here, &GaitValues::strain, n, list);
+        add_extremes("strain", here, &GaitValues::strain, list);
       if (wishes.stress)
-        add_extremes("stress", here, &GaitValues::stress, n, list);
+        add_extremes("stress", here, &GaitValues::stress, list);
       if (wishes.stress_rate)
-        add_extremes("stress rate", here, &GaitValues::stress_rate, n, list);
+        add_extremes("stress rate", here, &GaitValues::stress_rate, list);
       return list;
     }
 
@@ -77,14 +75,13 @@ namespace crawler
   } // namespace
 
   std::optional<bool>
-  check_gradient(
-    GaitModel &model, const SceneFamily &family, const GaitWishes &wishes, const std::vector<double> &x, Log &log)
+  check_gradient(GaitModel &model, const std::vector<double> &x, Log &log)
   {
     const double noise = model.noise();
     const double step = noise > 0. ? 0.5 * std::cbrt(noise) : 1e-6, tolerance = noise > 0. ? 20. * noise / step : 1e-5;
     const GaitValues here = model.evaluate(x, /*with_gradients=*/true);
     here.require_start();
-    const std::vector<Checked> list = numbers_to_check(here, wishes, x.size());
+    const std::vector<Checked> list = numbers_to_check(here, model.wishes);
     std::vector<std::size_t> checked;
     for (std::size_t i = 0; i < x.size(); ++i)
       if (here.by_differences.empty() || !here.by_differences[i])
@@ -92,7 +89,7 @@ namespace crawler
       else
         log.line(fmt::format("{}: its derivatives are differences of simulations, since the adjoint does not cover it; "
                              "there is nothing to compare",
-                             family.variables[i].path));
+                             model.family.variables[i].path));
     if (checked.empty() || list.empty())
       return std::nullopt;
 
@@ -104,7 +101,7 @@ namespace crawler
     {
       std::vector<std::vector<double>> narrower(list.size(), std::vector<double>(x.size()));
       for (const std::size_t i : checked)
-        for (const auto &point : family.stencil(x, i, width))
+        for (const auto &point : model.family.stencil(x, i, width))
         {
           const GaitValues there = model.evaluate(point.x, /*with_gradients=*/false);
           if (!there.problem.empty())
@@ -114,7 +111,7 @@ namespace crawler
         }
       for (std::size_t c = 0; c < list.size(); ++c)
         if (const double deviation = deviation_of(
-              list[c], here, narrower[c], checked, [&](const std::size_t i) { return family.scale(x, i); });
+              list[c], here, narrower[c], checked, [&](const std::size_t i) { return model.family.scale(x, i); });
             deviation < deviations[c])
         {
           deviations[c]  = deviation;
@@ -129,8 +126,10 @@ namespace crawler
                            tolerance,
                            deviations[c] <= tolerance ? "allowed" : "allowed: they do NOT agree"));
       for (const std::size_t i : checked)
-        log.line(fmt::format(
-          "  {:<60} {:>17.10g} {:>17.10g}", family.variables[i].path, list[c].derivative(here, i), differences[c][i]));
+        log.line(fmt::format("  {:<60} {:>17.10g} {:>17.10g}",
+                             model.family.variables[i].path,
+                             list[c].derivative(here, i),
+                             differences[c][i]));
     }
     return std::ranges::max(deviations) <= tolerance;
   }

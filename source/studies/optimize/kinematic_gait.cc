@@ -34,9 +34,8 @@ namespace crawler
     class KinematicGait : public GaitModel
     {
     public:
-      KinematicGait(SceneFamily &family, const GaitWishes wishes, const std::vector<double> &start)
-        : family_(family)
-        , wishes_(wishes)
+      KinematicGait(SceneFamily &its_family, const std::vector<double> &start)
+        : GaitModel(its_family)
         , start_(start)
       {
         constexpr unsigned int most = 128;
@@ -48,45 +47,6 @@ namespace crawler
         while (refine(start))
           ;
         look_for_linearity(start);
-      }
-
-      GaitValues
-      evaluate(const std::vector<double> &x, const bool with_gradients, const std::vector<std::size_t> &) override
-      {
-        GaitValues result;
-        std::shared_ptr<const State> state;
-        Samples samples;
-        try
-        {
-          state             = linear_ ? linear_->state : std::make_shared<const State>(family_.parameters(x));
-          samples           = linear_ ? linear_samples(x) : sample(*state);
-          const auto values = grid_->values(samples.on_grid, state->body(*grid_));
-          if (!values)
-          {
-            result.problem = "the body inverts: the strain reaches -1";
-            return result;
-          }
-          result.numbers = numbers(*state, samples, *values);
-          if (const double efficiency = result.numbers[GaitNumber::efficiency]; efficiency > 1. + accurate_enough)
-          {
-            result.problem =
-              fmt::format("gait_efficiency: the gait efficiency is {:.8g}, but no gait can exceed 1", efficiency);
-            return result;
-          }
-          if (wishes_.strain)
-            result.strain.values = samples.limited;
-          if (wishes_.stress)
-            result.stress = family_.stress(x, /*rate=*/false, with_gradients);
-          if (wishes_.stress_rate)
-            result.stress_rate = family_.stress(x, /*rate=*/true, with_gradients);
-          if (with_gradients)
-            add_gradients(x, *state, samples, result);
-        }
-        catch (const InputError &error)
-        {
-          result.problem = error.what();
-        }
-        return result;
       }
 
       bool
@@ -107,7 +67,7 @@ namespace crawler
         std::optional<State> possible;
         try
         {
-          possible.emplace(family_.parameters(x));
+          possible.emplace(family.parameters(x));
         }
         catch (const InputError &) // inversion between the points of the grid
         {
@@ -136,7 +96,7 @@ namespace crawler
       std::pair<double, double>
       extreme_strains(const std::vector<double> &x) override
       {
-        const State state(family_.parameters(x));
+        const State state(family.parameters(x));
         const StrainExtremes extremes =
           find_extremes(*state.reduced.strain(), 1., 1., 16 * n_space_ + 1, 16 * n_time_ + 1);
         return {extremes.smallest.strain, extremes.largest.strain};
@@ -152,6 +112,27 @@ namespace crawler
       }
 
     private:
+      void
+      compute(const std::vector<double> &x,
+              const bool with_gradients,
+              const std::vector<std::size_t> &,
+              GaitValues &result) override
+      {
+        const auto state      = linear_ ? linear_->state : std::make_shared<const State>(family.parameters(x));
+        const Samples samples = linear_ ? linear_->at(x) : sample(*state);
+        const auto values     = grid_->values(samples.on_grid, state->body(*grid_));
+        if (!values)
+          throw InputError("the body inverts: the strain reaches -1");
+        result.numbers = numbers(*state, samples, *values);
+        if (const double efficiency = result.numbers[GaitNumber::efficiency]; efficiency > 1. + accurate_enough)
+          throw InputError(
+            fmt::format("gait_efficiency: the gait efficiency is {:.8g}, but no gait can exceed 1", efficiency));
+        if (wishes.strain)
+          result.strain.values = samples.limited;
+        if (with_gradients)
+          add_gradients(x, *state, samples, result);
+      }
+
       /// Scene of the family, with its reduced form.
       struct State
       {
@@ -211,7 +192,7 @@ namespace crawler
       sample(const State &state) const
       {
         Samples samples{grid_->sample(*state.reduced.strain()), {}};
-        if (!wishes_.strain)
+        if (!wishes.strain)
           return samples;
         std::vector<double> strain(n_limited_s_ + 1);
         const auto at = state.reduced.strain()->at(equal_parts(0., 1., n_limited_s_));
@@ -232,6 +213,87 @@ namespace crawler
         const unsigned int max_times = many ? 128 : 32, most = many ? 65536 : 4096, closer = many ? 64 : 8;
         n_limited_t_ = std::min(std::bit_ceil(GaussPanels::n_points * n_time_), max_times);
         n_limited_s_ = std::min(closer * GaussPanels::n_points * n_space_, most / n_limited_t_);
+      }
+
+      /// Strain that is linear in the variables: its values at some x, and its derivatives [variable].
+      struct Linear
+      {
+        std::vector<double> x;
+        std::shared_ptr<const State> state; ///< everything but the strain
+        Samples samples;
+        std::vector<Samples> slopes = {};
+
+        Samples
+        at(const std::vector<double> &other) const
+        {
+          Samples sum = samples;
+          for (std::size_t i = 0; i < x.size(); ++i)
+            if (other[i] != x[i])
+              sum.add(other[i] - x[i], slopes[i]);
+          return sum;
+        }
+
+        /// True if these samples of the strain elsewhere are those of at(), but for round-off.
+        bool
+        gives(const Samples &others, const std::vector<double> &other) const
+        {
+          constexpr double round_off = 1e-11;
+          const Samples guess        = at(other);
+          for (const auto member : {&StrainSamples::strain, &StrainSamples::rate})
+          {
+            const std::vector<double> &own = others.on_grid.*member, &first = samples.on_grid.*member,
+                                      &guessed = guess.on_grid.*member;
+            double size = 1e-3, largest = 0.;
+            for (std::size_t i = 0; i < own.size(); ++i)
+            {
+              size    = std::max({size, std::abs(own[i]), std::abs(first[i])});
+              largest = std::max(largest, std::abs(guessed[i] - own[i]));
+            }
+            if (largest > round_off * size)
+              return false;
+          }
+          return true;
+        }
+      };
+
+      /// Measures the derivatives of the strain at the start, and tests whether they hold for another strain, with all
+      /// variables changed; nothing if they do not. Where the body @p nearly_inverts only small changes are admissible,
+      /// and those to tamer gaits. Throws InputError if a changed strain is not admissible.
+      std::optional<Linear>
+      linear_about(const std::vector<double> &start, const bool nearly_inverts) const
+      {
+        const double step     = nearly_inverts ? 1e-4 : 1e-2;
+        const auto &variables = family.variables;
+        const auto n          = static_cast<double>(start.size());
+        const auto base       = std::make_shared<const State>(family.parameters(start));
+        Linear linear{start, base, sample(*base)};
+        // Small changes: at large values the strain may not be admissible.
+        const auto away = [&](const std::size_t i, const double part) {
+          const double range = variables[i].to - variables[i].from;
+          return part * range * (start[i] + part * range > variables[i].to ? -1. : 1.);
+        };
+        for (std::size_t i = 0; i < start.size(); ++i)
+        {
+          std::vector<double> x = start;
+          const double d        = away(i, step);
+          x[i] += d;
+          const State state(family.parameters(x));
+          if (!state.is_like(*base))
+            return std::nullopt;
+          Samples samples = sample(state);
+          samples.add(-1., linear.samples);
+          linear.slopes.emplace_back().add(1. / d, samples);
+        }
+        for (const double part : {0.31, 0.77})
+        {
+          std::vector<double> x = start;
+          for (std::size_t i = 0; i < x.size(); ++i)
+            x[i] = nearly_inverts ? std::clamp((1. - part) * x[i], variables[i].from, variables[i].to) // tamer
+                                  : x[i] + away(i, part / (3. * n) * (1. + 0.3 * std::sin(static_cast<double>(i))));
+          if (!linear.gives(sample(State(family.parameters(x))), x))
+            return std::nullopt;
+        }
+        return linear;
       }
 
       /// Removes all but one of the places where a linear strain is the same for all values of the variables, and thins
@@ -262,112 +324,27 @@ namespace crawler
         take(linear_->samples.limited);
         for (Samples &slope : linear_->slopes)
           take(slope.limited);
-        jacobian_.reset();
       }
 
-      /// True if the samples of the strain at @p x are those of linear_, but for round-off.
-      bool
-      are_linear(const Samples &samples, const std::vector<double> &x) const
-      {
-        constexpr double round_off = 1e-11;
-        const Samples guess        = linear_samples(x);
-        for (const auto member : {&StrainSamples::strain, &StrainSamples::rate})
-        {
-          const std::vector<double> &own = samples.on_grid.*member, &first = linear_->samples.on_grid.*member,
-                                    &guessed = guess.on_grid.*member;
-          double size = 1e-3, largest = 0.;
-          for (std::size_t i = 0; i < own.size(); ++i)
-          {
-            size    = std::max({size, std::abs(own[i]), std::abs(first[i])});
-            largest = std::max(largest, std::abs(guessed[i] - own[i]));
-          }
-          if (largest > round_off * size)
-            return false;
-        }
-        return true;
-      }
-
-      /// Sets linear_ if the strain is linear. Returns false if a changed strain is not admissible.
-      bool
-      measure_slopes(const std::vector<double> &start, const bool nearly_inverts)
-      {
-        const double step     = nearly_inverts ? 1e-4 : 1e-2;
-        const auto &variables = family_.variables;
-        const auto n          = static_cast<double>(start.size());
-        Linear linear{start, std::make_shared<const State>(family_.parameters(start)), {}, {}};
-        linear.samples  = sample(*linear.state);
-        const auto base = linear.state;
-        // Small changes: at large values the strain may not be admissible.
-        const auto away = [&](const std::size_t i, const double part) {
-          const double range = variables[i].to - variables[i].from;
-          return part * range * (start[i] + part * range > variables[i].to ? -1. : 1.);
-        };
-        try
-        {
-          const auto at = [&](const std::vector<double> &x, Samples &samples) {
-            const State state(family_.parameters(x));
-            samples = sample(state);
-            return state.is_like(*base);
-          };
-          for (std::size_t i = 0; i < start.size(); ++i)
-          {
-            std::vector<double> x = start;
-            const double d        = away(i, step);
-            x[i] += d;
-            Samples samples;
-            if (!at(x, samples))
-              return true;
-            samples.add(-1., linear.samples);
-            linear.slopes.emplace_back().add(1. / d, samples);
-          }
-          linear_ = std::move(linear);
-          for (const double part : {0.31, 0.77})
-          {
-            std::vector<double> x = start;
-            for (std::size_t i = 0; i < x.size(); ++i)
-              x[i] = nearly_inverts ? std::clamp((1. - part) * x[i], variables[i].from, variables[i].to) // tamer
-                                    : x[i] + away(i, part / (3. * n) * (1. + 0.3 * std::sin(static_cast<double>(i))));
-            Samples samples;
-            at(x, samples);
-            if (!are_linear(samples, x))
-            {
-              linear_.reset();
-              return true;
-            }
-          }
-        }
-        catch (const InputError &)
-        {
-          linear_.reset();
-          return false;
-        }
-        return true;
-      }
-
-      /// Measures the derivatives of the strain at the start, and tests whether they hold for another strain, with all
-      /// variables changed. Where the body nearly inverts only small changes are admissible, and those to tamer gaits.
+      /// Sets linear_ if the strain is linear, and chooses the places where it is limited.
       void
       look_for_linearity(const std::vector<double> &start)
       {
         linear_.reset();
-        jacobian_.reset();
         choose_limited_places(/*many=*/true);
-        if (!measure_slopes(start, /*nearly_inverts=*/false))
-          measure_slopes(start, /*nearly_inverts=*/true);
+        for (const bool nearly_inverts : {false, true})
+          try
+          {
+            linear_ = linear_about(start, nearly_inverts);
+            break;
+          }
+          catch (const InputError &) // a strain that is not admissible
+          {
+          }
         if (!linear_)
           choose_limited_places(/*many=*/false);
-        else if (wishes_.strain)
+        else if (wishes.strain)
           leave_out_places();
-      }
-
-      Samples
-      linear_samples(const std::vector<double> &x) const
-      {
-        Samples samples = linear_->samples;
-        for (std::size_t i = 0; i < x.size(); ++i)
-          if (x[i] != linear_->x[i])
-            samples.add(x[i] - linear_->x[i], linear_->slopes[i]);
-        return samples;
       }
 
       ByGaitNumber<double>
@@ -395,8 +372,6 @@ namespace crawler
       add_gradients(const std::vector<double> &x, const State &state, const Samples &samples, GaitValues &values)
       {
         constexpr double step = 1e-3;
-        for (auto &gradient : values.gradients)
-          gradient.assign(x.size(), 0.);
         std::vector<bool> only_strain(x.size(), true);
         std::vector<Samples> own_slopes; // unless the strain is linear
         if (!linear_)
@@ -405,9 +380,9 @@ namespace crawler
           for (std::size_t i = 0; i < x.size(); ++i)
           {
             ByGaitNumber<double> derivatives{};
-            for (const auto &point : family_.stencil(x, i, step))
+            for (const auto &point : family.stencil(x, i, step))
             {
-              const State there(family_.parameters(point.x));
+              const State there(family.parameters(point.x));
               const Samples its = sample(there);
               own_slopes[i].add(point.weight, its);
               only_strain[i] = only_strain[i] && there.is_like(state);
@@ -426,7 +401,7 @@ namespace crawler
         const std::vector<Samples> &slopes = linear_ ? linear_->slopes : own_slopes;
         const Units &units                 = state.reduced.units();
         const auto put = [&](const StrainFunctional::Number number, const GaitNumber::Index what, const double unit) {
-          if (!wishes_.numbers[what])
+          if (!wishes.numbers[what])
             return;
           const StrainSamples weights = grid_->weights(number, samples.on_grid, state.body(*grid_));
           for (std::size_t i = 0; i < x.size(); ++i)
@@ -440,43 +415,22 @@ namespace crawler
         put(StrainFunctional::positive_work, GaitNumber::positive_work, units.energy());
         put(StrainFunctional::dissipation, GaitNumber::dissipation, units.energy());
         put(StrainFunctional::mean_square, GaitNumber::mean_square, 1.);
-        if (!wishes_.strain)
-          return;
-        if (!linear_ || !jacobian_)
-        {
-          std::vector<double> rows(values.strain.values.size() * x.size());
-          for (std::size_t i = 0; i < x.size(); ++i)
-            for (std::size_t p = 0; p < values.strain.values.size(); ++p)
-              rows[p * x.size() + i] = slopes[i].limited[p];
-          jacobian_ = std::make_shared<const std::vector<double>>(std::move(rows));
-        }
-        values.strain.jacobian = jacobian_;
+        for (const Samples &slope : slopes) // empty if strains are not limited
+          values.strain.gradients.push_back(slope.limited);
       }
 
-      SceneFamily &family_;
-      const GaitWishes wishes_;
       const std::vector<double> start_;
       unsigned int n_space_ = 1, n_time_ = 1; ///< panels
       std::optional<StrainFunctional> grid_;
       unsigned int n_limited_s_ = 1,
                    n_limited_t_ = 1; ///< parts of body and duration; the strain is limited at their ends
-      /// Strain that is linear in the variables: its values at some x, and its derivatives [variable].
-      struct Linear
-      {
-        std::vector<double> x;
-        std::shared_ptr<const State> state; ///< everything but the strain
-        Samples samples;
-        std::vector<Samples> slopes;
-      };
       std::optional<Linear> linear_;
-      std::shared_ptr<const std::vector<double>> jacobian_; ///< Jacobian of the strain where it is limited, if it is
-                                                            ///< linear
     };
   } // namespace
 
   std::unique_ptr<GaitModel>
-  kinematic_gait(SceneFamily &family, const GaitWishes &wishes, const std::vector<double> &start)
+  kinematic_gait(SceneFamily &family, const std::vector<double> &start)
   {
-    return std::make_unique<KinematicGait>(family, wishes, start);
+    return std::make_unique<KinematicGait>(family, start);
   }
 } // namespace crawler

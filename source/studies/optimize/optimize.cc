@@ -79,10 +79,9 @@ namespace crawler
 
     /// Writes the optimum as a parameter file, and runs it in a folder of its own. Returns the summary of the run, and
     /// true if it ended as it should.
-    std::pair<std::string, bool>
+    std::pair<nlohmann::ordered_json, bool>
     run_optimum(OptimizeCases &cases, const StartResult &start, const StudyFolder &folder)
     {
-      const std::string effective = cases.effective(); // before its values are replaced
       const auto family           = cases.family(start.number_of_case);
       const Parameters parameters = family->parameters(start.best.x);
       const std::string number    = cases.are_several() ? fmt::format("-{}", start.number_of_case + 1) : "";
@@ -91,7 +90,7 @@ namespace crawler
       const fs::path file = folder.path / ("optimum" + number + ".prm"), place = folder.path / ("best" + number);
       write_file(file,
                  "# The best gait: what differs from the file that was optimised.\ninclude parameters.prm\n" +
-                   changes(entries, ParameterFile::from_text(effective, "parameters.prm")));
+                   changes(entries, ParameterFile::from_text(cases.effective(), "parameters.prm")));
       entries.set("Sweep/Axes", parameters.sweep.axes);
       CommandOptions one = folder.options;
       one.file           = file.string();
@@ -104,7 +103,8 @@ namespace crawler
       fs::create_directories(place);
       const bool is_good =
         run(MPI_COMM_SELF, one, read_file(MPI_COMM_SELF, one.file, one.overrides)) == ExitCode::finished;
-      return {fs::exists(place / "summary.json") ? read_whole_file(place / "summary.json") : "{}", is_good};
+      const std::string summary = fs::exists(place / "summary.json") ? read_whole_file(place / "summary.json") : "{}";
+      return {nlohmann::ordered_json::parse(summary), is_good};
     }
 
     struct Ending
@@ -200,28 +200,26 @@ namespace crawler
       const fs::path &path = folder.path;
       Log &log             = folder.log;
       memory.arrange(starts);
-      const OptimizeResults results(cases.names(), memory.starts());
+      OptimizeResults results(cases.names(), memory.starts());
       const auto n_neighbours =
         static_cast<std::size_t>(std::ranges::count_if(starts, [](const StartName &one) { return one.neighbour > 0; }));
       for (const auto &[file, group] : {std::pair(OptimizeMemory::evaluations_file, OptimizeMemory::evaluations_group),
                                         std::pair(OptimizeMemory::file, OptimizeMemory::group)})
         write_table_csv(MPI_COMM_SELF, path / file, group, (path / file).replace_extension("csv"));
-      std::vector<std::string> summaries;
       bool runs_are_good = true;
       for (const std::size_t best : results.best)
       {
         const auto [summary, is_good] = run_optimum(cases, results.starts[best], folder);
-        summaries.push_back(summary);
+        results.runs.push_back(summary);
         runs_are_good = runs_are_good && is_good;
       }
-      write_file(path / "optima.csv", csv(optimum_table(results, path, summaries)));
+      write_file(path / "optima.csv", csv(optimum_table(results, path)));
       const Ending end         = ending_of(results, runs_are_good, stop, clock);
       const std::string status = !stop.empty() ? "stopped" : end.code == ExitCode::finished ? "finished" : "failed";
       const double seconds     = clock.seconds(); // without pictures
-      write_file(
-        path / "summary.json",
-        optimize_json(results, summaries, status, end.reason, end.warning, seconds, folder.options.command_line));
-      for (const std::string &line : in_words(results, cases, summaries))
+      write_file(path / "summary.json",
+                 optimize_json(results, status, end.reason, end.warning, seconds, folder.options.command_line));
+      for (const std::string &line : in_words(results, cases))
         log.line(line);
       if (!results.best.empty())
         draw("optimize", path, log);
@@ -245,7 +243,7 @@ namespace crawler
       {
         if (accuracy)
           scenes->form.declarations.set("Accuracy", to_text(*accuracy));
-        model = make_gait_model(*scenes, x, []() { return false; });
+        model = make_gait_model(*scenes, x);
       }
     };
 
@@ -269,12 +267,11 @@ namespace crawler
       {
         CaseStart start(cases, number, std::min(accuracy, accurate));
         const SceneFamily &family = *start.scenes;
-        const auto wishes         = GaitProblem::wishes(start.scenes->form.parameters.optimize);
         if (number == 0)
           introduce(cases, *start.model, {}, log);
         if (cases.are_several())
           log.line("Case " + cases.in_words(number));
-        auto result = check_gradient(*start.model, family, wishes, start.x, log);
+        auto result = check_gradient(*start.model, start.x, log);
         if (!result)
         {
           for (std::size_t i = 0; i < start.x.size(); ++i)
@@ -283,7 +280,7 @@ namespace crawler
             start.x[i] += start.x[i] + shift <= family.variables[i].to ? shift : -shift;
           }
           log.line(fmt::format("Near the start, with all variables {:g} % of their size away:", 100. * beside));
-          result = check_gradient(*start.model, family, wishes, start.x, log);
+          result = check_gradient(*start.model, start.x, log);
         }
         agrees = agrees && result.value_or(true);
         start.scenes->form.declarations.set("Accuracy", to_text(accuracy));
@@ -295,7 +292,7 @@ namespace crawler
   ExitCode
   optimize(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
   {
-    StudyClock clock("Optimize");
+    StudyClock clock;
     Log log(rank_of(communicator) == 0, options);
     OptimizeCases cases(communicator, file);
     if (options.check_gradient)
@@ -315,7 +312,7 @@ namespace crawler
       if (memory->starts().empty())
         remove_optima(folder.path);
     });
-    clock.set_limit(cases.parameters().optimize.time_limit);
+    clock.set_limit(cases.parameters().optimize.time_limit, "Optimize/Time limit");
     const SearchesMade searches =
       make_searches(communicator, cases, memory.get(), folder, [&]() { return clock.is_over(); });
     const std::string stop = clock.reason(communicator, searches.are_whole);
@@ -340,14 +337,11 @@ namespace crawler
         const CaseStart start(cases, number);
         if (number == 0)
           introduce(cases, *start.model, cases.notes(file), log);
-        GaitProblem problem(
-          *start.model, start.scenes->form.parameters.optimize, start.scenes->variables, start.x, []() {
-            return false;
-          });
+        GaitProblem problem(*start.model, start.scenes->form.parameters.optimize, start.x);
         const GaitRecord record = problem.record(problem.to_y(start.x));
         log.line(fmt::format("  The start{}: {} {:.6g}, which {}.",
                              cases.are_several() ? " with " + cases.in_words(number) : "",
-                             cases.names().objective,
+                             cases.names().objective.name,
                              record.objective,
                              record.violation <= problem.admissible()
                                ? "is within all limits"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/parameters/axis.h>
-#include <crawler/studies/core/study.h>
 #include <crawler/studies/optimize/optimize_cases.h>
 
 #include <fmt/format.h>
@@ -31,22 +30,15 @@ namespace crawler
   } // namespace
 
   OptimizeCases::OptimizeCases(MPI_Comm communicator, const ParameterFile &file)
-    : file_form_(file)
+    : points_(communicator, file, /*may_be_one=*/true)
   {
-    if (!trimmed(parameters().sweep.axes).empty())
-      points_ = std::make_unique<SweepPoints>(communicator, file);
-    names_.objective = parameters().optimize.objective;
-    names_.unit      = names_.objective == "displacement"    ? "length"
-                       : names_.objective == "speed"         ? "length/time"
-                       : names_.objective.ends_with("merit") ? "1"
-                                                             : "force";
+    names_.objective = objective_of(parameters().optimize);
     file.placing_errors([&]() {
-      if (points_)
-        for (const SweepAxis &axis : points_->design().axes())
-        {
-          require_admissible(axis.entry);
-          names_.axes.push_back(axis.entry);
-        }
+      for (const SweepAxis &axis : points_.design().axes())
+      {
+        require_admissible(axis.entry);
+        names_.axes.push_back(axis.entry);
+      }
       for (unsigned long number = 0; number < size(); ++number)
         try
         {
@@ -74,12 +66,12 @@ namespace crawler
     };
     OptimizeNames::Case &its = names_.cases.emplace_back();
     for (std::size_t i = 0; i < names_.axes.size(); ++i)
-      its.values.push_back(points_->design().value(i, number));
+      its.values.push_back(points_.design().value(i, number));
     const auto scenes                 = family(number);
     const Declarations &entries       = scenes->form.declarations;
     const OptimizeParameters &problem = scenes->form.parameters.optimize;
     scenes->form.parameters.create_scene();
-    its.sign = problem.direction == "forward" ? 1. : -1.;
+    its.objective = objective_of(problem);
     for (const Variable &variable : scenes->variables)
     {
       its.paths.push_back(variable.path);
@@ -89,13 +81,6 @@ namespace crawler
     for (const LimitEntry &limit : limit_entries)
       if (problem.*limit.value)
         add(names_.limits, limit.name);
-  }
-
-  std::unique_ptr<SceneFamily>
-  OptimizeCases::family(const unsigned long number)
-  {
-    Form &form = points_ ? points_->form(number) : file_form_;
-    return std::make_unique<SceneFamily>(form);
   }
 
   std::string
@@ -110,18 +95,10 @@ namespace crawler
   std::vector<std::string>
   OptimizeCases::notes(const ParameterFile &file)
   {
-    VariedEntries varied = points_ ? points_->varied() : VariedEntries();
+    VariedEntries varied = points_.varied();
     const auto first     = family(0);
     for (const Variable &variable : first->variables)
       varied.paths.push_back(variable.path);
-    return notes_on_entries(file, declarations(), "optimize", varied);
-  }
-
-  SweepInputs
-  OptimizeCases::inputs() const
-  {
-    SweepInputs inputs = points_ ? sweep_inputs(*points_) : SweepInputs();
-    inputs.effective   = without_comments(effective());
-    return inputs;
+    return notes_on_entries(file, points_.declarations(), "optimize", varied);
   }
 } // namespace crawler

@@ -92,7 +92,7 @@ namespace crawler
       }
       if (std::isnan(record.x.front()))
         record.x.clear();
-      fields.number({"objective", names.unit, names.objective}, record.objective);
+      fields.number({"objective", names.objective.unit, names.objective.name}, record.objective);
       for (std::size_t i = 0; i < gait_numbers.size(); ++i)
         fields.number({gait_numbers[i].column, gait_numbers[i].unit, ""}, record.numbers[i]);
       fields.number({"violation", "1", "excess over the limit that is exceeded most, relative to it"},
@@ -223,6 +223,8 @@ namespace crawler
     , folder_(folder)
     , table_(table_of_starts(names_))
     , plan_{0, known_index(), cases.inputs(), cases.effective()}
+    , start_rows_{file, group, table_.written_columns()}
+    , evaluation_rows_{evaluations_file, evaluations_group, evaluation_columns(names_)}
   {
     const auto done = begin_or_resume(folder, table_, parameter_file, plan_);
     if (std::ranges::count(done, true) > 0)
@@ -265,7 +267,8 @@ namespace crawler
   OptimizeMemory::keep(StartResult start)
   {
     const bool is_new = std::erase_if(starts_, [&](const StartName &one) { return one == start; }) == 0;
-    const bool fits   = n_starts_ < max_starts_ && n_evaluations_ + start.records.size() <= max_evaluations_;
+    const bool fits =
+      start_rows_.n < start_rows_.max && evaluation_rows_.n + start.records.size() <= evaluation_rows_.max;
     starts_.push_back(std::move(start));
     if (is_new && fits)
       write(starts_.back());
@@ -282,51 +285,59 @@ namespace crawler
         arranged.push_back(*start);
     starts_ = std::move(arranged);
     write_all(/*with_room=*/false);
-    start_rows_.reset();
-    evaluation_rows_.reset();
+    start_rows_.rows.reset();
+    evaluation_rows_.rows.reset();
+  }
+
+  void
+  OptimizeMemory::open(Rows &rows, const std::string &ending) const
+  {
+    rows.rows = std::make_unique<RowFile>(MPI_COMM_SELF, folder_.path / (rows.file + ending), rows.group, rows.columns);
+  }
+
+  void
+  OptimizeMemory::append(Rows &rows, const std::span<const RowFile::Row> more)
+  {
+    rows.rows->write(rows.n, more);
+    rows.n += more.size();
   }
 
   void
   OptimizeMemory::write_all(const bool with_room)
   {
-    constexpr unsigned long min_starts = 16, min_evaluations = 1024;
-    start_rows_.reset();
-    evaluation_rows_.reset();
-    unsigned long n = 0;
+    const std::string fresh = ".part"; // new files are written beside the former ones, so that a kill loses nothing
+    unsigned long n         = 0;
     for (const StartResult &start : starts_)
       n += start.records.size();
-    max_starts_      = starts_.size() + (with_room ? std::max(starts_.size(), min_starts) : 0);
-    max_evaluations_ = n + (with_room ? std::max(n, min_evaluations) : 0);
-    plan_.n          = max_starts_;
-    const std::vector<RowFile::Column> written = evaluation_columns(names_);
-    std::vector<RowFile::Column> columns       = written;
+    const auto with_more = [&](const unsigned long own, const unsigned long least) {
+      return own + (with_room ? std::max(own, least) : 0);
+    };
+    start_rows_.max = plan_.n            = with_more(starts_.size(), 16);
+    evaluation_rows_.max                 = with_more(n, 1024);
+    PointTable table                     = table_;
+    std::vector<RowFile::Column> columns = evaluation_rows_.columns;
     columns.insert(columns.begin(), index_column);
-    // New files are written beside the former ones, so that a kill loses nothing.
-    const std::string fresh = ".part";
-    PointTable table        = table_;
     table.file += fresh;
     create_table(folder_, table, plan_);
     RowFile::create(folder_.path / (evaluations_file + fresh),
                     evaluations_group,
                     columns,
-                    max_evaluations_,
+                    evaluation_rows_.max,
                     provenance(plan_.effective, folder_.options.command_line),
                     known_index());
-    const auto open = [&](const std::string &end) {
-      start_rows_ =
-        std::make_unique<RowFile>(MPI_COMM_SELF, folder_.path / (file + end), group, table_.written_columns());
-      evaluation_rows_ =
-        std::make_unique<RowFile>(MPI_COMM_SELF, folder_.path / (evaluations_file + end), evaluations_group, written);
-    };
-    open(fresh);
-    n_starts_ = n_evaluations_ = 0;
+    for (Rows *const rows : {&evaluation_rows_, &start_rows_})
+    {
+      rows->n = 0;
+      open(*rows, fresh);
+    }
     for (const StartResult &start : starts_)
       write(start);
-    start_rows_.reset();
-    evaluation_rows_.reset();
-    for (const std::string &name : {evaluations_file, file})
-      rename_whole(folder_.path / (name + fresh), folder_.path / name);
-    open("");
+    for (Rows *const rows : {&evaluation_rows_, &start_rows_})
+    {
+      rows->rows.reset();
+      rename_whole(folder_.path / (rows->file + fresh), folder_.path / rows->file);
+      open(*rows, "");
+    }
   }
 
   void
@@ -335,14 +346,12 @@ namespace crawler
     std::vector<RowFile::Row> rows;
     for (const GaitRecord &record : start.records)
       rows.push_back(evaluation(names_, start, static_cast<double>(rows.size()), shown(record)).values);
-    evaluation_rows_->write(n_evaluations_, rows);
+    append(evaluation_rows_, rows);
     StartResult written = start;
     written.best        = shown(start.best);
     std::size_t n       = rows.size();
     RowFields fields;
     exchange(fields, names_, written, n);
-    start_rows_->write(n_starts_, {{fields.values}});
-    ++n_starts_;
-    n_evaluations_ += rows.size();
+    append(start_rows_, {{fields.values}});
   }
 } // namespace crawler

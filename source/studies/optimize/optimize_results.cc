@@ -28,8 +28,7 @@ namespace crawler
     , starts(std::move(its_starts))
   {
     const auto value = [&](const std::size_t i) {
-      const double f = starts[i].best.objective;
-      return names.objective == "cost of transport" ? 1. / f : names.cases[starts[i].number_of_case].sign * f;
+      return names.cases[starts[i].number_of_case].objective.turned(starts[i].best.objective);
     };
     const auto is_better = [&](const std::size_t i, const std::size_t j) {
       if (starts[i].is_admissible() != starts[j].is_admissible())
@@ -48,9 +47,7 @@ namespace crawler
   }
 
   Table
-  optimum_table(const OptimizeResults &results,
-                const std::filesystem::path &folder,
-                const std::vector<std::string> &summaries)
+  optimum_table(const OptimizeResults &results, const std::filesystem::path &folder)
   {
     const RowReader reader(MPI_COMM_SELF, folder / OptimizeMemory::file, OptimizeMemory::group);
     Table table;
@@ -67,8 +64,8 @@ namespace crawler
       }
     const auto add = [&](const char *name, const char *unit, const char *description, const char *place) {
       std::vector<double> values;
-      for (const std::string &summary : summaries)
-        values.push_back(number_at(Json::parse(summary), place));
+      for (const Json &run : results.runs)
+        values.push_back(number_at(run, place));
       table.push_back({name, unit, description, values});
     };
     add("displacement_error",
@@ -88,14 +85,13 @@ namespace crawler
 
   std::string
   optimize_json(const OptimizeResults &results,
-                const std::vector<std::string> &summaries,
                 const std::string &status,
                 const std::string &reason,
                 const std::string &message,
                 const double seconds,
                 const std::string &command_line)
   {
-    Json all = summaries.empty() ? Json::object() : Json::parse(summaries.back());
+    Json all = results.runs.empty() ? Json::object() : results.runs.back();
     if (!reason.empty())
     {
       all["status"]  = status;
@@ -104,7 +100,7 @@ namespace crawler
     }
     Json own = {{"status", status},
                 {"reason", reason.empty() ? Json() : Json(reason)},
-                {"objective", results.names.objective},
+                {"objective", results.names.objective.name},
                 {"starts", results.starts.size()},
                 {"seconds", seconds},
                 {"command_line", command_line},
@@ -132,14 +128,11 @@ namespace crawler
         one["variables"][its.paths[k]] = start.best.x[k];
       for (const GaitLimit &limit : start.limits)
         one["limits"][limit.name] = {{"value", limit.value}, {"multiplier", limit.multiplier}};
-      if (i < summaries.size())
-      {
-        const Json run = Json::parse(summaries[i]);
-        for (const char *key : {"displacement", "displacement_error", "stress_power"})
-          one[key] = run.value(key, Json());
-        one["efficiency"]        = number_at(run, "/gait/efficiency");
-        one["stride_efficiency"] = number_at(run, "/gait/stride_efficiency");
-      }
+      const Json &run = results.runs[i];
+      for (const char *key : {"displacement", "displacement_error", "stress_power"})
+        one[key] = run.value(key, Json());
+      one["efficiency"]        = number_at(run, "/gait/efficiency");
+      one["stride_efficiency"] = number_at(run, "/gait/stride_efficiency");
       own["optima"].push_back(one);
     }
     all["optimize"] = own;
@@ -147,7 +140,7 @@ namespace crawler
   }
 
   std::vector<std::string>
-  in_words(const OptimizeResults &results, const OptimizeCases &cases, const std::vector<std::string> &summaries)
+  in_words(const OptimizeResults &results, const OptimizeCases &cases)
   {
     constexpr std::size_t max_variables = 12;
     constexpr double near_inversion     = 0.02;
@@ -158,32 +151,28 @@ namespace crawler
       const OptimizeNames::Case &its = results.names.cases[start.number_of_case];
       lines.push_back(fmt::format(
         "Best {}{}: {:.8g}{}{}{}",
-        results.names.objective,
+        results.names.objective.name,
         cases.are_several() ? " with " + cases.in_words(start.number_of_case) : "",
         start.best.objective,
-        cases.parameters().units.behind(results.names.unit),
+        cases.parameters().units.behind(results.names.objective.unit),
         start.is_admissible() ? ""
                               : fmt::format(" ({} is EXCEEDED, by {:.2g} %: no gait within all limits was found)",
                                             start.best.worst_limit,
                                             100. * start.best.violation),
         start.has_converged ? "" : fmt::format(" (the optimiser did not converge: {})", start.message)));
-      if (i < summaries.size())
-      {
-        const bool is_stride = results.names.objective == "periodic merit";
-        const double efficiency =
-          number_at(Json::parse(summaries[i]), is_stride ? "/gait/stride_efficiency" : "/gait/efficiency");
-        if (std::isfinite(efficiency))
-          lines.push_back(fmt::format("  efficiency {:.0f} % of the upper bound for this {} and these strains{}",
-                                      100. * efficiency,
-                                      is_stride ? "dissipation" : "work",
-                                      is_stride ? ", in the last stride" : ""));
-        const double stretch = number_at(Json::parse(summaries[i]), "/min_stretch/value");
-        const bool has_own = std::ranges::find(start.limits, "Smallest strain", &GaitLimit::name) != start.limits.end();
-        if (stretch < near_inversion && !has_own)
-          lines.push_back(fmt::format("  Here the body is compressed to a stretch of {:.2g}: inversion holds the gait "
-                                      "back, not a limit that was set. Optimize/Smallest strain sets one",
-                                      stretch));
-      }
+      const bool is_stride    = results.names.objective.energy == GaitNumber::dissipation;
+      const double efficiency = number_at(results.runs[i], is_stride ? "/gait/stride_efficiency" : "/gait/efficiency");
+      if (std::isfinite(efficiency))
+        lines.push_back(fmt::format("  efficiency {:.0f} % of the upper bound for this {} and these strains{}",
+                                    100. * efficiency,
+                                    is_stride ? "dissipation" : "work",
+                                    is_stride ? ", in the last stride" : ""));
+      const double stretch = number_at(results.runs[i], "/min_stretch/value");
+      const bool has_own   = std::ranges::find(start.limits, "Smallest strain", &GaitLimit::name) != start.limits.end();
+      if (stretch < near_inversion && !has_own)
+        lines.push_back(fmt::format("  Here the body is compressed to a stretch of {:.2g}: inversion holds the gait "
+                                    "back, not a limit that was set. Optimize/Smallest strain sets one",
+                                    stretch));
       for (std::size_t k = 0; k < std::min(its.paths.size(), max_variables); ++k)
         lines.push_back(fmt::format("  {} = {:.8g}", its.paths[k], start.best.x[k]));
       if (its.paths.size() > max_variables)

@@ -37,13 +37,13 @@ namespace crawler
       const OptimizeParameters wishes = family->form.parameters.optimize;
       try
       {
-        const auto model = make_gait_model(*family, x, []() { return false; });
-        GaitProblem problem(*model, wishes, variables, x, []() { return false; });
+        const auto model = make_gait_model(*family, x);
+        GaitProblem problem(*model, wishes, x);
         const GaitRecord record = problem.record(problem.to_y(x));
         if (!record.problem.empty() || record.violation > problem.admissible())
           return std::nullopt;
         const std::vector<GaitRecord> both = {own.best, record};
-        const bool is_better               = &GaitProblem::best_of(both, wishes, problem.admissible()) == &both[1] &&
+        const bool is_better = &GaitProblem::best_of(both, objective_of(wishes), problem.admissible()) == &both[1] &&
                                (!own.is_admissible() || std::abs(record.objective - own.best.objective) >
                                                           more * problem.admissible() * std::abs(own.best.objective));
         return is_better ? std::optional(record) : std::nullopt;

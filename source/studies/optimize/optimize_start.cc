@@ -32,10 +32,7 @@ namespace crawler
     };
 
     std::vector<LimitedExtreme>
-    limited_extremes(const OptimizeParameters &wanted,
-                     GaitModel &model,
-                     SceneFamily &family,
-                     const std::vector<double> &x)
+    limited_extremes(const OptimizeParameters &wanted, GaitModel &model, const std::vector<double> &x)
     {
       std::vector<LimitedExtreme> list;
       const auto add = [&](std::optional<double> OptimizeParameters::*limit, const double value) {
@@ -49,9 +46,9 @@ namespace crawler
         add(&OptimizeParameters::largest_strain, largest);
       }
       if (wanted.largest_stress)
-        add(&OptimizeParameters::largest_stress, family.largest_stress(x, /*rate=*/false));
+        add(&OptimizeParameters::largest_stress, model.family.largest_stress(x, /*rate=*/false));
       if (wanted.largest_stress_rate)
-        add(&OptimizeParameters::largest_stress_rate, family.largest_stress(x, /*rate=*/true));
+        add(&OptimizeParameters::largest_stress_rate, model.family.largest_stress(x, /*rate=*/true));
       return list;
     }
 
@@ -90,6 +87,7 @@ namespace crawler
         , stops_(stops)
         , wanted_(family.form.parameters.optimize)
         , parameters_(wanted_)
+        , objective_(objective_of(wanted_))
         , start_(x)
         , x_(x)
       {
@@ -165,7 +163,7 @@ namespace crawler
             return; // tighter limits would not help
           if (is_fine && !is_rough)
           {
-            const auto extremes = limited_extremes(wanted_, *model, family_, x_);
+            const auto extremes = limited_extremes(wanted_, *model, x_);
             if (!tighten(parameters_, wanted_, extremes, std::min(promised, result_.admissible)))
             {
               for (const LimitedExtreme &one : extremes)
@@ -185,20 +183,17 @@ namespace crawler
       improve(GaitModel &model, const bool is_rough)
       {
         constexpr double roughly = 1e-3, max_unused = 0.01;
-        const GaitProblem *current = nullptr;
-        const auto stops           = [&]() {
-          if (current != nullptr)
-            see(*current);
+        const auto stops = [&](const GaitProblem &so_far) {
+          see(so_far);
           return stops_();
         };
-        GaitProblem problem(model, wanted_, family_.variables, x_, stops, &parameters_);
-        current         = &problem;
+        GaitProblem problem(model, wanted_, x_, stops, &parameters_);
         const auto keep = [&](const GaitRecord *const optimum) {
           result_.records.insert(result_.records.end(), problem.records().begin(), problem.records().end());
           result_.best =
             optimum != nullptr
               ? *optimum
-              : GaitProblem::best_of(std::span(result_.records).subspan(comparable_), wanted_, problem.admissible());
+              : GaitProblem::best_of(std::span(result_.records).subspan(comparable_), objective_, problem.admissible());
         };
         if (multipliers_.size() != problem.lower().size())
           multipliers_.clear();
@@ -240,9 +235,7 @@ namespace crawler
       moves() const
       {
         constexpr double min_motion = 1e-12;
-        const bool is_cost          = wanted_.objective == "cost of transport"; // positive in the wanted direction
-        const double sign           = wanted_.direction == "forward" || is_cost ? 1. : -1.;
-        return sign * result_.best.objective > min_motion;
+        return objective_.turned(result_.best.objective) > min_motion;
       }
 
       /// Finds the point nearest to the start that the limits admit, between the start and the result. A start far
@@ -251,7 +244,7 @@ namespace crawler
       as_near_as_limits_admit(GaitModel &model)
       {
         constexpr unsigned int n_bisections = 12;
-        GaitProblem problem(model, wanted_, family_.variables, start_, stops_);
+        GaitProblem problem(model, wanted_, start_, [&](const GaitProblem &) { return stops_(); });
         const auto at = [&, end = result_.best.x](const double part) {
           std::vector<double> x(end.size());
           for (std::size_t i = 0; i < x.size(); ++i)
@@ -274,7 +267,7 @@ namespace crawler
       {
         state_.evaluations = result_.records.size() + problem.records().size();
         if (!problem.records().empty())
-          state_.best = GaitProblem::best_of(problem.records(), wanted_, problem.admissible()).objective;
+          state_.best = GaitProblem::best_of(problem.records(), objective_, problem.admissible()).objective;
       }
 
       bool
@@ -288,7 +281,6 @@ namespace crawler
       void
       judge()
       {
-        const bool is_cost = wanted_.objective == "cost of transport";
         if (result_.has_converged && !moves())
         {
           result_.has_converged = false;
@@ -306,7 +298,7 @@ namespace crawler
         {
           if (!result_.is_admissible()) // multipliers are meaningless then
             limit.multiplier = NAN;
-          if (is_cost) // the multiplier is that of D/W
+          if (objective_.is_inverse) // the multiplier is that of D/W
             limit.multiplier *= -result_.best.objective * result_.best.objective;
           for (const LimitEntry &entry : limit_entries) // wanted value, not the tightened one
             if (entry.name == limit.name)
@@ -319,6 +311,7 @@ namespace crawler
       const std::function<bool()> &stops_;
       OptimizeParameters wanted_;
       OptimizeParameters parameters_; ///< with limits that may be tightened
+      const GaitObjective objective_;
       const std::vector<double> start_;
       std::vector<double> x_, multipliers_;
       double scale_           = 1.; ///< scale of the objective, for the multipliers
@@ -342,15 +335,14 @@ namespace crawler
   make_gait_model(SceneFamily &family, const std::vector<double> &start, const std::function<bool()> &stops)
   {
     const Parameters parameters = family.parameters(start);
-    const GaitWishes wishes     = GaitProblem::wishes(parameters.optimize);
     const ModelChoice model     = choose_model(parameters, parameters.create_scene());
     if (model.model == Model::perturbation)
       throw InputError("the perturbation level gives the leading order only, which has no best gait; kinematic, "
                        "nonlinear or linear is expected",
                        "Model");
     if (model.model == Model::kinematic)
-      return kinematic_gait(family, wishes, start);
-    return simulated_gait(family, wishes, stops);
+      return kinematic_gait(family, start);
+    return simulated_gait(family, stops);
   }
 
   StartResult

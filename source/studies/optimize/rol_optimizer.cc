@@ -76,7 +76,7 @@ namespace crawler
       explicit Lagrangian(GaitProblem &problem, List multipliers)
         : mu(std::move(multipliers))
         , problem_(problem)
-        , hessians_(problem.n_rows())
+        , hessians_(problem.n_numbers())
       {
       }
 
@@ -109,7 +109,7 @@ namespace crawler
       {
         const List t                    = forces(problem_.at(y, false).constraints);
         const GaitProblem::Point &point = problem_.at(y, true, t);
-        problem_.apply_transposed(point, t, gradient);
+        apply_transposed(point, t, gradient);
         for (std::size_t i = 0; i < y.size(); ++i)
           gradient[i] += point.gradient[i];
       }
@@ -118,21 +118,37 @@ namespace crawler
       {
         const List t                    = forces(problem_.at(y, false).constraints);
         const GaitProblem::Point &point = problem_.at(y, true, t);
-        List change;
-        problem_.apply_jacobian(point, v, change);
-        for (std::size_t i = 0; i < t.size(); ++i)
-          change[i] *= t[i] != 0. ? rho : 0.;
-        problem_.apply_transposed(point, change, result);
+        List change(t.size());
+        for (std::size_t i = 0; i < v.size(); ++i)
+          for (std::size_t r = 0; r < t.size(); ++r)
+            change[r] += point.jacobian[i][r] * v[i];
+        for (std::size_t r = 0; r < t.size(); ++r)
+          change[r] *= t[r] != 0. ? rho : 0.;
+        apply_transposed(point, change, result);
         hessian_.see(y, point.gradient);
         hessian_.add(1., v, result);
-        for (std::size_t r = 0; r < point.rows.size(); ++r)
+        for (std::size_t r = 0; r < hessians_.size(); ++r)
         {
-          hessians_[r].see(y, point.rows[r]);
+          List row;
+          for (const List &derivatives : point.jacobian)
+            row.push_back(derivatives[r]);
+          hessians_[r].see(y, row);
           hessians_[r].add(t[r], v, result);
         }
       }
 
     private:
+      /// Product of the transposed Jacobian of c with forces, most of which are 0.
+      static void
+      apply_transposed(const GaitProblem::Point &point, const List &t, List &sum)
+      {
+        sum.assign(point.gradient.size(), 0.);
+        for (std::size_t r = 0; r < t.size(); ++r)
+          if (t[r] != 0.)
+            for (std::size_t i = 0; i < sum.size(); ++i)
+              sum[i] += t[r] * point.jacobian[i][r];
+      }
+
       GaitProblem &problem_;
       RankOneHessian hessian_;
       std::vector<RankOneHessian> hessians_;

@@ -82,7 +82,32 @@ namespace crawler
         at(t, std::span(m).subspan(1ul * j++ * n_s, n_s));
       return m;
     }
+
+    GaitWishes
+    wishes_of(const OptimizeParameters &p)
+    {
+      GaitWishes wishes;
+      const GaitObjective objective             = objective_of(p);
+      wishes.numbers[objective.motion]          = true;
+      wishes.numbers[objective.energy]          = objective.power_of_energy != 0.;
+      wishes.numbers[GaitNumber::friction_time] = objective.power_of_time != 0.;
+      for (const LimitEntry &limit : limit_entries)
+        if (limit.number && p.*limit.value)
+          wishes.numbers[*limit.number] = true;
+      wishes.strain      = p.smallest_strain || p.largest_strain;
+      wishes.stress      = p.largest_stress.has_value();
+      wishes.stress_rate = p.largest_stress_rate.has_value();
+      return wishes;
+    }
   } // namespace
+
+  GaitObjective
+  objective_of(const OptimizeParameters &parameters)
+  {
+    GaitObjective objective = *std::ranges::find(gait_objectives, parameters.objective, &GaitObjective::name);
+    objective.sign          = parameters.direction == "forward" ? 1. : -1.;
+    return objective;
+  }
 
   SceneFamily::SceneFamily(Form &its_form)
     : form(its_form)
@@ -148,19 +173,19 @@ namespace crawler
     return points;
   }
 
-  std::vector<double>
+  std::vector<std::vector<double>>
   SceneFamily::differences(const std::vector<double> &x,
                            const std::function<std::vector<double>(const Parameters &)> &values,
                            const double relative_step)
   {
-    std::vector<double> result;
+    std::vector<std::vector<double>> result(x.size());
     for (std::size_t i = 0; i < x.size(); ++i)
       for (const StencilPoint &point : stencil(x, i, relative_step))
       {
         const std::vector<double> there = values(parameters(point.x));
-        result.resize(there.size() * x.size());
+        result[i].resize(there.size());
         for (std::size_t p = 0; p < there.size(); ++p)
-          result[p * x.size() + i] += point.weight * there[p];
+          result[i][p] += point.weight * there[p];
       }
     return result;
   }
@@ -170,10 +195,8 @@ namespace crawler
   {
     constexpr double step = 1e-4;
     const auto samples    = [rate](const Parameters &there) { return stress_samples(there, rate); };
-    LimitedValues result{samples(parameters(x)), nullptr};
-    if (with_gradients)
-      result.jacobian = std::make_shared<const std::vector<double>>(differences(x, samples, step));
-    return result;
+    return {samples(parameters(x)),
+            with_gradients ? differences(x, samples, step) : std::vector<std::vector<double>>()};
   }
 
   double
@@ -183,5 +206,32 @@ namespace crawler
     const Scene scene             = parameters(x).create_scene();
     const StrainExtremes extremes = find_extremes(stress_of(scene, rate), scene.body.length, scene.end_time, n_s, n_t);
     return std::max(-extremes.smallest.strain, extremes.largest.strain);
+  }
+
+  GaitModel::GaitModel(SceneFamily &its_family)
+    : family(its_family)
+    , wishes(wishes_of(family.form.parameters.optimize))
+  {
+  }
+
+  GaitValues
+  GaitModel::evaluate(const std::vector<double> &x, const bool with_gradients, const std::vector<std::size_t> &places)
+  {
+    GaitValues values;
+    try
+    {
+      if (with_gradients)
+        values.gradients.fill(std::vector<double>(x.size()));
+      compute(x, with_gradients, places, values);
+      if (wishes.stress)
+        values.stress = family.stress(x, /*rate=*/false, with_gradients);
+      if (wishes.stress_rate)
+        values.stress_rate = family.stress(x, /*rate=*/true, with_gradients);
+    }
+    catch (const InputError &error)
+    {
+      values.problem = error.what();
+    }
+    return values;
   }
 } // namespace crawler

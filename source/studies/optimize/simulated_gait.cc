@@ -38,9 +38,8 @@ namespace crawler
     class SimulatedGait : public GaitModel
     {
     public:
-      SimulatedGait(SceneFamily &family, const GaitWishes wishes, std::function<bool()> interrupted)
-        : family_(family)
-        , wishes_(wishes)
+      SimulatedGait(SceneFamily &its_family, std::function<bool()> interrupted)
+        : GaitModel(its_family)
         , interrupted_(std::move(interrupted))
       {
         if (wishes.numbers[GaitNumber::mean_square])
@@ -48,68 +47,6 @@ namespace crawler
             "the mean-square strain is limited at the kinematic level only; Model = kinematic, or another "
             "limit, is expected",
             "Optimize/Mean-square strain");
-      }
-
-      GaitValues
-      evaluate(const std::vector<double> &x, const bool with_gradients, const std::vector<std::size_t> &places) override
-      {
-        GaitValues values;
-        try
-        {
-          if (latest_.empty() || latest_x_ != x)
-          {
-            latest_   = answers({x});
-            latest_x_ = x;
-            latest_extremes_.clear();
-          }
-          const Task &task = latest_.front();
-          values.problem   = problem_of(task);
-          if (!values.problem.empty())
-            return values;
-          values.numbers = numbers(task);
-          for (std::size_t i = 0; i < gait_numbers.size(); ++i)
-            if (wishes_.numbers[i] && !std::isfinite(values.numbers[i]))
-              values.problem =
-                i == GaitNumber::speed
-                  ? "the speed is not known, since the active stress does not tell the duration of a stride"
-                  : "a work is not known there";
-          if (wishes_.strain)
-          {
-            if (latest_extremes_.empty())
-              latest_extremes_ = extremes(task);
-            for (const StretchPlace &one : latest_extremes_)
-              values.strain.values.push_back(one.value - 1.);
-          }
-          if (wishes_.stress)
-            values.stress = family_.stress(x, /*rate=*/false, with_gradients);
-          if (wishes_.stress_rate)
-            values.stress_rate = family_.stress(x, /*rate=*/true, with_gradients);
-          if (with_gradients && values.problem.empty())
-          {
-            for (auto &gradient : values.gradients)
-              gradient.assign(x.size(), 0.);
-            values.by_differences.assign(x.size(), true);
-            values.strain_by_differences.assign(x.size(), wishes_.strain);
-            if (wishes_.strain)
-              strain_jacobian_.assign(latest_extremes_.size() * x.size(), 0.);
-            add_adjoint_gradients(x, task, wishes_.strain ? with_extremes(places) : places, values);
-            values.gradients[GaitNumber::friction_time] = family_.differences(
-              x,
-              [](const Parameters &there) {
-                return std::vector<double>(1,
-                                           there.time.end_time / (there.body.friction_coefficient * there.body.length));
-              },
-              1e-3);
-            add_differences(x, values);
-            if (wishes_.strain)
-              values.strain.jacobian = std::make_shared<const std::vector<double>>(strain_jacobian_);
-          }
-        }
-        catch (const InputError &error)
-        {
-          values.problem = error.what();
-        }
-        return values;
       }
 
       bool
@@ -143,7 +80,7 @@ namespace crawler
       double
       noise() const override
       {
-        return family_.form.parameters.accuracy;
+        return family.form.parameters.accuracy;
       }
       std::string
       description() const override
@@ -152,6 +89,49 @@ namespace crawler
       }
 
     private:
+      void
+      compute(const std::vector<double> &x,
+              const bool with_gradients,
+              const std::vector<std::size_t> &places,
+              GaitValues &values) override
+      {
+        if (latest_.empty() || latest_x_ != x)
+        {
+          latest_   = answers({x});
+          latest_x_ = x;
+          latest_extremes_.clear();
+        }
+        const Task &task = latest_.front();
+        if (const std::string problem = problem_of(task); !problem.empty())
+          throw InputError(problem);
+        values.numbers = numbers(task);
+        for (std::size_t i = 0; i < gait_numbers.size(); ++i)
+          if (wishes.numbers[i] && !std::isfinite(values.numbers[i]))
+            throw InputError(
+              i == GaitNumber::speed
+                ? "the speed is not known, since the active stress does not tell the duration of a stride"
+                : "a work is not known there");
+        if (wishes.strain && latest_extremes_.empty())
+          latest_extremes_ = extremes(task);
+        for (const StretchPlace &one : latest_extremes_)
+          values.strain.values.push_back(one.value - 1.);
+        if (!with_gradients)
+          return;
+        values.by_differences.assign(x.size(), true);
+        values.strain_by_differences.assign(x.size(), wishes.strain);
+        values.strain.gradients.assign(x.size(), std::vector<double>(latest_extremes_.size()));
+        add_adjoint_gradients(x, task, wishes.strain ? with_extremes(places) : places, values);
+        const auto times = family.differences(
+          x,
+          [](const Parameters &there) {
+            return std::vector<double>(1, there.time.end_time / (there.body.friction_coefficient * there.body.length));
+          },
+          1e-3);
+        for (std::size_t i = 0; i < x.size(); ++i)
+          values.gradients[GaitNumber::friction_time][i] = times[i][0];
+        add_differences(x, values);
+      }
+
       std::vector<Task>
       answers(const std::vector<std::vector<double>> &places)
       {
@@ -159,8 +139,8 @@ namespace crawler
         for (const auto &x : places)
         {
           tasks.emplace_back();
-          tasks.back().parameters = family_.parameters(x);
-          tasks.back().gait       = wishes_.numbers[GaitNumber::speed];
+          tasks.back().parameters = family.parameters(x);
+          tasks.back().gait       = wishes.numbers[GaitNumber::speed];
         }
         compute_all(tasks, HUGE_VAL, interrupted_);
         if (interrupted_())
@@ -259,9 +239,9 @@ namespace crawler
       {
         std::vector<Quantity> wanted;
         for (std::size_t k = 0; k < gait_numbers.size(); ++k)
-          if (wishes_.numbers[k] && gait_numbers[k].quantity && *gait_numbers[k].quantity != Quantity::speed)
+          if (wishes.numbers[k] && gait_numbers[k].quantity && *gait_numbers[k].quantity != Quantity::speed)
             wanted.push_back(*gait_numbers[k].quantity);
-        if (wishes_.numbers[GaitNumber::speed])
+        if (wishes.numbers[GaitNumber::speed])
           wanted.push_back(Quantity::stride); // the speed comes with it
         return wanted;
       }
@@ -283,20 +263,14 @@ namespace crawler
         std::vector<std::size_t> own;
         for (std::size_t i = 0; i < x.size(); ++i)
         {
-          const auto around = family_.stencil(x, i, /*relative_step=*/1e-3);
-          bool is_similar   = true;
+          const auto around = family.stencil(x, i, /*relative_step=*/1e-3);
           for (const auto &point : around)
             if (point.offset != 0.)
-            {
-              scenes[i].push_back(family_.parameters(point.x).create_scene());
-              is_similar = is_similar && have_similar_breaks(*task.scene, scenes[i].back());
-            }
-          if (!is_similar)
+              scenes[i].push_back(family.parameters(point.x).create_scene());
+          if (!std::ranges::all_of(scenes[i], [&](const Scene &s) { return have_similar_breaks(*task.scene, s); }))
             continue;
           const bool is_one_sided = around[0].offset == 0.;
-          const double apart      = around[is_one_sided ? 1 : 2].offset;
-          const auto &its         = scenes[i];
-          variations.push_back({{{its.data(), &its[1], &its[2], &its[3]}}, apart, is_one_sided});
+          variations.push_back({scenes[i], around[is_one_sided ? 1 : 2].offset, is_one_sided});
           own.push_back(i);
         }
         try
@@ -308,7 +282,7 @@ namespace crawler
             const std::size_t i = own[v];
             bool is_known       = true;
             for (std::size_t k = 0; k < gait_numbers.size(); ++k)
-              if (wishes_.numbers[k] && gait_numbers[k].quantity)
+              if (wishes.numbers[k] && gait_numbers[k].quantity)
               {
                 const auto &value      = gradient.quantities[v][static_cast<std::size_t>(*gait_numbers[k].quantity)];
                 is_known               = is_known && value.has_value();
@@ -316,10 +290,10 @@ namespace crawler
               }
             values.by_differences[i] = !is_known;
             const auto &strains      = gradient.stretches[v];
-            if (!wishes_.strain || !std::ranges::all_of(strains, [](const auto &one) { return one.has_value(); }))
+            if (!wishes.strain || !std::ranges::all_of(strains, [](const auto &one) { return one.has_value(); }))
               continue;
             for (std::size_t e = 0; e < strains.size(); ++e)
-              strain_jacobian_[near[e] * x.size() + i] = *strains[e];
+              values.strain.gradients[i][near[e]] = *strains[e];
             values.strain_by_differences[i] = false;
           }
         }
@@ -328,7 +302,7 @@ namespace crawler
           if (interrupted_())
             throw Interrupted();
           values.by_differences.assign(x.size(), true);
-          values.strain_by_differences.assign(x.size(), wishes_.strain);
+          values.strain_by_differences.assign(x.size(), wishes.strain);
         }
       }
 
@@ -340,7 +314,7 @@ namespace crawler
         std::vector<std::pair<std::size_t, double>> weights; // variable and weight of each place
         for (std::size_t i = 0; i < x.size(); ++i)
           if (values.by_differences[i] || values.strain_by_differences[i])
-            for (const auto &point : family_.stencil(x, i, step))
+            for (const auto &point : family.stencil(x, i, step))
             {
               places.push_back(point.x);
               weights.emplace_back(i, point.weight);
@@ -389,24 +363,21 @@ namespace crawler
             continue;
           const std::vector<StretchPlace> extremes_there = extremes(tasks[j]);
           for (std::size_t e = 0; e < latest_extremes_.size(); ++e)
-            strain_jacobian_[e * x.size() + i] += change(extremes_there[e].value, latest_extremes_[e].value);
+            values.strain.gradients[i][e] += change(extremes_there[e].value, latest_extremes_[e].value);
         }
       }
 
-      SceneFamily &family_;
-      const GaitWishes wishes_;
       const std::function<bool()> interrupted_;
       std::optional<std::size_t> n_boxes_in_time_; ///< where strains are limited
       std::vector<double> latest_x_;               ///< variables of the following members
       std::vector<Task> latest_;                   ///< single task, with the answer there
       std::vector<StretchPlace> latest_extremes_;  ///< extremes in the boxes, if strains are limited
-      std::vector<double> strain_jacobian_;        ///< [extreme][variable]
     };
   } // namespace
 
   std::unique_ptr<GaitModel>
-  simulated_gait(SceneFamily &family, const GaitWishes &wishes, std::function<bool()> interrupted)
+  simulated_gait(SceneFamily &family, std::function<bool()> interrupted)
   {
-    return std::make_unique<SimulatedGait>(family, wishes, std::move(interrupted));
+    return std::make_unique<SimulatedGait>(family, std::move(interrupted));
   }
 } // namespace crawler

@@ -3,6 +3,7 @@
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/accuracy/swept_error.h>
+#include <crawler/base/archive.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
@@ -23,8 +24,8 @@
 #include <crawler/studies/run/reduced_pictures.h>
 #include <crawler/studies/run/run.h>
 #include <crawler/studies/run/run_files.h>
+#include <crawler/studies/run/run_in_memory.h>
 #include <crawler/studies/run/run_memory.h>
-#include <crawler/studies/run/run_stops.h>
 #include <crawler/time/failure.h>
 
 #include <fmt/format.h>
@@ -42,14 +43,11 @@ namespace crawler
     void
     agree_on_failure(MPI_Comm communicator, TimeOutcome &outcome)
     {
-      const std::string text =
-        first_text(outcome.status == Status::none ? "" : outcome.reason + "\n" + outcome.message, communicator);
+      const std::string text = first_text(outcome.status == Status::none ? "" : archived(outcome), communicator);
       if (text.empty())
         return;
-      const std::size_t split = text.find('\n');
-      outcome.status          = Status::failed;
-      outcome.reason          = text.substr(0, split);
-      outcome.message         = text.substr(split + 1);
+      Archive archive(text);
+      archive(outcome);
     }
 
     /// Progress of a run: a bar, or a line at every tenth of the duration.
@@ -60,7 +58,7 @@ namespace crawler
         : log_(log)
         , end_time_(scene.end_time)
         , length_(scene.body.length)
-        , bar_(log)
+        , bar_(log, /*between_lines=*/HUGE_VAL)
       {
       }
 
@@ -107,16 +105,17 @@ namespace crawler
     {
     public:
       RunStudy(MPI_Comm communicator, const CommandOptions &options, ParameterFile file)
-        : begin_(now())
-        , communicator_(communicator)
+        : communicator_(communicator)
         , options_(options)
         , is_first_(rank_of(communicator) == 0)
         , log_(is_first_, options)
         , input_(read_input(std::move(file)))
         , memory_(communicator, input_, options)
-        , stops_(stop_signal_, input_.parameters.time.wall_time_limit, begin_, memory_.folder() / stop_file_name)
         , pictures_(picture_times(input_.parameters.output, input_.scene))
       {
+        const auto limit = input_.parameters.time.wall_time_limit;
+        clock_.set_limit(limit, wall_time_limit_in_words(limit.value_or(0.)));
+        clock_.set_stop_file(memory_.folder() / stop_file_name);
       }
 
       ExitCode
@@ -129,9 +128,9 @@ namespace crawler
         if (has_mesh)
         {
           choose_mesh_and_steps();
-          if (stops_.arrived_anywhere(communicator_))
+          if (clock_.is_over_anywhere(communicator_))
           {
-            log_.warn(fmt::format("stopped {} during the pilot runs; nothing was written", stops_.in_words()));
+            log_.warn(clock_.in_words(clock_.reason()) + " during the pilot runs; nothing was written");
             return ExitCode::stopped;
           }
           agree_on_failure(communicator_, result_.time);
@@ -144,7 +143,7 @@ namespace crawler
         }
         sharing_.has_output = sharing_.is_shared || is_first_;
         begin_output();
-        result_.setup_seconds = now() - begin_;
+        result_.setup_seconds = clock_.seconds();
         if (has_mesh)
           compute_on_mesh();
         else if (is_first_)
@@ -245,7 +244,7 @@ namespace crawler
             [&]() {
               if (other_runs_)
                 other_runs_->step();
-              return !stops_.arrived_anywhere(sharing_.ranks);
+              return !clock_.is_over_anywhere(sharing_.ranks);
             },
             &memory_.journal());
           const Simulation::Options options = {.energy_balance = output.energy_balance,
@@ -403,16 +402,15 @@ namespace crawler
       bool
       is_stopped()
       {
-        return model_ && !model_->needs_mesh() ? stop_signal_.arrived_anywhere(MPI_COMM_SELF)
-                                               : stops_.arrived_anywhere(MPI_COMM_SELF);
+        return model_ && !model_->needs_mesh() ? clock_.has_signal() : clock_.is_over();
       }
 
       void
       stop(const std::string &when)
       {
         result_.time.status  = Status::stopped;
-        result_.time.reason  = stops_.reason();
-        result_.time.message = fmt::format("stopped {} {}", stops_.in_words(), when);
+        result_.time.reason  = clock_.reason();
+        result_.time.message = clock_.in_words(clock_.reason()) + " " + when;
       }
 
       /// Performs @p work unless the run has ended.
@@ -436,15 +434,13 @@ namespace crawler
         }
       }
 
-      const StopSignal stop_signal_; ///< ends the run in an orderly way when a signal arrives
-      const double begin_;
+      StudyClock clock_;
       const MPI_Comm communicator_;
       const CommandOptions &options_;
       const bool is_first_;
       Log log_;
       Input input_;
       RunMemory memory_;
-      RunStops stops_;
 
       std::optional<ModelChoice> model_;
       std::optional<NumericsChoice> choice_; ///< numerics of a level with a mesh

@@ -9,7 +9,6 @@
 
 #include <boost/crc.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <optional>
 
@@ -82,16 +81,6 @@ namespace crawler
           fmt::format("\"{}\" has no run that can be resumed; another folder is expected for --output, or --overwrite",
                       folder.string()));
     }
-
-    bool
-    has_finished(const fs::path &folder)
-    {
-      std::error_code error;
-      if (!fs::exists(folder / "summary.json", error))
-        return false;
-      const auto summary = nlohmann::json::parse(read_whole_file(folder / "summary.json"), nullptr, false);
-      return summary.is_object() && summary.value("status", "") == "finished";
-    }
   } // namespace
 
   RunCheckpoint
@@ -151,7 +140,7 @@ namespace crawler
         changes.emplace_back("a file that the parameters name has changed");
     }
     require_unchanged("run", folder, changes, free_entries);
-    if (has_finished(folder))
+    if (status_in(folder) == "finished")
       result.kind = Resumption::is_whole;
     else if (checkpoint)
     {

@@ -11,7 +11,6 @@
 #include <crawler/run/simulation.h>
 #include <crawler/studies/run/reduced_pictures.h>
 #include <crawler/studies/run/run_in_memory.h>
-#include <crawler/studies/run/run_stops.h>
 #include <crawler/time/failure.h>
 
 #include <fmt/format.h>
@@ -108,6 +107,12 @@ namespace crawler
     }
   } // namespace
 
+  std::string
+  wall_time_limit_in_words(const double limit)
+  {
+    return fmt::format("Time/Wall time limit, {:g} s,", limit);
+  }
+
   RunInMemory
   run_in_memory(Input &input,
                 const ModelChoice &model,
@@ -146,7 +151,7 @@ namespace crawler
     {
       end.status  = Status::stopped;
       end.reason  = "time_limit";
-      end.message = fmt::format("stopped {} at t = {:.6g}", by_wall_time_limit(*limit), end.time);
+      end.message = fmt::format("stopped by {} at t = {:.6g}", wall_time_limit_in_words(*limit), end.time);
     }
     return run;
   }

@@ -5,7 +5,6 @@
 #include <crawler/output/active_stress_table.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/run/run_memory.h>
-#include <crawler/studies/run/run_stops.h>
 
 #include <fmt/format.h>
 
@@ -46,6 +45,12 @@ namespace crawler
   {
   }
 
+  RunMemory::~RunMemory()
+  {
+    if (lock_)
+      lock_->remove();
+  }
+
   bool
   RunMemory::begin(Log &log)
   {
@@ -55,7 +60,7 @@ namespace crawler
       checkpoint_ = checkpoint_of(input_, options_);
       if (options_.resume)
       {
-        lock_.emplace(folder_, /*overwrite=*/true);
+        lock_.emplace(folder_, log);
         resumption = resumption_of(folder_, checkpoint_);
       }
     });
@@ -74,7 +79,10 @@ namespace crawler
   RunMemory::begin_files(Log &log)
   {
     if (!lock_)
-      lock_.emplace(folder_, options_.overwrite);
+    {
+      lock_.emplace(folder_, log);
+      require_usable(folder_, options_.overwrite || is_free(folder_)); // the previous owner may have written
+    }
     if (!goes_on_)
       prepare(folder_);
     const OutputParameters &output = input_.parameters.output;

@@ -221,7 +221,7 @@ namespace crawler
   ExitCode
   sweep(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
   {
-    StudyClock clock("Sweep");
+    StudyClock clock;
     const unsigned int n_ranks = size_of(communicator);
     Log log(rank_of(communicator) == 0, options);
     SweepPoints points(communicator, file);
@@ -249,7 +249,7 @@ namespace crawler
       log.line(note);
     announce_petsc_options(options, log);
 
-    clock.set_limit(own.time_limit);
+    clock.set_limit(own.time_limit, "Sweep/Time limit");
     bool is_whole      = compute_rows(communicator, folder, points, table, done, [&]() { return clock.is_over(); });
     std::string reason = clock.reason(communicator, is_whole);
     if (n_done < design.n_points())

@@ -311,10 +311,10 @@ namespace crawler
         refuse("\"{}\" varies twice, but different entries are expected", path);
       axes_.push_back(read_axis(path, rest, parameters.design));
     }
-    if (axes_.empty())
-      throw InputError(fmt::format("\"{}\" is empty, but {} is expected", entry_name, sweep_syntax), entry_name);
 
-    double n = kind_ == Kind::grid ? 1. : kind_ == Kind::zip ? axes_[0].values.size() : parameters.n_points;
+    double n = kind_ == Kind::grid || axes_.empty() ? 1.
+               : kind_ == Kind::zip                 ? axes_[0].values.size()
+                                                    : parameters.n_points;
     for (const SweepAxis &axis : axes_)
       if (kind_ == Kind::grid)
         n *= static_cast<double>(axis.values.size());

@@ -32,16 +32,18 @@ namespace crawler
     }
   }
 
-  SweepPoints::SweepPoints(MPI_Comm communicator, const ParameterFile &file)
+  SweepPoints::SweepPoints(MPI_Comm communicator, const ParameterFile &file, const bool may_be_one)
     : file_(file)
   {
     auto base  = std::make_unique<Form>(file);
-    sweep_     = base->parameters.sweep;
+    own_       = base->parameters;
     effective_ = base->effective();
     file_.placing_errors([&]() {
       const Assignment *const axes = file_.assignment_of(axes_entry);
-      design_                      = std::make_unique<SweepDesign>(sweep_, axes != nullptr ? axes->folder : "");
+      design_                      = std::make_unique<SweepDesign>(own_.sweep, axes != nullptr ? axes->folder : "");
       const auto &all_axes         = design_->axes();
+      if (all_axes.empty() && !may_be_one)
+        throw InputError(fmt::format("\"{}\" is empty, but {} is expected", axes_entry, sweep_syntax), axes_entry);
       file_axis_ = static_cast<std::size_t>(std::ranges::find_if(all_axes, &SweepAxis::is_file) - all_axes.begin());
       base_      = std::move(base);
       require_scene_files(communicator);
@@ -192,7 +194,7 @@ namespace crawler
   void
   SweepPoints::require_checkable()
   {
-    if (!sweep_.cross_check)
+    if (!own_.sweep.cross_check)
       return;
     const Parameters &first = parameters(0);
     if (first.model != Model::nonlinear)
@@ -257,9 +259,9 @@ namespace crawler
   {
     const std::string entry = "Sweep/Keep fields";
     std::vector<unsigned long> list;
-    if (sweep_.keep_fields.empty())
+    if (own_.sweep.keep_fields.empty())
       return list;
-    for (const std::string &text : parse_values(sweep_.keep_fields, entry))
+    for (const std::string &text : parse_values(own_.sweep.keep_fields, entry))
     {
       const auto number = to_number(text);
       if (!number || *number != std::floor(*number) || *number < 0. ||

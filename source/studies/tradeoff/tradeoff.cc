@@ -275,13 +275,13 @@ namespace crawler
   ExitCode
   tradeoff(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
   {
-    StudyClock clock("Tradeoff");
+    StudyClock clock;
     Log log(rank_of(communicator) == 0, options);
     const Input input             = read_input(file, /*command=*/"tradeoff");
     const TradeoffParameters &own = input.parameters.tradeoff;
     const auto settings           = file.placing_errors([&]() { return settings_to_try(input); });
     const PointTable table        = tradeoff_table(own.run_time_limit);
-    clock.set_limit(own.time_limit);
+    clock.set_limit(own.time_limit, "Tradeoff/Time limit");
     const std::function<bool()> interrupted = [&]() { return clock.is_over(); };
     const StudyKind kind = {"tradeoff", table.file, {"Tradeoff/Time limit", "Tradeoff/Time limit per run"}};
     StudyFolder folder(kind, options, log);

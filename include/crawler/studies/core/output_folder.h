@@ -35,14 +35,21 @@ namespace crawler
                     const std::vector<std::string> &changes,
                     const std::vector<std::string> &free_entries);
 
-  /// Keeps other processes from writing to a folder during its lifetime.
+  /// Keeps other processes from writing to a folder.
   class FolderLock : public FileLock
   {
   public:
-    /// Makes the folder. Throws InputError if another process writes to it, and as require_usable() does.
-    FolderLock(const std::filesystem::path &folder, bool overwrite);
-    ~FolderLock();
+    /// Makes the folder. Throws InputError if another process writes to it, and does not end within seconds.
+    FolderLock(const std::filesystem::path &folder, Log &log);
   };
+
+  /// Status that the summary.json in a folder has; empty if there is none.
+  std::string
+  status_in(const std::filesystem::path &folder);
+
+  /// Returns true if the folder is empty except perhaps for a lock.
+  bool
+  is_free(const std::filesystem::path &folder);
 
   /// Removes the results of an earlier run from the folder (only files that this program writes).
   void
@@ -108,11 +115,8 @@ namespace crawler
     is_foreign() const;
 
     void
-    lock();
-
-    void
     leaving_if_refused(const std::function<void()> &work);
 
-    std::optional<FileLock> lock_;
+    std::optional<FolderLock> lock_;
   };
 } // namespace crawler

@@ -8,10 +8,12 @@
 
 #include <mpi.h>
 
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace crawler
@@ -41,31 +43,44 @@ namespace crawler
                   const std::function<bool(const std::string &name, const std::string &was, const std::string &is)>
                     &does_not_count = {});
 
-  /// Clock of a study, with the two causes that end it early: a signal, which from now on ends it in an orderly way, or
-  /// its time limit.
+  /// Clock of a run or study, with the causes that end it early: a signal, which from now on ends it in an orderly way,
+  /// its time limit, or a file that asks for it.
   class StudyClock
   {
   public:
-    /// @p section of the parameters, for messages.
-    explicit StudyClock(std::string section)
-      : section_(std::move(section))
-    {
-    }
-
+    /// Limit of the time, if there is one, and the entry that sets it.
     void
-    set_limit(const std::optional<double> seconds)
+    set_limit(const std::optional<double> seconds, std::string in_words)
     {
-      limit_ = seconds;
+      limit_          = seconds;
+      limit_in_words_ = std::move(in_words);
+    }
+    void
+    set_stop_file(std::filesystem::path file)
+    {
+      stop_file_ = std::move(file);
     }
 
-    /// Returns true if the time is over or a signal has arrived on this rank.
+    /// Returns true, from then on, once there is a cause on this rank, or on any rank (collective).
     bool
-    is_over() const
+    is_over();
+    bool
+    is_over_anywhere(MPI_Comm communicator);
+
+    bool
+    has_signal() const
     {
-      return signal_.arrived() || (limit_ && seconds() > *limit_);
+      return signal_.arrived();
     }
 
-    /// Cause of an early end: "signal" or "time_limit"; empty if the study @p is_whole (collective).
+    /// Cause of an early end: "signal" (perhaps of another rank), "time_limit" or "stop_file".
+    std::string
+    reason() const
+    {
+      return reason_.empty() ? "signal" : reason_;
+    }
+
+    /// Cause that all ranks know; empty if the study @p is_whole (collective).
     std::string
     reason(MPI_Comm communicator, const bool is_whole) const
     {
@@ -74,10 +89,7 @@ namespace crawler
 
     /// Reason in words, e.g. "stopped by a signal".
     std::string
-    in_words(const std::string &reason) const
-    {
-      return "stopped by " + (reason == "signal" ? "a signal" : section_ + "/Time limit");
-    }
+    in_words(const std::string &reason) const;
 
     double
     seconds() const
@@ -88,8 +100,10 @@ namespace crawler
   private:
     const StopSignal signal_;
     const double begin_ = now();
-    const std::string section_;
     std::optional<double> limit_;
+    std::string limit_in_words_, reason_;
+    std::filesystem::path stop_file_;
+    double last_look_ = begin_; ///< for the file
   };
 
   /// Parts of a study, which the ranks take one after the other.

@@ -5,10 +5,8 @@
 #include <crawler/base/exceptions.h>
 
 #include <array>
-#include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace crawler
@@ -43,15 +41,40 @@ namespace crawler
      {"dissipation", "dissipation", "energy", Quantity::dissipation},
      {"efficiency", "efficiency", "1"}}};
 
+  /// Objective D E^p T^q of a gait, where D is a motion, E an energy and T the time T/(gamma L).
+  struct GaitObjective
+  {
+    const char *name, *unit;
+    GaitNumber::Index motion = GaitNumber::displacement, energy = GaitNumber::work;
+    double power_of_energy = 0., power_of_time = 0.;
+    bool is_inverse = false; ///< true if its inverse is shown
+    double sign     = 1.;    ///< sign of the wanted direction
+
+    /// Value to be maximised of an objective that is shown, and the other way round.
+    double
+    turned(const double value) const
+    {
+      return is_inverse ? 1. / value : sign * value;
+    }
+  };
+
+  /// Choices of Optimize/Objective.
+  inline constexpr std::array<GaitObjective, 5> gait_objectives = {
+    {{"displacement", "length"},
+     {"speed", "length/time", GaitNumber::speed},
+     {"cost of transport", "force", GaitNumber::displacement, GaitNumber::work, -1., 0., /*is_inverse=*/true},
+     {"merit", "1", GaitNumber::displacement, GaitNumber::work, -0.5, -0.5},
+     {"periodic merit", "1", GaitNumber::displacement, GaitNumber::dissipation, -0.5, -0.5}}};
+
   /// Value for each gait number.
   template <typename Value>
   using ByGaitNumber = std::array<Value, gait_numbers.size()>;
 
-  /// Values that are limited at many places, and their derivatives by the variables: [place][variable].
+  /// Values that are limited at many places.
   struct LimitedValues
   {
     std::vector<double> values;
-    std::shared_ptr<const std::vector<double>> jacobian; ///< null unless requested
+    std::vector<std::vector<double>> gradients; ///< [variable][place], if requested
   };
 
   /// Numbers of a gait.
@@ -81,42 +104,5 @@ namespace crawler
   {
     ByGaitNumber<bool> numbers{};
     bool strain = false, stress = false, stress_rate = false;
-  };
-
-  /// Computes gaits for the values of the variables, on some level of the model.
-  class GaitModel
-  {
-  public:
-    virtual ~GaitModel() = default;
-
-    /// A gait that cannot be computed (the body inverts, a formula has no value) has a problem. Derivatives of the
-    /// strain are certain to exist only at @p places and for the smallest and the largest strain. Throws Interrupted.
-    virtual GaitValues
-    evaluate(const std::vector<double> &x, bool with_gradients, const std::vector<std::size_t> &places = {}) = 0;
-
-    /// Checks a result more closely and refines the grid if it was too coarse. Returns true if it did: then the optimum
-    /// is to be searched once more.
-    virtual bool
-    refine(const std::vector<double> &x) = 0;
-
-    /// Smallest and largest strain over body and duration, also between the places where they are limited.
-    virtual std::pair<double, double>
-    extreme_strains(const std::vector<double> &x) = 0;
-
-    /// Relative accuracy of the numbers: the optimiser cannot come closer.
-    virtual double
-    noise() const
-    {
-      return 0.;
-    }
-
-    /// Description of the model in words, for the log.
-    virtual std::string
-    description() const = 0;
-
-    /// Exception: the computation was stopped from outside.
-    struct Interrupted
-    {
-    };
   };
 } // namespace crawler

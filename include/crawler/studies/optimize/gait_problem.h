@@ -2,12 +2,12 @@
 #pragma once
 
 #include <crawler/base/archive.h>
-#include <crawler/studies/core/parameters.h>
-#include <crawler/studies/core/scene_numbers.h>
-#include <crawler/studies/optimize/gait_model.h>
+#include <crawler/studies/optimize/scene_family.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -57,32 +57,27 @@ namespace crawler
     /// Throws InputError if the start has a problem; GaitModel::Interrupted as soon as @p stops returns true.
     GaitProblem(GaitModel &model,
                 const OptimizeParameters &parameters,
-                const std::vector<Variable> &variables,
                 const std::vector<double> &start,
-                std::function<bool()> stops,
-                const OptimizeParameters *closer = nullptr);
-
-    /// Selection of the numbers in objective and limits.
-    static GaitWishes
-    wishes(const OptimizeParameters &parameters);
+                std::function<bool(const GaitProblem &)> stops = {},
+                const OptimizeParameters *closer               = nullptr);
 
     struct Point
     {
       double objective;
       std::vector<double> gradient, constraints;
-      std::vector<std::vector<double>> rows;                          ///< rows of the Jacobian of the limited works
-      std::vector<std::shared_ptr<const std::vector<double>>> blocks; ///< other rows, unscaled
-      std::string problem; ///< problem of gait or derivatives, in words: this point is no optimum
+      std::vector<std::vector<double>> jacobian; ///< derivatives of the constraints: [variable][constraint]
+      std::string problem;                       ///< problem of gait or derivatives, in words: this point is no optimum
     };
     /// Returns the problem at y. Derivatives of strains are computed for active constraints only: those with @p forces,
     /// one for each constraint, other than 0.
     const Point &
     at(const std::vector<double> &y, bool with_gradients, const std::vector<double> &forces = {});
 
+    /// Number of limited numbers of the gait, which are the first constraints.
     std::size_t
-    n_rows() const
+    n_numbers() const
     {
-      return number_limits_.size();
+      return n_numbers_;
     }
     const std::vector<double> &
     lower() const
@@ -94,12 +89,6 @@ namespace crawler
     {
       return upper_;
     }
-
-    /// Products of the Jacobian of c at the point, and of its transpose, with a vector.
-    void
-    apply_jacobian(const Point &point, const std::vector<double> &v, std::vector<double> &result) const;
-    void
-    apply_transposed(const Point &point, const std::vector<double> &v, std::vector<double> &result) const;
 
     /// Scale of the objective.
     double
@@ -116,7 +105,7 @@ namespace crawler
     /// Returns the best of some evaluations: of those that keep to all limits, or else the one with the least
     /// violation.
     static const GaitRecord &
-    best_of(std::span<const GaitRecord> records, const OptimizeParameters &parameters, double admissible);
+    best_of(std::span<const GaitRecord> records, const GaitObjective &objective, double admissible);
 
     /// Returns the latest evaluation at @p y, or a new one.
     const GaitRecord &
@@ -147,43 +136,42 @@ namespace crawler
     }
 
   private:
-    /// Largest violation of a limit, relative to it, and the name of that.
-    struct Violation
+    /// Limit of a number of the gait or of values at many places.
+    struct Limit
     {
-      double size = 0.;
-      std::string of;
-    };
-    /// Sets the constraints of latest_, and with @p with_gradients their derivatives.
-    Violation
-    set_constraints(const GaitValues &values, bool with_gradients);
-
-    struct NumberLimit
-    {
-      GaitNumber::Index number;
-      std::string name;
-      double value;
-    };
-    struct BlockLimit
-    {
+      std::optional<GaitNumber::Index> number;
       LimitedValues GaitValues::*values;
-      std::string lower_name, upper_name; ///< empty: no such limit
-      double lower, upper, scale;
-      double wanted_lower, wanted_upper;
+      std::string lower_name = "", upper_name = ""; ///< empty: no such limit
+      double lower = -HUGE_VAL, upper = HUGE_VAL, wanted_lower = -HUGE_VAL, wanted_upper = HUGE_VAL, scale = 0.;
+      std::size_t size = 1;
+
+      LimitedValues
+      of(const GaitValues &gait) const;
     };
+    void
+    add_limit(const LimitEntry &entry, double wanted, double own);
+    /// Sets the constraints of latest_ and their derivatives. @p record gets the largest violation.
+    void
+    set_constraints(const GaitValues &values, GaitRecord &record);
 
     double
-    objective(const GaitValues &values, std::vector<double> *gradient) const;
+    objective(const GaitValues &values, std::vector<double> &gradient) const;
     /// Places of the strains with forces.
     std::vector<std::size_t>
     pulling_places(const std::vector<double> &forces) const;
+    double
+    range(const std::size_t i) const
+    {
+      return variables_[i].to - variables_[i].from;
+    }
 
     GaitModel &model_;
     const OptimizeParameters parameters_;
-    const std::vector<Variable> variables_;
-    const std::function<bool()> stops_;
-    std::vector<NumberLimit> number_limits_;
-    std::vector<BlockLimit> block_limits_;
-    std::vector<std::size_t> block_sizes_;
+    const std::vector<Variable> &variables_;
+    const std::function<bool(const GaitProblem &)> stops_;
+    const GaitObjective objective_;
+    std::vector<Limit> limits_; ///< those of numbers first
+    std::size_t n_numbers_ = 0;
     std::vector<double> lower_, upper_;
     double scale_ = 1.; ///< scale of the objective
     std::vector<double> latest_y_;

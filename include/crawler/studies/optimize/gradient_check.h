@@ -12,6 +12,5 @@ namespace crawler
   /// beside differences of the model. Returns true if they agree to 1e-5 of the gradient's size, or, where gaits are
   /// simulated, within their accuracy; nothing if all derivatives are differences themselves.
   std::optional<bool>
-  check_gradient(
-    GaitModel &model, const SceneFamily &family, const GaitWishes &wishes, const std::vector<double> &x, Log &log);
+  check_gradient(GaitModel &model, const std::vector<double> &x, Log &log);
 } // namespace crawler

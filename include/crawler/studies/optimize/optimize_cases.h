@@ -18,17 +18,16 @@ namespace crawler
     {
       std::vector<std::string> values; ///< values of the axes, as written in a parameter file
       std::vector<std::string> paths;  ///< paths of the variables
-      double sign;                     ///< sign of the wanted direction
+      GaitObjective objective;
     };
     std::vector<std::string> axes;
     std::vector<Case> cases;
     std::vector<std::string> paths, units; ///< variables of any case
     std::vector<std::string> limits;       ///< entries that limit any case
-    std::string objective, unit;           ///< objective and its unit
+    GaitObjective objective;               ///< objective of all, but for the wanted direction
   };
 
-  /// Problems that an optimisation solves one by one: the points of section Sweep, or the file as it is if that has no
-  /// axes.
+  /// Problems that an optimisation solves one by one: the points of section Sweep.
   class OptimizeCases
   {
   public:
@@ -38,12 +37,15 @@ namespace crawler
     unsigned long
     size() const
     {
-      return points_ ? points_->design().n_points() : 1;
+      return points_.design().n_points();
     }
 
     /// Scenes of a case. One at a time: it must be destroyed before the next one is made.
     std::unique_ptr<SceneFamily>
-    family(unsigned long number);
+    family(const unsigned long number)
+    {
+      return std::make_unique<SceneFamily>(points_.form(number));
+    }
 
     const OptimizeNames &
     names() const
@@ -60,7 +62,7 @@ namespace crawler
     std::vector<unsigned long>
     neighbours(unsigned long number) const
     {
-      return points_ ? points_->design().neighbours(number) : std::vector<unsigned long>();
+      return points_.design().neighbours(number);
     }
 
     /// Values of a case, "Section/Entry = value, ...", with the last names only; empty if there are no axes.
@@ -71,35 +73,31 @@ namespace crawler
     const Parameters &
     parameters() const
     {
-      return file_form_.parameters;
+      return points_.own_parameters();
     }
-    const Declarations &
-    declarations() const
-    {
-      return file_form_.declarations;
-    }
-
     /// Notes on entries without an effect in any case.
     std::vector<std::string>
     notes(const ParameterFile &file);
 
     /// Inputs on which the gaits depend (one process: reads files). Throws FileError.
     SweepInputs
-    inputs() const;
+    inputs() const
+    {
+      return sweep_inputs(points_);
+    }
 
     /// Entries as used, except for the axes, as a .prm file.
-    std::string
+    const std::string &
     effective() const
     {
-      return file_form_.effective();
+      return points_.effective();
     }
 
   private:
     void
     add_case(unsigned long number);
 
-    Form file_form_;
-    std::unique_ptr<SweepPoints> points_; ///< null if there are no axes
+    SweepPoints points_;
     OptimizeNames names_;
   };
 } // namespace crawler

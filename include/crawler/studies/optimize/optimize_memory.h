@@ -6,6 +6,7 @@
 #include <crawler/studies/sweep/point_table.h>
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,19 @@ namespace crawler
     }
 
   private:
+    /// File to which rows are appended.
+    struct Rows
+    {
+      std::string file, group;
+      std::vector<RowFile::Column> columns; ///< columns that are written
+      std::unique_ptr<RowFile> rows = nullptr;
+      unsigned long n = 0, max = 0; ///< rows written, and places for rows
+    };
+    void
+    open(Rows &rows, const std::string &ending) const;
+    static void
+    append(Rows &rows, std::span<const RowFile::Row> more);
+
     void
     write_all(bool with_room);
     void
@@ -55,8 +69,6 @@ namespace crawler
     const PointTable table_;
     PlannedRows plan_;
     std::vector<StartResult> starts_; ///< in the order of their rows
-    std::unique_ptr<RowFile> start_rows_, evaluation_rows_;
-    unsigned long n_starts_ = 0, n_evaluations_ = 0;     ///< rows written
-    unsigned long max_starts_ = 0, max_evaluations_ = 0; ///< places for rows
+    Rows start_rows_, evaluation_rows_;
   };
 } // namespace crawler

@@ -4,6 +4,8 @@
 #include <crawler/base/table.h>
 #include <crawler/studies/optimize/optimize_memory.h>
 
+#include <nlohmann/json.hpp>
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -15,7 +17,8 @@ namespace crawler
   {
     const OptimizeNames &names;
     std::vector<StartResult> starts;
-    std::vector<std::size_t> best; ///< indices of starts, one for each case that has a gait
+    std::vector<std::size_t> best;            ///< indices of starts, one for each case that has a gait
+    std::vector<nlohmann::ordered_json> runs; ///< summaries of the runs of the best ones
 
     /// Chooses the best of @p starts, which are in the order of the cases.
     OptimizeResults(const OptimizeNames &names, std::vector<StartResult> starts);
@@ -30,18 +33,14 @@ namespace crawler
     }
   };
 
-  /// Table with a row for each optimum: the row of its start in the @p folder, and the results of its run from @p
-  /// summaries.
+  /// Table with a row for each optimum: the row of its start in the @p folder, and the results of its run.
   Table
-  optimum_table(const OptimizeResults &results,
-                const std::filesystem::path &folder,
-                const std::vector<std::string> &summaries);
+  optimum_table(const OptimizeResults &results, const std::filesystem::path &folder);
 
-  /// Summary: that of the run of the last optimum, @p summaries of the runs of all, and the report of the optimiser. If
-  /// there is a @p reason why the study did not finish, it replaces the ending of the run.
+  /// Summary: that of the run of the last optimum, and the report of the optimiser. If there is a @p reason why the
+  /// study did not finish, it replaces the ending of the run.
   std::string
   optimize_json(const OptimizeResults &results,
-                const std::vector<std::string> &summaries,
                 const std::string &status,
                 const std::string &reason,
                 const std::string &message,
@@ -50,5 +49,5 @@ namespace crawler
 
   /// Lines for the screen.
   std::vector<std::string>
-  in_words(const OptimizeResults &results, const OptimizeCases &cases, const std::vector<std::string> &summaries);
+  in_words(const OptimizeResults &results, const OptimizeCases &cases);
 } // namespace crawler

@@ -55,7 +55,8 @@ namespace crawler
   /// Makes the level on which gaits are computed: simulations, or the kinematic level if Model says so. Throws
   /// InputError.
   std::unique_ptr<GaitModel>
-  make_gait_model(class SceneFamily &family, const std::vector<double> &start, const std::function<bool()> &stops);
+  make_gait_model(
+    SceneFamily &family, const std::vector<double> &start, const std::function<bool()> &stops = []() { return false; });
 
   /// Progress of a search.
   struct SearchState
@@ -70,7 +71,7 @@ namespace crawler
    * the search goes on from there. An interrupted search returns the best so far. Throws InputError.
    */
   StartResult
-  search(class SceneFamily &family,
+  search(SceneFamily &family,
          const StartName &start,
          const std::vector<double> &x,
          SearchState &state,

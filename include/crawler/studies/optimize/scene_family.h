@@ -6,17 +6,22 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace crawler
 {
-  /// Entry that limits gaits.
+  /// Entry that limits a number of the gait, or values at many places.
   struct LimitEntry
   {
     const char *name;
     std::optional<double> OptimizeParameters::*value;
-    std::optional<GaitNumber::Index> number = {}; ///< unset: a limit of values at many places
+    std::optional<GaitNumber::Index> number = {};
+    LimitedValues GaitValues::*values       = nullptr;
+    bool is_lower = false, is_upper = true; ///< a limit to both sides holds for the size
   };
 
   /// Limits in the order in which results name them.
@@ -25,10 +30,14 @@ namespace crawler
      {"Positive work", &OptimizeParameters::positive_work, GaitNumber::positive_work},
      {"Dissipation", &OptimizeParameters::dissipation, GaitNumber::dissipation},
      {"Mean-square strain", &OptimizeParameters::mean_square_strain, GaitNumber::mean_square},
-     {"Smallest strain", &OptimizeParameters::smallest_strain},
-     {"Largest strain", &OptimizeParameters::largest_strain},
-     {"Largest stress", &OptimizeParameters::largest_stress},
-     {"Largest stress rate", &OptimizeParameters::largest_stress_rate}}};
+     {"Smallest strain", &OptimizeParameters::smallest_strain, {}, &GaitValues::strain, true, false},
+     {"Largest strain", &OptimizeParameters::largest_strain, {}, &GaitValues::strain},
+     {"Largest stress", &OptimizeParameters::largest_stress, {}, &GaitValues::stress, true},
+     {"Largest stress rate", &OptimizeParameters::largest_stress_rate, {}, &GaitValues::stress_rate, true}}};
+
+  /// Objective with the sign of the wanted direction.
+  GaitObjective
+  objective_of(const OptimizeParameters &parameters);
 
   /// Scenes that the variables of an optimisation make (Optimize/Variables).
   class SceneFamily
@@ -67,8 +76,8 @@ namespace crawler
     std::vector<StencilPoint>
     stencil(const std::vector<double> &x, std::size_t i, double relative_step) const;
 
-    /// Derivatives by differences of @p values of the parameters: [place][variable]. Throws InputError.
-    std::vector<double>
+    /// Derivatives by differences of @p values of the parameters: [variable][place]. Throws InputError.
+    std::vector<std::vector<double>>
     differences(const std::vector<double> &x,
                 const std::function<std::vector<double>(const Parameters &)> &values,
                 double relative_step);
@@ -82,13 +91,62 @@ namespace crawler
     largest_stress(const std::vector<double> &x, bool rate);
   };
 
+  /// Computes gaits for the values of the variables, on some level of the model.
+  class GaitModel
+  {
+  public:
+    explicit GaitModel(SceneFamily &its_family);
+    virtual ~GaitModel() = default;
+
+    SceneFamily &family;
+    const GaitWishes wishes; ///< what the objective and the limits of the family need
+
+    /// A gait that cannot be computed (the body inverts, a formula has no value) has a problem. Derivatives of the
+    /// strain are certain to exist only at @p places and for the smallest and the largest strain. Throws Interrupted.
+    GaitValues
+    evaluate(const std::vector<double> &x, bool with_gradients, const std::vector<std::size_t> &places = {});
+
+    /// Checks a result more closely and refines the grid if it was too coarse. Returns true if it did: then the optimum
+    /// is to be searched once more.
+    virtual bool
+    refine(const std::vector<double> &x) = 0;
+
+    /// Smallest and largest strain over body and duration, also between the places where they are limited.
+    virtual std::pair<double, double>
+    extreme_strains(const std::vector<double> &x) = 0;
+
+    /// Relative accuracy of the numbers: the optimiser cannot come closer.
+    virtual double
+    noise() const
+    {
+      return 0.;
+    }
+
+    /// Description of the model in words, for the log.
+    virtual std::string
+    description() const = 0;
+
+    /// Exception: the computation was stopped from outside.
+    struct Interrupted
+    {
+    };
+
+  protected:
+    /// Adds to @p values, whose gradients are 0, all but the active stress. Throws InputError for a problem.
+    virtual void
+    compute(const std::vector<double> &x,
+            bool with_gradients,
+            const std::vector<std::size_t> &places,
+            GaitValues &values) = 0;
+  };
+
   /// Makes the model of gaits of the kinematic level. Throws InputError if the start does not make a scene with a given
   /// strain.
   std::unique_ptr<GaitModel>
-  kinematic_gait(SceneFamily &family, const GaitWishes &wishes, const std::vector<double> &start);
+  kinematic_gait(SceneFamily &family, const std::vector<double> &start);
 
   /// Makes the model of gaits of the levels that are simulated. @p interrupted is called after every step. Throws
   /// InputError for a wish that only the kinematic level fulfils.
   std::unique_ptr<GaitModel>
-  simulated_gait(SceneFamily &family, const GaitWishes &wishes, std::function<bool()> interrupted);
+  simulated_gait(SceneFamily &family, std::function<bool()> interrupted);
 } // namespace crawler

@@ -17,6 +17,10 @@ namespace crawler
   class Kymograph;
   class Statistics;
 
+  /// Time/Wall time limit [s], for the sentence that says what stopped a run.
+  std::string
+  wall_time_limit_in_words(double limit);
+
   /// Results of a run without files.
   struct RunInMemory
   {

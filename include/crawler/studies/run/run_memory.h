@@ -9,14 +9,20 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace crawler
 {
+  /// Name of the file in the output folder whose presence asks the run to stop.
+  inline const std::string stop_file_name = "stop";
+
   /// Folder of a run, which only the first rank has, with the states from which the run can resume.
   class RunMemory
   {
   public:
     RunMemory(MPI_Comm communicator, const Input &input, const CommandOptions &options);
+    RunMemory(const RunMemory &) = delete;
+    ~RunMemory();
 
     /// Checks the folder and, to resume, locks it and takes up its states (collective). Returns false if the run there
     /// is complete. Throws InputError, FileError.

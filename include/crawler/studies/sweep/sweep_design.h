@@ -28,7 +28,7 @@ namespace crawler
     }
   };
 
-  /// Points of a sweep, numbered from 0.
+  /// Points of a sweep, numbered from 0; a single one if there are no axes.
   class SweepDesign
   {
   public:

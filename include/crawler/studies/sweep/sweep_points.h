@@ -19,8 +19,9 @@ namespace crawler
   {
   public:
     /// Reads the design and checks all names and values (collective: rank 0 examines the files of a file axis, which
-    /// are read again when their points need them). Throws InputError, with the place in the file.
-    SweepPoints(MPI_Comm communicator, const ParameterFile &file);
+    /// are read again when their points need them). Throws InputError, with the place in the file, also for no axes
+    /// unless @p may_be_one, the file as it is.
+    SweepPoints(MPI_Comm communicator, const ParameterFile &file, bool may_be_one = false);
 
     const SweepDesign &
     design() const
@@ -30,10 +31,15 @@ namespace crawler
     const SweepParameters &
     sweep() const
     {
-      return sweep_;
+      return own_.sweep;
     }
 
     /// Entries of the file itself, without an axis.
+    const Parameters &
+    own_parameters() const
+    {
+      return own_;
+    }
     const Declarations &
     declarations() const
     {
@@ -106,7 +112,7 @@ namespace crawler
     require_scene();
 
     const ParameterFile &file_;
-    SweepParameters sweep_;
+    Parameters own_;
     std::unique_ptr<SweepDesign> design_;
     std::string effective_;
     std::vector<SensitivityEntry> sensitivities_;
