@@ -212,7 +212,7 @@ def _locked(path):
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             os.close(lock)
-            raise InputError(f'another study is writing to "{path.parent}"; wait for it to end, or give another folder with --output') from None
+            raise InputError(f'a run or study is writing to "{path.parent}"; wait for it to end, or give another folder with --output') from None
         except OSError:
             return lock  # a file system without locks
         if path.exists() and os.path.samestat(os.fstat(lock), os.stat(path)):
