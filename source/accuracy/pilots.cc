@@ -114,7 +114,9 @@ namespace crawler
   double
   Pilots::min_size() const
   {
-    return mesh_choice::min_error * scene.body.length / parameters.accuracy;
+    const double n_cycles = cycles ? scene.end_time / cycles->period : 0.;
+    return std::max(mesh_choice::min_error * scene.body.length, n_cycles * round_off_of_cycle * last.largest_u) /
+           parameters.accuracy;
   }
 
   const std::string &

@@ -193,8 +193,10 @@ namespace crawler
     const double round_off = 4. * std::numeric_limits<double>::epsilon() * largest_u_;
     bound_                 = left * (next / (1. - rho) + round_off);
 
-    const double size  = std::max(std::abs(ends_[n].displacement + left * increment), displacement_floor * largest_u_);
-    const double drift = changes_.back().largest * rho / (1. - rho);
+    const double size        = std::max({std::abs(ends_[n].displacement + left * increment),
+                                         displacement_floor * largest_u_,
+                                         n_cycles_ * round_off_of_cycle * largest_u_ / wish_.accuracy});
+    const double drift       = changes_.back().largest * rho / (1. - rho);
     const EnergyBalance &now = ends_[n].energy_balance, &then = ends_[n - 1].energy_balance;
     const double stored = left * std::abs(now.elastic_energy - then.elastic_energy);
     const double work   = now.exchanged_work + left * (now.exchanged_work - then.exchanged_work);

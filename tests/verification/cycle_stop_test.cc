@@ -278,3 +278,16 @@ TEST(CycleStop, TheLastComputedStrideHasABoundForTheStridesAfterIt)
     EXPECT_FALSE(error_bound(result, "gait.cost_of_transport.stress_power")) << p;
   }
 }
+
+/// A body that pulses alike at both ends goes nowhere, to round-off, which no run of many strides falls below: its
+/// strides repeat all the same, whatever Accuracy is.
+TEST(CycleStop, BodiesThatGoNowhereRepeat)
+{
+  const auto parameters = test::parameters_with(
+    test::set("Accuracy = 1e-9; p = 4; k = 2; T = 500; travelling wave; Amplitude = 0.5; Wave number = 0"));
+  const auto result = compute(parameters);
+  ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
+  ASSERT_TRUE(result.cycles);
+  EXPECT_LE(std::abs(result.displacement), result.error->total);
+  EXPECT_LE(result.error->total, 500. * round_off_of_cycle * result.largest_u);
+}

@@ -12,6 +12,8 @@ namespace crawler
 {
   /// Floor of the displacement for relative errors, as a part of the body's largest deformation [1].
   inline constexpr double displacement_floor = 1e-4;
+  /// Error of a displacement that is round-off, for each cycle, as a part of the body's largest deformation [1].
+  inline constexpr double round_off_of_cycle = 1e-14;
 
   /// Cycles of a run that ended early because they repeat; the missing ones are extrapolated.
   struct Cycles
