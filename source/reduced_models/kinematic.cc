@@ -55,21 +55,22 @@ namespace crawler
 
     /// Bounds of the strain from some points of the box, where it has no bounds of its own or an enclosure is too wide
     /// to be of use.
-    FieldBounds
-    bounds_of(const StrainHistory &strain, const SpaceTimeBox &box)
+    ActiveStress::Bounds
+    bounds_of(const ActiveStress &strain, const ActiveStress::Box &box)
     {
       if (const auto bounds = strain.bounds(box); bounds && std::isfinite(bounds->value) && std::isfinite(bounds->rate))
         return *bounds;
       constexpr unsigned int n_s = 9, n_t = 3;
       std::vector<double> values(n_s);
-      const auto at = strain.at(equal_parts(box.s_from, box.s_to, n_s - 1));
-      FieldBounds largest{0., 0.};
+      const std::vector<double> places = equal_parts(box.s_from, box.s_to, n_s - 1);
+      const auto at = strain.at(places), rate_at = strain.rate_at(places);
+      ActiveStress::Bounds largest{0., 0.};
       for (const double t : equal_parts(box.t_from, box.t_to, n_t - 1))
       {
-        at->strain(t, values);
+        at->values(t, values);
         for (const double e : values)
           largest.value = std::max(largest.value, std::abs(e));
-        at->rate(t, values);
+        rate_at->values(t, values);
         for (const double e_t : values)
           largest.rate = std::max(largest.rate, std::abs(e_t));
       }
@@ -79,7 +80,7 @@ namespace crawler
     /// Ends of panels in time such that the strain changes by at most a few times its size in each (two waves of a
     /// sine), so that their points resolve it, however short its events are. Nothing if there are more than @p most.
     std::optional<std::vector<double>>
-    time_panels(const StrainHistory &strain, std::vector<double> breaks, const std::size_t most)
+    time_panels(const ActiveStress &strain, std::vector<double> breaks, const std::size_t most)
     {
       constexpr unsigned int fewest = 4;
       constexpr double max_changes  = 12.;
@@ -153,7 +154,7 @@ namespace crawler
     /// @p space_ends and @p ends are those of the panels in space and time.
     Sums
     integrate(const Scene &scene,
-              const StrainHistory &strain,
+              const ActiveStress &strain,
               const std::vector<double> &space_ends,
               const std::vector<double> &ends,
               const std::function<bool()> &keep_going)
@@ -182,13 +183,14 @@ namespace crawler
   } // namespace
 
   KinematicBody::KinematicBody(const Scene &scene,
-                               const StrainHistory &strain,
+                               const ActiveStress &strain,
                                const std::vector<double> &panels,
                                const std::vector<double> &points)
     : panels_(panels)
     , points_(points)
     , inside_(with_ends(panels_.points()))
     , strain_(strain.at(inside_))
+    , rate_(strain.rate_at(inside_))
     , strain_at_points_(strain.at(points))
     , body_(scene, inside_)
     , body_at_points_(scene, points)
@@ -207,8 +209,8 @@ namespace crawler
     const std::size_t n = m_.size();
     const auto &weights = panels_.weights();
     time_               = t;
-    strain_->strain(t, e_);
-    strain_->rate(t, e_t_);
+    strain_->values(t, e_);
+    rate_->values(t, e_t_);
     integrals_               = {};
     const auto [least, most] = std::minmax_element(e_.begin(), e_.end());
     integrals_.smallest      = {*least, inside_[static_cast<std::size_t>(least - e_.begin())], t};
@@ -247,7 +249,7 @@ namespace crawler
     fields.displacement.resize(n_points);
     fields.velocity.resize(n_points);
     fields.active_stress.resize(n_points);
-    strain_at_points_->strain(time_, fields.strain);
+    strain_at_points_->values(time_, fields.strain);
     places_.running_integral({e_.data(), n}, fields.displacement);
     places_.running_integral({e_t_.data(), n}, fields.velocity);
     places_.running_integral(motion_.gv, fields.active_stress);
@@ -299,7 +301,7 @@ namespace crawler
 
   KinematicResult
   kinematic(const Scene &scene,
-            const StrainHistory &strain,
+            const ActiveStress &strain,
             const double tolerance,
             const std::function<bool()> &keep_going)
   {

@@ -57,7 +57,7 @@ namespace crawler
     const double c = wave_.speed, D = displacement(t), V = velocity(t);
     ReducedFields fields;
     fields.strain.resize(points.size());
-    leading_order_strain(wave_).at(points)->strain(t, fields.strain);
+    leading_order_strain(wave_).at(points)->values(t, fields.strain);
     for (std::size_t i = 0; i < points.size(); ++i)
     {
       const double s = points[i];

@@ -53,23 +53,16 @@ namespace crawler
       return std::make_unique<Sum>(std::move(terms), scene.body.length, scene.end_time);
     }
 
-    /// No actuation: m = 0.
-    class NoActiveStress : public KnownStress
+    std::unique_ptr<ActiveStress>
+    create_nothing(const ActiveStressParameters &, const Scene &)
     {
-    public:
-      std::optional<Bounds>
-      bounds(const Box &) const override
-      {
-        return Bounds{0., 0.};
-      }
-
-    private:
-      std::unique_ptr<ActiveStressAtPoints>
-      evaluator(const std::vector<double> &, bool) const override
-      {
-        return stress_at_points([](double, const std::span<double> m) { std::ranges::fill(m, 0.); });
-      }
-    };
+      const auto no_stress = [](double, const std::span<double> m) { std::ranges::fill(m, 0.); };
+      return std::make_unique<StressByFunctions>(
+        [=](const std::vector<double> &, bool) { return stress_at_points(no_stress); },
+        [](const ActiveStress::Box &) {
+          return ActiveStress::Bounds{0., 0.};
+        });
+    }
 
     /// Makes a wave by Fourier coefficients or of any shape.
     std::unique_ptr<ActiveStress>
@@ -120,9 +113,7 @@ namespace crawler
     {
       using P                                  = ActiveStressParameters;
       static const std::vector<Generator> list = {
-        {"none",
-         "no actuation, m = 0",
-         [](const P &, const Scene &) -> std::unique_ptr<ActiveStress> { return std::make_unique<NoActiveStress>(); }},
+        {"none", "no actuation, m = 0", create_nothing},
         {"optimal wave",
          "the wave of largest displacement for a given energy, to leading order in chi",
          create_any_optimal_wave},

@@ -24,35 +24,6 @@ namespace crawler
       return values;
     }
 
-    SpaceTimeBox
-    physical(const SpaceTimeBox &box, const Units &units)
-    {
-      return {box.s_from * units.length, box.s_to * units.length, box.t_from * units.time, box.t_to * units.time};
-    }
-
-    /// A strain history in other units.
-    StrainByEvaluators
-    scaled(const StrainHistory &history, const Units &units)
-    {
-      return StrainByEvaluators(
-        [&history, units](const std::vector<double> &points) -> StrainByEvaluators::Evaluators {
-          const std::shared_ptr<StrainAtPoints> at = history.at(times(points, units.length));
-          const double unit                        = units.time;
-          return {stress_at_points([at, unit](const double t, const std::span<double> e) { at->strain(t * unit, e); }),
-                  stress_at_points([at, unit](const double t, const std::span<double> e_t) {
-                    at->rate(t * unit, e_t);
-                    for (double &value : e_t)
-                      value *= unit;
-                  })};
-        },
-        [&history, units](const SpaceTimeBox &box) {
-          auto bounds = history.bounds(physical(box, units));
-          if (bounds)
-            bounds->rate *= units.time;
-          return bounds;
-        });
-    }
-
     /// An active stress in other units. @p pieces may be null.
     class ScaledActiveStress : public KnownStress
     {
@@ -63,7 +34,8 @@ namespace crawler
         , pieces_(pieces)
       {
         if (stress.prescribed_strain() != nullptr)
-          strain_.emplace(scaled(*stress.prescribed_strain(), units));
+          strain_ = std::make_unique<ScaledActiveStress>(
+            *stress.prescribed_strain(), Units{units.length, units.time, /*force=*/1.}, nullptr);
         if (const StretchFeedback *feedback = stress.feedback())
           feedback_.emplace(KnownFeedback::Facts{feedback->uses_rate(),
                                                  feedback->distance() / units.length,
@@ -75,10 +47,10 @@ namespace crawler
       }
       ScaledActiveStress(const ScaledActiveStress &) = delete;
 
-      const StrainHistory *
+      const ActiveStress *
       prescribed_strain() const override
       {
-        return strain_ ? &*strain_ : nullptr;
+        return strain_.get();
       }
       const StressFailures *
       failures() const override
@@ -98,7 +70,8 @@ namespace crawler
       std::optional<Bounds>
       bounds(const Box &box) const override
       {
-        auto bounds = stress_.bounds(physical(box, units_));
+        auto bounds = stress_.bounds(
+          {box.s_from * units_.length, box.s_to * units_.length, box.t_from * units_.time, box.t_to * units_.time});
         if (bounds)
           *bounds = {bounds->value / units_.force, bounds->rate * units_.time / units_.force};
         return bounds;
@@ -155,7 +128,7 @@ namespace crawler
       const ActiveStress &stress_;
       const Units units_;
       const TimeSegments *pieces_;
-      std::optional<StrainByEvaluators> strain_;
+      std::unique_ptr<const ActiveStress> strain_;
       std::optional<KnownFeedback> feedback_;
     };
 

@@ -5,6 +5,7 @@
 #include <crawler/equation/energy_balance.h>
 #include <crawler/reduced_models/reduced_fields.h>
 #include <crawler/reduced_models/strain.h>
+#include <crawler/scene/strain_extremes.h>
 
 namespace crawler
 {

@@ -9,7 +9,7 @@
 
 namespace crawler
 {
-  // Evaluators of active stresses, strains and feedback at points, made of functions that keep whatever does not depend
+  // Evaluators of active stresses and feedback at points, made of functions that keep whatever does not depend
   // on time.
 
   /// Makes an evaluator from a function of t [time] and of the list that receives m, or from its values().
@@ -104,55 +104,5 @@ namespace crawler
   private:
     const Facts facts_;
     const Make make_;
-  };
-
-  /// A strain by evaluators that write it as they would an active stress.
-  class StrainByEvaluators : public StrainHistory
-  {
-  public:
-    /// Evaluators of the strain [1] and of its rate [1/time].
-    using Evaluators = std::pair<std::unique_ptr<ActiveStressAtPoints>, std::unique_ptr<ActiveStressAtPoints>>;
-    using Make       = std::function<Evaluators(const std::vector<double> &points)>;
-    using Bound      = std::function<std::optional<FieldBounds>(const SpaceTimeBox &box)>;
-
-    explicit StrainByEvaluators(Make make, Bound bound = {})
-      : make_(std::move(make))
-      , bound_(std::move(bound))
-    {
-    }
-
-    std::unique_ptr<StrainAtPoints>
-    at(const std::vector<double> &points) const override
-    {
-      struct AtPoints : public StrainAtPoints
-      {
-        explicit AtPoints(Evaluators both)
-          : both(std::move(both))
-        {
-        }
-        void
-        strain(const double t, const std::span<double> e) override
-        {
-          both.first->values(t, e);
-        }
-        void
-        rate(const double t, const std::span<double> e_t) override
-        {
-          both.second->values(t, e_t);
-        }
-        const Evaluators both;
-      };
-      return std::make_unique<AtPoints>(make_(points));
-    }
-
-    std::optional<FieldBounds>
-    bounds(const SpaceTimeBox &box) const override
-    {
-      return bound_ ? bound_(box) : std::nullopt;
-    }
-
-  private:
-    const Make make_;
-    const Bound bound_;
   };
 } // namespace crawler

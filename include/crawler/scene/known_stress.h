@@ -70,4 +70,34 @@ namespace crawler
 
     mutable std::optional<std::optional<Repetition>> repetition_; ///< set by the first request
   };
+
+  /// An active stress, or a strain, made of functions.
+  class StressByFunctions : public KnownStress
+  {
+  public:
+    using Make  = std::function<std::unique_ptr<ActiveStressAtPoints>(const std::vector<double> &points, bool rate)>;
+    using Bound = std::function<std::optional<Bounds>(const Box &box)>;
+
+    explicit StressByFunctions(Make make, Bound bound = {})
+      : make_(std::move(make))
+      , bound_(std::move(bound))
+    {
+    }
+
+    std::optional<Bounds>
+    bounds(const Box &box) const override
+    {
+      return bound_ ? bound_(box) : std::nullopt;
+    }
+
+  private:
+    std::unique_ptr<ActiveStressAtPoints>
+    evaluator(const std::vector<double> &points, const bool rate) const override
+    {
+      return make_(points, rate);
+    }
+
+    const Make make_;
+    const Bound bound_;
+  };
 } // namespace crawler

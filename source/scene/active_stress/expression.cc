@@ -9,20 +9,6 @@
 
 namespace crawler
 {
-  namespace
-  {
-    FormulaInput
-    input_of(const ExpressionParameters &parameters)
-    {
-      const std::string expression_section = "Active stress/Expression/";
-      return {"active stress",
-              parameters.active_stress,
-              parameters.constants,
-              expression_section + "Active stress",
-              expression_section + "Constants"};
-    }
-  } // namespace
-
   void
   ExpressionParameters::add_parameters(Declarations &declarations)
   {
@@ -33,10 +19,10 @@ namespace crawler
     declarations.constants("Constants", constants, {"Active stress"}).means("Constants that the formula may use.");
   }
 
-  Expression::Expression(const ExpressionParameters &parameters, const double length, const double end_time)
+  Expression::Expression(const FormulaInput &input, const double length, const double end_time)
     : length_(length)
     , end_time_(end_time)
-    , compiled_(read_formula(input_of(parameters), length, end_time))
+    , compiled_(read_formula(input, length, end_time))
     , bound_(compiled_)
   {
     const FormulaBreaks breaks = formula_breaks(compiled_, length, end_time);
@@ -44,7 +30,18 @@ namespace crawler
     facts_.breaks_in_time      = breaks.in_time.value_or(std::vector<double>());
     if (breaks.in_time)
       bound_.leave_out_jumps();
-    require_finite_values(*this, input_of(parameters), "", length, end_time);
+    require_finite_values(*this, input, "", length, end_time);
+  }
+
+  Expression::Expression(const ExpressionParameters &parameters, const double length, const double end_time)
+    : Expression({"active stress",
+                  parameters.active_stress,
+                  parameters.constants,
+                  "Active stress/Expression/Active stress",
+                  "Active stress/Expression/Constants"},
+                 length,
+                 end_time)
+  {
   }
 
   std::unique_ptr<ActiveStressAtPoints>

@@ -53,21 +53,22 @@ namespace crawler
     }
 
     /// A guarded evaluator of the plug-in: errors become failures.
-    template <typename AtPoints>
     class Guarded
     {
     public:
       /// Makes evaluators for some points, one or all.
-      using Make = std::function<std::unique_ptr<AtPoints>(const std::vector<double> &)>;
+      using Make = std::function<std::unique_ptr<ActiveStressAtPoints>(const std::vector<double> &)>;
 
       /// Makes the evaluator; null, and a failure, if that throws. @p maker is the name of the plug-in's function that
-      /// @p make calls.
+      /// @p make calls, @p name that of the values.
       Guarded(std::shared_ptr<LibraryFailures> failures,
               Make make,
-              const char *maker,
+              const std::string &maker,
+              std::string name,
               const std::vector<double> &points)
         : failures_(std::move(failures))
         , make_(std::move(make))
+        , name_(std::move(name))
         , points_(points)
       {
         const auto thrown = thrown_by([&]() { at_points_ = make_(points); });
@@ -77,39 +78,33 @@ namespace crawler
           fail(*failures_, fmt::format("returned no evaluator in {}", maker));
       }
 
-      /// Makes an evaluator that calls @p call, whose name is @p name. If that throws, or writes a value that is not
-      /// finite, the whole result is NaN.
-      std::unique_ptr<ActiveStressAtPoints>
-      evaluator(const char *name, void (AtPoints::*call)(double, std::span<double>)) const
+      /// Writes the values; all are NaN if the plug-in throws, or writes one that is not finite.
+      void
+      values(const double t, const std::span<double> result)
       {
-        return stress_at_points([guarded = *this, name, call](const double t, const std::span<double> result) {
-          if (!guarded.is_well(name, call, t, result))
-            std::fill(result.begin(), result.end(), no_number);
-        });
+        if (!is_well(t, result))
+          std::fill(result.begin(), result.end(), no_number);
       }
 
     private:
       bool
-      is_well(const char *name,
-              void (AtPoints::*call)(double, std::span<double>),
-              const double t,
-              const std::span<double> result) const
+      is_well(const double t, const std::span<double> result) const
       {
         if (!at_points_) // has been reported already
         {
           ++failures_->count;
           return false;
         }
-        if (const auto thrown = thrown_by([&]() { (*at_points_.*call)(t, result); }))
+        if (const auto thrown = thrown_by([&]() { at_points_->values(t, result); }))
         {
           // Place of the failure: the first point that throws on its own.
           const auto place = std::find_if(points_.begin(), points_.end(), [&](const double s) {
             double value = 0.;
-            return thrown_by([&]() { (*make_({s}).*call)(t, {&value, 1}); }).has_value();
+            return thrown_by([&]() { make_({s})->values(t, {&value, 1}); }).has_value();
           });
           fail(*failures_,
                fmt::format("threw an exception in {} at {}t = {:.9g}: {}",
-                           name,
+                           name_,
                            place != points_.end() ? fmt::format("s = {:.9g}, ", *place) : "",
                            t,
                            *thrown));
@@ -122,7 +117,7 @@ namespace crawler
         fail(*failures_,
              fmt::format("returned {} in {} at s = {:.9g}, t = {:.9g}; a finite number is expected",
                          *bad,
-                         name,
+                         name_,
                          points_[static_cast<std::size_t>(bad - result.begin())],
                          t));
         return false;
@@ -130,23 +125,27 @@ namespace crawler
 
       std::shared_ptr<LibraryFailures> failures_;
       Make make_;
+      std::string name_;
       std::vector<double> points_;
-      std::shared_ptr<AtPoints> at_points_;
+      std::unique_ptr<ActiveStressAtPoints> at_points_;
     };
 
-    std::unique_ptr<const StrainHistory>
-    guarded_strain(const std::shared_ptr<LibraryFailures> &failures, const StrainHistory &history)
+    /// Makes a guarded evaluator of a stress of the plug-in or of its strain; @p whose follows names in messages.
+    std::unique_ptr<ActiveStressAtPoints>
+    guarded(const std::shared_ptr<LibraryFailures> &failures,
+            const ActiveStress &stress,
+            const char *whose,
+            const std::vector<double> &points,
+            const bool rate)
     {
-      return std::make_unique<StrainByEvaluators>(
-        [failures, &history](const std::vector<double> &points) -> StrainByEvaluators::Evaluators {
-          const Guarded<StrainAtPoints> guarded(
-            failures,
-            [&history](const std::vector<double> &places) { return history.at(places); },
-            "at() of its strain",
-            points);
-          return {guarded.evaluator("strain()", &StrainAtPoints::strain),
-                  guarded.evaluator("rate()", &StrainAtPoints::rate)};
-        });
+      return stress_at_points(Guarded(
+        failures,
+        [&stress, rate](const std::vector<double> &places) {
+          return rate ? stress.rate_at(places) : stress.at(places);
+        },
+        (rate ? "rate_at()" : "at()") + std::string(whose),
+        (rate ? "values() of the rate" : "values()") + std::string(whose),
+        points));
     }
 
     /// Notes a failure at the first of the numbers @p m that is not finite.
@@ -322,8 +321,11 @@ namespace crawler
             return guarded_feedback_at(failures, *feedback, points);
           });
       asked = "prescribed_strain()";
-      if (const StrainHistory *strain = stress_->prescribed_strain())
-        strain_ = guarded_strain(failures_, *strain);
+      if (const ActiveStress *strain = stress_->prescribed_strain())
+        strain_ = std::make_unique<StressByFunctions>(
+          [failures = failures_, strain](const std::vector<double> &points, const bool rate) {
+            return guarded(failures, *strain, " of its strain", points, rate);
+          });
       asked = "report()";
       std::ostringstream out;
       stress_->report(out);
@@ -353,14 +355,7 @@ namespace crawler
   std::unique_ptr<ActiveStressAtPoints>
   Library::evaluator(const std::vector<double> &points, const bool rate) const
   {
-    return Guarded<ActiveStressAtPoints>(
-             failures_,
-             [stress = stress_.get(), rate](const std::vector<double> &places) {
-               return rate ? stress->rate_at(places) : stress->at(places);
-             },
-             rate ? "rate_at()" : "at()",
-             points)
-      .evaluator(rate ? "values() of the rate" : "values()", &ActiveStressAtPoints::values);
+    return guarded(failures_, *stress_, "", points, rate);
   }
 
   void

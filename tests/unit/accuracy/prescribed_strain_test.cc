@@ -124,14 +124,14 @@ TEST(PrescribedStrain, WaveAndTable)
       .create_scene();
   const std::vector<double> points = {0., 0.123, 0.5, 1.};
   std::vector<double> a(4), b(4);
-  const auto formula = by_formula.active_stress->prescribed_strain()->at(points),
-             wave    = by_wave.active_stress->prescribed_strain()->at(points);
-  formula->strain(0.4, a);
-  wave->strain(0.4, b);
+  const ActiveStress &formula = *by_formula.active_stress->prescribed_strain(),
+                     &wave    = *by_wave.active_stress->prescribed_strain();
+  formula.at(points)->values(0.4, a);
+  wave.at(points)->values(0.4, b);
   for (unsigned int i = 0; i < 4; ++i)
     EXPECT_NEAR(a[i], b[i], 1e-14);
-  formula->rate(0.4, a);
-  wave->rate(0.4, b);
+  formula.rate_at(points)->values(0.4, a);
+  wave.rate_at(points)->values(0.4, b);
   for (unsigned int i = 0; i < 4; ++i)
     EXPECT_NEAR(a[i], b[i], 1e-12);
 }
@@ -151,7 +151,8 @@ TEST(StrainTable, MustCoverBodyAndDurationWithFourSamplesAtLeast)
 TEST(PrescribedStrain, SaysWhatIsWrong)
 {
   const std::vector<std::pair<std::string, std::string>> refused = {
-    {"1/(s-0.5)/0*t", "the strain is"},
+    {"1/(s-0.5)/0*t", "the formula \"1/(s-0.5)/0*t\" gives"},
+    {"0.1*t*(s-1/160)/(s-1/160)", "the strain is"}, // at places that only the search for extremes looks at
     {"0.1*s*floor(3*t)",
      "the strain at s = 1 changes by 0.1 from t = 0.324324 to 0.351351, "
      "but the integral of its rate is 0; a strain without jumps"},

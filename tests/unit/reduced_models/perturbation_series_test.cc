@@ -55,6 +55,6 @@ TEST(PerturbationSeries, FieldsFitTogether)
   for (unsigned int i = 0; i < 3; ++i)
     EXPECT_NEAR(now.active_stress[i], m[i], 1e-13);
   std::vector<double> e_t(3);
-  levels.strain()->at(points)->rate(t, e_t);
+  levels.strain()->rate_at(points)->values(t, e_t);
   EXPECT_NEAR(e_t[1], (after.strain[1] - before.strain[1]) / (2. * h), 1e-7);
 }

@@ -44,7 +44,7 @@ namespace crawler
     {
       return feedback_.get();
     }
-    const StrainHistory *
+    const ActiveStress *
     prescribed_strain() const override
     {
       return strain_.get();
@@ -69,7 +69,7 @@ namespace crawler
     std::unique_ptr<const ActiveStress> stress_;
     // Answers of the plug-in to calls that are made once.
     std::unique_ptr<const StretchFeedback> feedback_;
-    std::unique_ptr<const StrainHistory> strain_;
+    std::unique_ptr<const ActiveStress> strain_;
     std::string report_;
   };
 } // namespace crawler
