@@ -105,7 +105,7 @@ namespace crawler
       std::vector<Candidate> candidates;
       if (levels.wave())
         candidates.push_back(
-          {Model::perturbation, errors.known, errors.perturbation, Perturbation(*levels.wave()).displacement(1.)});
+          {Model::perturbation, errors.known, errors.perturbation, perturbation::displacement(*levels.wave(), 1.)});
       candidates.push_back({Model::kinematic, errors.known, errors.kinematic, errors.displacement});
       std::string tried;
       for (const Candidate &candidate : candidates)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/grid_samples.h>
 #include <crawler/equation/cell_loops.h>
 #include <crawler/equation/crawler_equation.h>
 #include <crawler/reduced_models/kinematic.h>
+#include <crawler/scene/fast_changes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -60,21 +60,7 @@ namespace crawler
     {
       if (const auto bounds = strain.bounds(box); bounds && std::isfinite(bounds->value) && std::isfinite(bounds->rate))
         return *bounds;
-      constexpr unsigned int n_s = 9, n_t = 3;
-      std::vector<double> values(n_s);
-      const std::vector<double> places = equal_parts(box.s_from, box.s_to, n_s - 1);
-      const auto at = strain.at(places), rate_at = strain.rate_at(places);
-      ActiveStress::Bounds largest{0., 0.};
-      for (const double t : equal_parts(box.t_from, box.t_to, n_t - 1))
-      {
-        at->values(t, values);
-        for (const double e : values)
-          largest.value = std::max(largest.value, std::abs(e));
-        rate_at->values(t, values);
-        for (const double e_t : values)
-          largest.rate = std::max(largest.rate, std::abs(e_t));
-      }
-      return largest;
+      return sampled_bounds(strain, box, 9, 3);
     }
 
     /// Ends of panels in time such that the strain changes by at most a few times its size in each (two waves of a

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/grid_samples.h>
-#include <crawler/scene/active_stress.h>
 #include <crawler/scene/fast_changes.h>
 
 #include <algorithm>
@@ -166,5 +165,32 @@ namespace crawler
                     const FastChangeLimits &limits)
   {
     return Search(stress, to - from, explained, limits, largest).look({0., length, from, to});
+  }
+
+  ActiveStress::Bounds
+  sampled_bounds(const ActiveStress &stress,
+                 const ActiveStress::Box &box,
+                 const unsigned int n_s,
+                 const unsigned int n_t)
+  {
+    const std::vector<double> places = equal_parts(box.s_from, box.s_to, n_s - 1);
+    const auto at = stress.at(places), rate_at = stress.rate_at(places);
+    const double step = (box.t_to - box.t_from) / (n_t - 1);
+    std::vector<double> before, now(n_s), rates(n_s);
+    ActiveStress::Bounds largest{0., 0.};
+    for (const double t : equal_parts(box.t_from, box.t_to, n_t - 1))
+    {
+      at->values(t, now);
+      if (rate_at)
+        rate_at->values(t, rates);
+      for (unsigned int i = 0; i < n_s; ++i)
+      {
+        if (!rate_at && !before.empty() && step > 0.)
+          rates[i] = (now[i] - before[i]) / step;
+        largest = {std::max(largest.value, std::abs(now[i])), std::max(largest.rate, std::abs(rates[i]))};
+      }
+      before = now;
+    }
+    return largest;
   }
 } // namespace crawler

@@ -36,7 +36,7 @@ namespace crawler
   FrictionLaw::exponent(const double w) const
   {
     double g = 0., w_dg = 0.;
-    values_and_log_derivatives({&w, 1}, {&g, 1}, {&w_dg, 1});
+    values({&w, 1}, {&g, 1}, {&w_dg, 1});
     return w_dg / g;
   }
 
@@ -48,7 +48,7 @@ namespace crawler
   }
 
   void
-  PowerFriction::values(const std::span<const double> w, const std::span<double> g) const
+  PowerFriction::values(const std::span<const double> w, const std::span<double> g, const std::span<double> w_dg) const
   {
     if (a_is_small_integer_)
     {
@@ -59,15 +59,7 @@ namespace crawler
     else
       for (std::size_t i = 0; i < w.size(); ++i)
         g[i] = gamma_ * std::pow(w[i], a_);
-  }
-
-  void
-  PowerFriction::values_and_log_derivatives(const std::span<const double> w,
-                                            const std::span<double> g,
-                                            const std::span<double> w_dg) const
-  {
-    values(w, g);
-    for (std::size_t i = 0; i < w.size(); ++i)
+    for (std::size_t i = 0; i < w_dg.size(); ++i)
       w_dg[i] = a_ == 0. ? 0. : a_ * g[i];
   }
 

@@ -4,7 +4,7 @@
 namespace crawler
 {
   BodyAtPoints::BodyAtPoints(const Scene &scene, const std::vector<double> &points)
-    : friction(*scene.friction)
+    : friction(scene.friction)
     , friction_profile(profile_at(scene.profiles.friction, points))
     , elastic_modulus(profile_at(scene.profiles.elastic_modulus, points))
   {
@@ -33,10 +33,7 @@ namespace crawler
     panels.running_integral(rate, B_t);
     for (std::size_t i = 0; i < w.size(); ++i)
       w[i] = 1. + strain[i];
-    if (with_slopes)
-      body.friction.values_and_log_derivatives(w, g, w_dg);
-    else
-      body.friction.values(w, g);
+    body.friction->values(w, g, with_slopes ? std::span<double>(w_dg) : std::span<double>());
     for (std::size_t i = 0; i < w.size(); ++i)
     {
       g[i] *= body.friction_profile[i];

@@ -18,38 +18,20 @@ namespace crawler
   {
     /// A viscous film under the body, the simplest law: force per present length proportional to the velocity, g(w) =
     /// gamma w.
-    class NewtonianFriction : public FrictionLaw
+    class NewtonianFriction : public PowerFriction
     {
     public:
       /// @param gamma friction coefficient [force time/length^2].
       explicit NewtonianFriction(const double gamma)
-        : gamma_(gamma)
+        : PowerFriction(gamma, /*a=*/1.)
+        , gamma_(gamma)
       {
       }
 
-      void
-      values(const std::span<const double> w, const std::span<double> g) const override
-      {
-        for (std::size_t i = 0; i < w.size(); ++i)
-          g[i] = gamma_ * w[i];
-      }
-      void
-      values_and_log_derivatives(const std::span<const double> w,
-                                 const std::span<double> g,
-                                 const std::span<double> w_dg) const override
-      {
-        values(w, g);
-        std::copy(g.begin(), g.end(), w_dg.begin());
-      }
       std::unique_ptr<FrictionLaw>
       scaled(const double factor) const override
       {
         return std::make_unique<NewtonianFriction>(gamma_ * factor);
-      }
-      double
-      exponent(double) const override
-      {
-        return 1.;
       }
 
     private:
@@ -69,26 +51,15 @@ namespace crawler
       }
 
       void
-      values(const std::span<const double> w, const std::span<double> g) const override
-      {
-        const std::span<const double> stretch[] = {w};
-        gradient_.evaluate(stretch, g);
-        for (double &value : g)
-          value *= gamma_;
-      }
-      void
-      values_and_log_derivatives(const std::span<const double> w,
-                                 const std::span<double> g,
-                                 const std::span<double> w_dg) const override
+      values(const std::span<const double> w, const std::span<double> g, const std::span<double> w_dg) const override
       {
         const std::span<const double> stretch[] = {w};
         const std::span<double> derivatives[]   = {w_dg};
         gradient_.evaluate(stretch, g, derivatives);
-        for (std::size_t i = 0; i < w.size(); ++i)
-        {
-          g[i] *= gamma_;
+        for (double &value : g)
+          value *= gamma_;
+        for (std::size_t i = 0; i < w_dg.size(); ++i)
           w_dg[i] *= gamma_ * w[i];
-        }
       }
       std::unique_ptr<FrictionLaw>
       scaled(const double factor) const override

@@ -208,10 +208,9 @@ namespace crawler
   std::pair<double, double>
   Scene::end_moduli() const
   {
-    const double k = body.elastic_modulus;
-    if (!profiles.elastic_modulus)
-      return {k, k};
-    return {k * profiles.elastic_modulus->value(0.), k * profiles.elastic_modulus->value(body.length)};
+    const double k     = body.elastic_modulus;
+    const auto factors = profile_at(profiles.elastic_modulus, {0., body.length});
+    return {k * factors[0], k * factors[1]};
   }
 
   std::vector<double>
@@ -225,6 +224,15 @@ namespace crawler
         places.insert(places.end(), more.begin(), more.end());
       }
     return distinct_breaks_in_space(std::move(places), body.length);
+  }
+
+  std::optional<Scene>
+  with_fronts(const Scene &scene, const double part)
+  {
+    const auto *const known = dynamic_cast<const KnownStress *>(scene.active_stress.get());
+    Scene smooth            = scene;
+    smooth.active_stress    = known != nullptr ? known->with_fronts(part) : nullptr;
+    return smooth.active_stress ? std::optional(std::move(smooth)) : std::nullopt;
   }
 
   Units

@@ -13,10 +13,10 @@ namespace crawler
   /// stiffness k(s), at points.
   struct BodyAtPoints
   {
-    /// Takes a scene without features_beyond_strain(), which must outlive this.
+    /// Takes a scene without features_beyond_strain().
     BodyAtPoints(const Scene &scene, const std::vector<double> &points);
 
-    const FrictionLaw &friction;
+    std::shared_ptr<const FrictionLaw> friction;
     std::vector<double> friction_profile; ///< b(s) [1]
     std::vector<double> elastic_modulus;  ///< k(s) [force]
   };

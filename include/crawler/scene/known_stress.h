@@ -46,6 +46,14 @@ namespace crawler
       return facts_.breaks_in_time;
     }
 
+    /// The stress with smooth fronts in place of jumps that move along the body, @p part (above 0, at most 1) as wide
+    /// as the widest that fit; null if there are none (the default).
+    virtual std::unique_ptr<const ActiveStress>
+    with_fronts([[maybe_unused]] double part) const
+    {
+      return nullptr;
+    }
+
   protected:
     /// Results of the member functions of the same names.
     struct Facts

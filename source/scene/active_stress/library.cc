@@ -3,6 +3,7 @@
 #include <crawler/base/nearest_name.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/library.h>
+#include <crawler/scene/known_stress.h>
 #include <crawler/scene/stress_plugin.h>
 
 #include <fmt/format.h>
@@ -44,6 +45,12 @@ namespace crawler
         return "something that is not a std::exception";
       }
     }
+
+    /// Failures, and the name of the plug-in that caused them.
+    struct LibraryFailures : StressFailures
+    {
+      std::string plugin;
+    };
 
     void
     fail(LibraryFailures &failures, const std::string &what)
@@ -275,94 +282,129 @@ namespace crawler
                                        known.empty() ? "none" : quoted_list(known)),
                            parameters_entry);
     }
+
+    class Library : public KnownStress
+    {
+    public:
+      Library(const LibraryParameters &parameters, const Body &body, const double end_time)
+        : file_(parameters.file)
+        , failures_(std::make_shared<LibraryFailures>())
+      {
+        const Plugin &plugin = load(file_);
+        failures_->plugin    = plugin.name;
+        const PluginInput input{body.length,
+                                body.elastic_modulus,
+                                body.friction_coefficient,
+                                body.anchoring_exponent,
+                                end_time,
+                                PluginParameters(parse_parameters(parameters.parameters))};
+        if (const auto thrown = thrown_by([&]() { stress_ = plugin.create(input); }))
+          throw InputError(fmt::format("the plug-in \"{}\" refuses the scene: {}", plugin.name, *thrown),
+                           parameters_entry);
+        if (!stress_)
+          throw InputError(
+            fmt::format("the plug-in \"{}\" returned nothing; an active stress is expected", plugin.name), file_entry);
+        require_known(input.parameters, plugin.name);
+        ask(body.length, end_time);
+      }
+
+      const StretchFeedback *
+      feedback() const override
+      {
+        return feedback_.get();
+      }
+      const ActiveStress *
+      prescribed_strain() const override
+      {
+        return strain_.get();
+      }
+      const StressFailures *
+      failures() const override
+      {
+        return failures_.get();
+      }
+      void
+      report(std::ostream &out) const override
+      {
+        out << fmt::format("Plug-in \"{}\" from {}\n", failures_->plugin, file_) << report_;
+        if (!report_.empty() && report_.back() != '\n')
+          out << '\n';
+      }
+
+    private:
+      std::unique_ptr<ActiveStressAtPoints>
+      evaluator(const std::vector<double> &points, const bool rate) const override
+      {
+        return guarded(failures_, *stress_, "", points, rate);
+      }
+
+      /// Asks the plug-in once for its properties.
+      void
+      ask(const double length, const double end_time)
+      {
+        const char *asked = "";
+        const auto thrown = thrown_by([&]() {
+          asked                  = "repetition()";
+          facts_.repetition      = stress_->repetition();
+          asked                  = "breaks_in_space()";
+          facts_.breaks_in_space = stress_->breaks_in_space();
+          asked                  = "breaks_in_time()";
+          facts_.breaks_in_time  = stress_->breaks_in_time();
+          asked                  = "rate_at()";
+          facts_.has_rate        = stress_->rate_at({0.}) != nullptr;
+          asked                  = "feedback()";
+          if (const StretchFeedback *feedback = stress_->feedback())
+            feedback_ = std::make_unique<KnownFeedback>(
+              KnownFeedback::Facts{
+                feedback->uses_rate(), feedback->distance(), feedback->delay(), feedback->sensor_length()},
+              [failures = failures_, feedback](const std::vector<double> &points) {
+                return guarded_feedback_at(failures, *feedback, points);
+              });
+          asked = "prescribed_strain()";
+          if (const ActiveStress *strain = stress_->prescribed_strain())
+            strain_ = std::make_unique<StressByFunctions>(
+              [failures = failures_, strain](const std::vector<double> &points, const bool rate) {
+                return guarded(failures, *strain, " of its strain", points, rate);
+              });
+          asked = "report()";
+          std::ostringstream out;
+          stress_->report(out);
+          report_ = out.str();
+        });
+        const auto refuse = [&](const std::string &what) {
+          throw InputError(fmt::format("the plug-in \"{}\" {}", failures_->plugin, what), file_entry);
+        };
+        if (thrown)
+          refuse(fmt::format("threw an exception in {}: {}", asked, *thrown));
+        if (const auto gait = facts_.repetition)
+        {
+          if (!(gait->period > 0. && std::isfinite(gait->period)))
+            refuse(fmt::format("says that its period is {}; a positive number is expected", gait->period));
+          if (!(gait->from >= 0. && std::isfinite(gait->from)))
+            refuse(fmt::format("says that it repeats from {} on; a number of at least 0 is expected", gait->from));
+        }
+        const auto require_inside = [&](const std::vector<double> &breaks, const char *name, const double end) {
+          for (const double value : breaks)
+            if (!(value > 0. && value < end))
+              refuse(fmt::format("returned {} in {}; a number above 0 and below {:g} is expected", value, name, end));
+        };
+        require_inside(facts_.breaks_in_space, "breaks_in_space()", length);
+        require_inside(facts_.breaks_in_time, "breaks_in_time()", end_time);
+      }
+
+      std::string file_;
+      std::shared_ptr<LibraryFailures> failures_; ///< evaluators write here
+      std::unique_ptr<const ActiveStress> stress_;
+      // Answers of the plug-in to calls that are made once.
+      std::unique_ptr<const StretchFeedback> feedback_;
+      std::unique_ptr<const ActiveStress> strain_;
+      std::string report_;
+    };
   } // namespace
 
-  Library::Library(const LibraryParameters &parameters, const Body &body, const double end_time)
-    : file_(parameters.file)
-    , failures_(std::make_shared<LibraryFailures>())
+  std::unique_ptr<ActiveStress>
+  load_library(const LibraryParameters &parameters, const Body &body, const double end_time)
   {
-    const Plugin &plugin = load(file_);
-    failures_->plugin    = plugin.name;
-    const PluginInput input{body.length,
-                            body.elastic_modulus,
-                            body.friction_coefficient,
-                            body.anchoring_exponent,
-                            end_time,
-                            PluginParameters(parse_parameters(parameters.parameters))};
-    if (const auto thrown = thrown_by([&]() { stress_ = plugin.create(input); }))
-      throw InputError(fmt::format("the plug-in \"{}\" refuses the scene: {}", plugin.name, *thrown), parameters_entry);
-    if (!stress_)
-      throw InputError(fmt::format("the plug-in \"{}\" returned nothing; an active stress is expected", plugin.name),
-                       file_entry);
-    require_known(input.parameters, plugin.name);
-    ask(body.length, end_time);
-  }
-
-  /// Asks the plug-in once for its properties.
-  void
-  Library::ask(const double length, const double end_time)
-  {
-    const char *asked = "";
-    const auto thrown = thrown_by([&]() {
-      asked                  = "repetition()";
-      facts_.repetition      = stress_->repetition();
-      asked                  = "breaks_in_space()";
-      facts_.breaks_in_space = stress_->breaks_in_space();
-      asked                  = "breaks_in_time()";
-      facts_.breaks_in_time  = stress_->breaks_in_time();
-      asked                  = "rate_at()";
-      facts_.has_rate        = stress_->rate_at({0.}) != nullptr;
-      asked                  = "feedback()";
-      if (const StretchFeedback *feedback = stress_->feedback())
-        feedback_ = std::make_unique<KnownFeedback>(
-          KnownFeedback::Facts{
-            feedback->uses_rate(), feedback->distance(), feedback->delay(), feedback->sensor_length()},
-          [failures = failures_, feedback](const std::vector<double> &points) {
-            return guarded_feedback_at(failures, *feedback, points);
-          });
-      asked = "prescribed_strain()";
-      if (const ActiveStress *strain = stress_->prescribed_strain())
-        strain_ = std::make_unique<StressByFunctions>(
-          [failures = failures_, strain](const std::vector<double> &points, const bool rate) {
-            return guarded(failures, *strain, " of its strain", points, rate);
-          });
-      asked = "report()";
-      std::ostringstream out;
-      stress_->report(out);
-      report_ = out.str();
-    });
-    const auto refuse = [&](const std::string &what) {
-      throw InputError(fmt::format("the plug-in \"{}\" {}", failures_->plugin, what), file_entry);
-    };
-    if (thrown)
-      refuse(fmt::format("threw an exception in {}: {}", asked, *thrown));
-    if (const auto gait = facts_.repetition)
-    {
-      if (!(gait->period > 0. && std::isfinite(gait->period)))
-        refuse(fmt::format("says that its period is {}; a positive number is expected", gait->period));
-      if (!(gait->from >= 0. && std::isfinite(gait->from)))
-        refuse(fmt::format("says that it repeats from {} on; a number of at least 0 is expected", gait->from));
-    }
-    const auto require_inside = [&](const std::vector<double> &breaks, const char *name, const double end) {
-      for (const double value : breaks)
-        if (!(value > 0. && value < end))
-          refuse(fmt::format("returned {} in {}; a number above 0 and below {:g} is expected", value, name, end));
-    };
-    require_inside(facts_.breaks_in_space, "breaks_in_space()", length);
-    require_inside(facts_.breaks_in_time, "breaks_in_time()", end_time);
-  }
-
-  std::unique_ptr<ActiveStressAtPoints>
-  Library::evaluator(const std::vector<double> &points, const bool rate) const
-  {
-    return guarded(failures_, *stress_, "", points, rate);
-  }
-
-  void
-  Library::report(std::ostream &out) const
-  {
-    out << fmt::format("Plug-in \"{}\" from {}\n", failures_->plugin, file_) << report_;
-    if (!report_.empty() && report_.back() != '\n')
-      out << '\n';
+    return std::make_unique<Library>(parameters, body, end_time);
   }
 } // namespace crawler

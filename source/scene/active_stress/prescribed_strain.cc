@@ -6,6 +6,7 @@
 #include <crawler/scene/active_stress/expression.h>
 #include <crawler/scene/active_stress/prescribed_strain.h>
 #include <crawler/scene/breaks.h>
+#include <crawler/scene/fast_changes.h>
 #include <crawler/scene/given_motion.h>
 
 #include <fmt/format.h>
@@ -47,18 +48,17 @@ namespace crawler
     /// Active stress from the balance of forces, see the class.
     std::unique_ptr<ActiveStressAtPoints>
     balancing_stress(const ActiveStress &strain,
-                     const std::shared_ptr<const Scene> &scene,
+                     const Scene &scene,
                      const std::vector<double> &panel_ends,
                      const std::vector<double> &points)
     {
       const auto panels   = std::make_shared<const GaussPanels>(panel_ends);
       const std::size_t n = panels->points().size();
-      const BodyAtPoints body(*scene, panels->points());
-      const std::vector<double> k = BodyAtPoints(*scene, points).elastic_modulus;
+      const BodyAtPoints body(scene, panels->points());
+      const std::vector<double> k = BodyAtPoints(scene, points).elastic_modulus;
       const GaussPanels::Places places(*panels, points);
       GivenMotion motion(n);
       std::vector<double> e(n), e_t(n), elastic(points.size());
-      // A copy of the scene pointer is kept, since the body refers to its friction law.
       return stress_at_points([          =,
                                inside    = strain.at(panels->points()),
                                rate      = strain.rate_at(panels->points()),
@@ -71,13 +71,6 @@ namespace crawler
         for (std::size_t i = 0; i < m.size(); ++i)
           m[i] -= k[i] * elastic[i];
       });
-    }
-
-    std::shared_ptr<const Scene>
-    without_stress(const Scene &scene)
-    {
-      return std::make_shared<const Scene>(
-        Scene{scene.body, scene.friction->scaled(1.), nullptr, scene.end_time, scene.profiles, scene.ground});
     }
 
     std::unique_ptr<const ActiveStress>
@@ -146,7 +139,7 @@ namespace crawler
   PrescribedStrain::PrescribedStrain(const PrescribedStrainParameters &parameters,
                                      const Scene &scene,
                                      std::unique_ptr<const ActiveStress> generator)
-    : scene_(without_stress(scene))
+    : scene_(scene)
     , given_by_(parameters.given_by)
     , is_generated_(parameters.is_generated())
     , strain_(create_strain(parameters, scene.body.length, scene.end_time, std::move(generator)))
@@ -169,17 +162,7 @@ namespace crawler
   {
     constexpr unsigned int n = 33;
     constexpr double beside = 1e-9, jump = 1e-6;
-    const double L                  = scene_->body.length;
-    const std::vector<double> times = equal_parts(0., end_time, n - 1);
-    std::vector<double> e(n), after(n);
-    double size          = 0.;
-    const auto at_points = strain_->at(equal_parts(0., L, n - 1));
-    for (const double t : times)
-    {
-      at_points->values(t, e);
-      for (const double value : e)
-        size = std::max(size, std::abs(value));
-    }
+    const double L = scene_.body.length, size = sampled_bounds(*strain_, {0., L, 0., end_time}, n, n).value;
     const auto refuse = [&](const char *variable, const double place) {
       throw InputError(
         fmt::format("Given by is {}, whose values jump at {} = {:g}; a strain without jumps is expected (give "
@@ -189,6 +172,8 @@ namespace crawler
                     place),
         prescribed_strain_section + "Given by");
     };
+    const auto at_points = strain_->at(equal_parts(0., L, n - 1));
+    std::vector<double> e(n), after(n);
     for (const double t : facts_.breaks_in_time)
     {
       at_points->values(t - beside * end_time, e);
@@ -201,7 +186,7 @@ namespace crawler
     {
       const auto sides = strain_->at({s - beside * L, s + beside * L});
       std::array<double, 2> values{};
-      for (const double t : times)
+      for (const double t : equal_parts(0., end_time, n - 1))
       {
         sides->values(t, values);
         if (std::abs(values[1] - values[0]) > jump * size)
@@ -214,7 +199,7 @@ namespace crawler
   PrescribedStrain::require_admissible_strain(const double end_time)
   {
     constexpr unsigned int n = 161;
-    extremes_                = find_extremes(*strain_, scene_->body.length, end_time, n, n);
+    extremes_                = find_extremes(*strain_, scene_.body.length, end_time, n, n);
     const auto &[e, s, t]    = extremes_.smallest;
     const std::string entry  = prescribed_strain_section + (given_by_ == "wave"    ? "Amplitude"
                                                             : given_by_ == "table" ? "File"
@@ -239,12 +224,12 @@ namespace crawler
                                    largest.s,
                                    largest.t),
                        entry);
-    if (const auto stretch = stretch_without_friction(*scene_->friction, 1. + e, 1. + largest.strain))
+    if (const auto stretch = stretch_without_friction(*scene_.friction, 1. + e, 1. + largest.strain))
       throw InputError(fmt::format("the friction law has no positive value at the stretch {:.6g}, which this strain "
                                    "reaches; smaller strains, or another law, are expected",
                                    *stretch),
                        entry);
-    if (const auto jump = find_jump(*strain_, scene_->body.length, end_time))
+    if (const auto jump = find_jump(*strain_, scene_.body.length, end_time))
       throw InputError(
         fmt::format("the strain at s = {:.6g} changes by {:.6g} from t = {:.6g} to {:.6g}, but the integral "
                     "of its rate is {:.6g}; a strain without jumps in time is expected",
@@ -263,16 +248,16 @@ namespace crawler
   {
     constexpr unsigned int most      = 512;
     constexpr double tolerance       = 1e-13;
-    const std::vector<double> points = equal_parts(0., scene_->body.length, 16);
-    std::vector<double> coarse(points.size()), fine(points.size()), breaks = scene_->breaks_in_space();
+    const std::vector<double> points = equal_parts(0., scene_.body.length, 16);
+    std::vector<double> coarse(points.size()), fine(points.size()), breaks = scene_.breaks_in_space();
     breaks.insert(breaks.end(), facts_.breaks_in_space.begin(), facts_.breaks_in_space.end());
-    breaks = distinct_breaks_in_space(std::move(breaks), scene_->body.length);
+    breaks = distinct_breaks_in_space(std::move(breaks), scene_.body.length);
     for (unsigned int n = 2; n < most; n *= 2)
     {
-      panels_        = GaussPanels::ends_at(breaks, scene_->body.length, n);
+      panels_        = GaussPanels::ends_at(breaks, scene_.body.length, n);
       const auto now = balancing_stress(*strain_, scene_, panels_, points),
                  next =
-                   balancing_stress(*strain_, scene_, GaussPanels::ends_at(breaks, scene_->body.length, 2 * n), points);
+                   balancing_stress(*strain_, scene_, GaussPanels::ends_at(breaks, scene_.body.length, 2 * n), points);
       double change = 0., largest = 0.;
       for (const double part : {0.03, 0.21, 0.47, 0.71, 0.95})
       {

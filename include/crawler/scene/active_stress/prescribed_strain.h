@@ -2,8 +2,8 @@
 #pragma once
 
 #include <crawler/base/gauss_panels.h>
-#include <crawler/scene/body.h>
 #include <crawler/scene/known_stress.h>
+#include <crawler/scene/scene.h>
 #include <crawler/scene/strain_extremes.h>
 
 #include <string>
@@ -11,7 +11,6 @@
 namespace crawler
 {
   class Declarations;
-  struct Scene;
 
   /// Section "Active stress/Prescribed strain".
   struct PrescribedStrainParameters
@@ -86,7 +85,7 @@ namespace crawler
     void
     choose_panels(double end_time);
 
-    const std::shared_ptr<const Scene> scene_; ///< without active stress
+    const Scene scene_; ///< without active stress
     const std::string given_by_;
     const bool is_generated_;
     const std::unique_ptr<const ActiveStress> strain_;

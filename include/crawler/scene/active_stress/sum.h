@@ -3,7 +3,6 @@
 
 #include <crawler/scene/active_stress/envelope.h>
 #include <crawler/scene/known_stress.h>
-#include <crawler/scene/moving_jumps.h>
 
 #include <memory>
 #include <optional>
@@ -44,7 +43,7 @@ namespace crawler
    * evaluated where a window is closed. Rates and derivatives with respect to the stretch follow from the sum and
    * product rules.
    */
-  class Sum : public KnownStress, public MovingJumps
+  class Sum : public KnownStress
   {
   public:
     /// Throws InputError if no term adds, or if terms use the stretch at different distances or with different delays.
