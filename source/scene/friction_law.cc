@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/grid_samples.h>
 #include <crawler/scene/friction_law.h>
 
 #include <algorithm>
@@ -24,13 +25,17 @@ namespace crawler
     std::vector<double>
     stretches(const FrictionLaw &friction, const double from, const double to)
     {
-      const std::size_t n = dynamic_cast<const PowerFriction *>(&friction) != nullptr ? 2 : 1025;
-      std::vector<double> w(n);
-      for (std::size_t i = 0; i < n; ++i)
-        w[i] = from + (to - from) * static_cast<double>(i) / static_cast<double>(n - 1);
-      return w;
+      return equal_parts(from, to, dynamic_cast<const PowerFriction *>(&friction) != nullptr ? 1 : 1024);
     }
   } // namespace
+
+  double
+  FrictionLaw::value(const double w) const
+  {
+    double g = 0.;
+    values({&w, 1}, {&g, 1});
+    return g;
+  }
 
   double
   FrictionLaw::exponent(const double w) const

@@ -12,28 +12,35 @@ namespace crawler
   // Evaluators of active stresses and feedback at points, made of functions that keep whatever does not depend
   // on time.
 
+  /// An evaluator by a function of the arguments of its values(), or by such a member of an object.
+  template <typename Interface, typename Function, typename... Arguments>
+  class EvaluatorByFunction : public Interface
+  {
+  public:
+    explicit EvaluatorByFunction(Function function)
+      : function_(std::move(function))
+    {
+    }
+    void
+    values(Arguments... arguments) override
+    {
+      if constexpr (std::invocable<Function &, Arguments...>)
+        function_(arguments...);
+      else
+        function_.values(arguments...);
+    }
+
+  private:
+    Function function_;
+  };
+
   /// Makes an evaluator from a function of t [time] and of the list that receives m, or from its values().
   template <typename Function>
   std::unique_ptr<ActiveStressAtPoints>
   stress_at_points(Function function)
   {
-    struct AtPoints : public ActiveStressAtPoints
-    {
-      explicit AtPoints(Function function)
-        : function(std::move(function))
-      {
-      }
-      void
-      values(const double t, const std::span<double> m) override
-      {
-        if constexpr (std::invocable<Function &, double, std::span<double>>)
-          function(t, m);
-        else
-          function.values(t, m);
-      }
-      Function function;
-    };
-    return std::make_unique<AtPoints>(std::move(function));
+    return std::make_unique<EvaluatorByFunction<ActiveStressAtPoints, Function, double, std::span<double>>>(
+      std::move(function));
   }
 
   /// Makes an evaluator from a function of t, the stretch seen and the stress wanted.
@@ -41,20 +48,9 @@ namespace crawler
   std::unique_ptr<FeedbackAtPoints>
   feedback_at_points(Function function)
   {
-    struct AtPoints : public FeedbackAtPoints
-    {
-      explicit AtPoints(Function function)
-        : function(std::move(function))
-      {
-      }
-      void
-      values(const double t, const StretchSeen &seen, const FeedbackStress &m) override
-      {
-        function(t, seen, m);
-      }
-      Function function;
-    };
-    return std::make_unique<AtPoints>(std::move(function));
+    return std::make_unique<
+      EvaluatorByFunction<FeedbackAtPoints, Function, double, const StretchSeen &, const FeedbackStress &>>(
+      std::move(function));
   }
 
   /// A feedback whose properties are known at construction.

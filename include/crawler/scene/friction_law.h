@@ -21,6 +21,10 @@ namespace crawler
     virtual void
     values(std::span<const double> w, std::span<double> g, std::span<double> w_dg = {}) const = 0;
 
+    /// g at one stretch.
+    double
+    value(double w) const;
+
     /// The law with another coefficient: g times @p factor.
     virtual std::unique_ptr<FrictionLaw>
     scaled(double factor) const = 0;

@@ -7,6 +7,8 @@
 #include <crawler/scene/breaks.h>
 #include <crawler/scene/period.h>
 
+#include <array>
+
 namespace crawler
 {
   void
@@ -48,8 +50,13 @@ namespace crawler
   Expression::evaluator(const std::vector<double> &places, const bool rate) const
   {
     const std::vector<double> points = off_breaks_at_ends(places, facts_.breaks_in_space, length_);
-    return rate ? stress_at_points(FormulaRateAtPoints(compiled_, points))
-                : stress_at_points(FormulaAtPoints(compiled_, points));
+    if (!rate)
+      return stress_at_points(FormulaAtPoints(compiled_, points));
+    return stress_at_points([points, m = std::vector<double>(points.size()), gradient = FormulaGradient(compiled_)](
+                              const double t, const std::span<double> m_t) mutable {
+      gradient.evaluate(
+        std::array<std::span<const double>, 2>{{points, {&t, 1}}}, m, std::array<std::span<double>, 2>{{{}, m_t}});
+    });
   }
 
   std::optional<ActiveStress::Repetition>

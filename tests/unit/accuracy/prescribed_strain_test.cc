@@ -103,12 +103,13 @@ TEST(FormulaRate, IsTheDerivative)
     for (unsigned int i = 0; i < 100; ++i)
       points.push_back(0.15 + 0.007 * i);
     FormulaAtPoints values(formula, points);
-    FormulaRateAtPoints rate(formula, points);
     std::vector<double> before(points.size()), after(points.size()), derivative(points.size());
     const double t = 0.4123, h = 1e-5;
     values.values(t - h, before);
     values.values(t + h, after);
-    rate.values(t, derivative);
+    std::vector<double> m(points.size());
+    FormulaGradient(formula).evaluate(
+      std::array<std::span<const double>, 2>{{points, {&t, 1}}}, m, std::array<std::span<double>, 2>{{{}, derivative}});
     for (std::size_t i = 0; i < points.size(); ++i)
       EXPECT_NEAR(derivative[i], (after[i] - before[i]) / (2. * h), 1e-7) << text << " at s = " << points[i];
   }
