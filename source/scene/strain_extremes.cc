@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/gauss_panels.h>
 #include <crawler/base/grid_samples.h>
+#include <crawler/scene/fast_changes.h>
 #include <crawler/scene/strain_extremes.h>
 
 #include <algorithm>
@@ -17,7 +18,7 @@ namespace crawler
   {
     /// Moves to better neighbours on a grid of 3 x 3 points that shrinks when there are none.
     StrainExtreme
-    refined(const FieldHistory &history,
+    refined(const ActiveStress &strain,
             const double length,
             const double end_time,
             StrainExtreme best,
@@ -31,7 +32,7 @@ namespace crawler
       for (unsigned int move = 0; move < max_moves && ds > stop; ++move)
       {
         const std::vector<double> points = {std::max(0., best.s - ds), best.s, std::min(length, best.s + ds)};
-        const auto at                    = history(points);
+        const auto at                    = strain.at(points);
         const StrainExtreme centre       = best;
         std::array<double, 3> e{};
         for (const double t : {std::max(0., centre.t - dt), centre.t, std::min(end_time, centre.t + dt)})
@@ -81,7 +82,7 @@ namespace crawler
   } // namespace
 
   StrainExtremes
-  find_extremes(const FieldHistory &history,
+  find_extremes(const ActiveStress &strain,
                 const double length,
                 const double end_time,
                 const unsigned int n_s,
@@ -89,7 +90,7 @@ namespace crawler
   {
     const std::vector<double> points = equal_parts(0., length, n_s - 1), times = equal_parts(0., end_time, n_t - 1);
     std::vector<double> e(1ul * n_s * n_t);
-    const auto at = history(points);
+    const auto at = strain.at(points);
     for (unsigned int j = 0; j < n_t; ++j)
     {
       const std::span row(e.data() + 1ul * j * n_s, n_s);
@@ -105,24 +106,13 @@ namespace crawler
       for (const std::size_t k : peaks(e, n_s, sign))
       {
         const StrainExtreme one =
-          refined(history, length, end_time, {e[k], points[k % n_s], times[k / n_s]}, sign, ds, dt);
+          refined(strain, length, end_time, {e[k], points[k % n_s], times[k / n_s]}, sign, ds, dt);
         if (sign * one.strain < sign * best.strain)
           best = one;
       }
       return best;
     };
     return {extreme(1.), extreme(-1.)};
-  }
-
-  StrainExtremes
-  find_extremes(const ActiveStress &strain,
-                const double length,
-                const double end_time,
-                const unsigned int n_s,
-                const unsigned int n_t)
-  {
-    return find_extremes(
-      [&](const std::vector<double> &points) { return strain.at(points); }, length, end_time, n_s, n_t);
   }
 
   std::optional<StrainJump>
@@ -134,13 +124,7 @@ namespace crawler
     const std::vector<double> points = equal_parts(0., length, n_points - 1),
                               times  = equal_parts(0., end_time, n_intervals);
     const auto at = strain.at(points), rate_at = strain.rate_at(points);
-    double size = 0.;
-    for (const double t : times)
-    {
-      at->values(t, after);
-      for (const double e : after)
-        size = std::max(size, std::abs(e));
-    }
+    const double size = sampled_bounds(strain, {0., length, 0., end_time}, n_points, n_intervals + 1).value;
     at->values(0., after);
     for (unsigned int j = 0; j < n_intervals; ++j)
     {

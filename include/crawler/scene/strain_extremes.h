@@ -3,10 +3,7 @@
 
 #include <crawler/scene/active_stress.h>
 
-#include <functional>
-#include <memory>
 #include <optional>
-#include <vector>
 
 namespace crawler
 {
@@ -37,14 +34,9 @@ namespace crawler
   std::optional<StrainJump>
   find_jump(const ActiveStress &strain, double length, double end_time);
 
-  /// Makes an evaluator of a field at some points [length].
-  using FieldHistory = std::function<std::unique_ptr<ActiveStressAtPoints>(const std::vector<double> &points)>;
-
   /// Finds extremes on a grid of @p n_s times @p n_t points over the whole body and 0 <= t <= @p end_time, ends
   /// included, and from its eight highest peaks by a search with shrinking steps (to 1e-4 of those of the grid). A
   /// strain that is not a finite number somewhere is the smallest and the largest.
-  StrainExtremes
-  find_extremes(const FieldHistory &history, double length, double end_time, unsigned int n_s, unsigned int n_t);
   StrainExtremes
   find_extremes(const ActiveStress &strain, double length, double end_time, unsigned int n_s, unsigned int n_t);
 } // namespace crawler

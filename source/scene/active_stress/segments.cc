@@ -24,6 +24,33 @@ namespace crawler
     {
       return x - std::floor(x);
     }
+
+    /// Throws InputError if smooth fronts are faster than the rate limit.
+    void
+    require_smooth_rate(const SegmentsParameters &p)
+    {
+      if (!p.rate_limit)
+        return;
+      double largest = 0.;
+      for (const double A : p.amplitude)
+      {
+        // Steepest place: the middle of the front, or the cut.
+        const double cut = std::abs(p.saturation.value_or(std::abs(A)) / A);
+        const double x   = cut < 0.5 ? smooth_step_inverse(cut) : 0.5;
+        largest          = std::max(largest, A == 0. ? 0. : std::abs(A) * smooth_step_rate(x));
+      }
+      largest *= p.frequency / p.front_width;
+      if (largest > *p.rate_limit * (1. + round_off))
+        throw InputError(
+          fmt::format("the smooth fronts change by up to {:.6g} per time, but at most {:g}, the rate limit, is "
+                      "expected; make \"{}Front width\" {:.6g} or more, or \"{}Switching\" square",
+                      largest,
+                      *p.rate_limit,
+                      segments_section,
+                      p.front_width * largest / *p.rate_limit,
+                      segments_section),
+          segments_section + "Rate limit");
+    }
   } // namespace
 
   void
@@ -75,7 +102,7 @@ namespace crawler
     if (p.switching == "smooth")
     {
       smooth_.emplace(p.duty_cycle, p.front_width, segments_section);
-      require_smooth_rate();
+      require_smooth_rate(p);
     }
 
     segments_         = create_segments();
@@ -180,32 +207,6 @@ namespace crawler
     }
     std::ranges::stable_sort(list, {}, &SwitchingTime::time);
     return list;
-  }
-
-  void
-  Segments::require_smooth_rate() const
-  {
-    if (!parameters_.rate_limit)
-      return;
-    double largest = 0.;
-    for (const double A : parameters_.amplitude)
-    {
-      // Steepest place: the middle of the front, or the cut.
-      const double cut = std::abs(parameters_.saturation.value_or(std::abs(A)) / A);
-      const double x   = cut < 0.5 ? smooth_step_inverse(cut) : 0.5;
-      largest          = std::max(largest, A == 0. ? 0. : std::abs(A) * smooth_step_rate(x));
-    }
-    largest *= parameters_.frequency / parameters_.front_width;
-    if (largest > *parameters_.rate_limit * (1. + round_off))
-      throw InputError(
-        fmt::format("the smooth fronts change by up to {:.6g} per time, but at most {:g}, the rate limit, is "
-                    "expected; make \"{}Front width\" {:.6g} or more, or \"{}Switching\" square",
-                    largest,
-                    *parameters_.rate_limit,
-                    segments_section,
-                    parameters_.front_width * largest / *parameters_.rate_limit,
-                    segments_section),
-        segments_section + "Rate limit");
   }
 
   double

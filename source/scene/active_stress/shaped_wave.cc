@@ -27,6 +27,14 @@ namespace crawler
     /// Largest number of strides for which the leading order is reported.
     constexpr double max_reported = 100.;
 
+    /// The points, then both ends of the body.
+    std::vector<double>
+    with_ends(std::vector<double> points, const double length)
+    {
+      points.insert(points.end(), {0., length});
+      return points;
+    }
+
     ShapeFunction
     shape_from_formula(const OptimalWaveParameters &parameters,
                        const double length,
@@ -128,21 +136,14 @@ namespace crawler
     facts_.breaks_in_space = within(shape_.kinks(), body.length); // kinks at the start, V(s)
   }
 
-  /// The points, then both ends of the body.
-  std::vector<double>
-  ShapedWave::with_ends(std::vector<double> points) const
-  {
-    points.insert(points.end(), {0., body_.length});
-    return points;
-  }
-
   std::unique_ptr<ActiveStressAtPoints>
   ShapedWave::evaluator(const std::vector<double> &points, const bool rate) const
   {
     if (rate)
       return rate_evaluator(points);
-    std::vector<double> places = with_ends(points), V(places.size()), F = V; // V and its integral at one time
-    std::size_t panel = 0;
+    std::vector<double> places = with_ends(points, body_.length), V(places.size()),
+                        F      = V; // V and its integral at one time
+    std::size_t panel          = 0;
     shape_.values_and_integrals(places, panel, V, F);
     return stress_at_points([=, this, start = V, x = places](const double t, const std::span<double> m) mutable {
       const double ct = speed_ * t, L = body_.length;
@@ -160,7 +161,7 @@ namespace crawler
   std::unique_ptr<ActiveStressAtPoints>
   ShapedWave::rate_evaluator(const std::vector<double> &points) const
   {
-    const std::vector<double> places = with_ends(points);
+    const std::vector<double> places = with_ends(points, body_.length);
     return stress_at_points([=, this, x = places, V = places, F = places, panel = std::size_t(0)](
                               const double t, const std::span<double> m) mutable {
       const double ct = speed_ * t, L = body_.length;
@@ -188,7 +189,7 @@ namespace crawler
     const double strides = std::abs(c) * end_time_ / L;
     const GaussPanels in_s(0., L, 16),
       in_t(0., end_time_, static_cast<unsigned int>(std::ceil(16. * std::clamp(strides, 1., 1e6))));
-    const std::vector<double> places = with_ends(in_s.points());
+    const std::vector<double> places = with_ends(in_s.points(), L);
     std::vector<double> start = places, x = places, values = places, integrals = places;
     std::size_t panel = 0;
     shape_.values_and_integrals(places, panel, start, integrals);

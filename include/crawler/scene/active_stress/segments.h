@@ -101,10 +101,6 @@ namespace crawler
     std::vector<double>
     breaks(const Segment &segment) const;
 
-    /// Throws InputError, see the constructor.
-    void
-    require_smooth_rate() const;
-
     const SegmentsParameters parameters_;
     const double length_;
     const Envelope envelope_; ///< the ramp only

@@ -44,8 +44,6 @@ namespace crawler
     evaluator(const std::vector<double> &points, bool rate) const override;
     std::unique_ptr<ActiveStressAtPoints>
     rate_evaluator(const std::vector<double> &points) const;
-    std::vector<double>
-    with_ends(std::vector<double> points) const;
     std::optional<Repetition>
     search_repetition() const override;
 

@@ -63,10 +63,6 @@ namespace crawler
     std::unique_ptr<ActiveStressAtPoints>
     sine_at(const std::vector<double> &points, bool rate) const;
 
-    /// Times when a uniform square wave jumps.
-    std::vector<double>
-    times_of_own_jumps() const;
-
     const TravellingWaveParameters parameters_;
     const double length_, end_time_;
     const double amplitude_, offset_;
