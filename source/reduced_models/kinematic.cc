@@ -183,7 +183,6 @@ namespace crawler
     , places_(panels_, points)
     , e_(inside_.size())
     , e_t_(inside_.size())
-    , motion_(panels_.points().size())
     , B_(panels_.points().size())
     , m_(panels_.points().size())
   {

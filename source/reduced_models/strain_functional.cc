@@ -10,8 +10,7 @@ namespace crawler
   struct StrainFunctional::State
   {
     explicit State(const std::size_t n)
-      : motion(n)
-      , m(n)
+      : m(n)
       , by_B(n)
       , by_rate(n)
     {

@@ -12,16 +12,6 @@ namespace crawler
       k *= scene.body.elastic_modulus;
   }
 
-  GivenMotion::GivenMotion(const std::size_t n)
-    : w(n)
-    , g(n)
-    , w_dg(n)
-    , B_t(n)
-    , v(n)
-    , gv(n)
-  {
-  }
-
   void
   GivenMotion::find(const GaussPanels &panels,
                     const std::span<const double> strain,
@@ -30,6 +20,8 @@ namespace crawler
                     const bool with_slopes)
   {
     const auto &weights = panels.weights();
+    for (auto *const list : {&w, &g, &w_dg, &B_t, &v, &gv})
+      list->resize(weights.size());
     panels.running_integral(rate, B_t);
     for (std::size_t i = 0; i < w.size(); ++i)
       w[i] = 1. + strain[i];

@@ -279,20 +279,20 @@ namespace crawler
   Scene
   in_units(const Scene &scene, const Units &units, const TimeSegments *pieces)
   {
-    Scene scaled;
-    const double friction            = units.force * units.time / units.length / units.length;
-    scaled.body                      = scene.body;
-    scaled.body.length               = scene.body.length / units.length;
-    scaled.body.elastic_modulus      = scene.body.elastic_modulus / units.force;
-    scaled.body.friction_coefficient = scene.body.friction_coefficient / friction;
-    scaled.friction                  = scene.friction->scaled(1. / friction);
-    scaled.active_stress             = std::make_unique<ScaledActiveStress>(*scene.active_stress, units, pieces);
-    scaled.end_time                  = scene.end_time / units.time;
-    for (const auto member : {&BodyProfiles::elastic_modulus, &BodyProfiles::friction, &BodyProfiles::initial_stretch})
-      scaled.profiles.*member = in_units(scene.profiles.*member, units.length);
-    scaled.ground.profile                      = in_units(scene.ground.profile, units.length);
-    scaled.ground.direction                    = scene.ground.direction;
-    scaled.ground.direction.switching_velocity = scene.ground.direction.switching_velocity / units.velocity();
+    Scene scaled          = scene;
+    const double friction = units.force * units.time / units.length / units.length;
+    scaled.body.length /= units.length;
+    scaled.body.elastic_modulus /= units.force;
+    scaled.body.friction_coefficient /= friction;
+    scaled.friction      = scene.friction->scaled(1. / friction);
+    scaled.active_stress = std::make_unique<ScaledActiveStress>(*scene.active_stress, units, pieces);
+    scaled.end_time /= units.time;
+    for (auto *const profile : {&scaled.profiles.elastic_modulus,
+                                &scaled.profiles.friction,
+                                &scaled.profiles.initial_stretch,
+                                &scaled.ground.profile})
+      *profile = in_units(*profile, units.length);
+    scaled.ground.direction.switching_velocity /= units.velocity();
     return scaled;
   }
 } // namespace crawler

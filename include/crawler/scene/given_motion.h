@@ -28,8 +28,6 @@ namespace crawler
    */
   struct GivenMotion
   {
-    explicit GivenMotion(std::size_t n_points);
-
     /// Finds the motion from the strain and its rate at the points of the panels, the first of the points of @p body;
     /// @p with_slopes: w_dg, too. Strains above -1 are expected.
     void

@@ -57,7 +57,7 @@ namespace crawler
       const BodyAtPoints body(scene, panels->points());
       const std::vector<double> k = BodyAtPoints(scene, points).elastic_modulus;
       const GaussPanels::Places places(*panels, points);
-      GivenMotion motion(n);
+      GivenMotion motion;
       std::vector<double> e(n), e_t(n), elastic(points.size());
       return stress_at_points([          =,
                                inside    = strain.at(panels->points()),

@@ -210,33 +210,23 @@ namespace crawler
   }
 
   double
-  Segments::value(const Segment &segment, const double x) const
+  Segments::signal(const Segment &segment, const double x, const bool rate) const
   {
     if (smooth_)
     {
-      const double most = parameters_.saturation.value_or(std::abs(segment.amplitude));
-      return std::clamp(segment.amplitude * smooth_->value(x), -most, most);
+      const double most = parameters_.saturation.value_or(std::abs(segment.amplitude)),
+                   y    = segment.amplitude * smooth_->value(x);
+      if (rate)
+        return std::abs(y) > most ? 0. : segment.amplitude * smooth_->rate(x);
+      return std::clamp(y, -most, most);
     }
-    const double on = fraction(x), D = parameters_.duty_cycle, change = segment.high - segment.low;
-    if (on < D)
-      return on < segment.front ? segment.low + change * (on / segment.front) : segment.high;
-    const double off = on - D;
-    return off < segment.front ? segment.high - change * (off / segment.front) : segment.low;
-  }
-
-  double
-  Segments::rate(const Segment &segment, const double x) const
-  {
-    if (smooth_)
-    {
-      const bool is_cut =
-        parameters_.saturation && std::abs(segment.amplitude) * smooth_->value(x) > *parameters_.saturation;
-      return is_cut ? 0. : segment.amplitude * smooth_->rate(x);
-    }
-    const double on = fraction(x), D = parameters_.duty_cycle;
-    if ((on < D ? on : on - D) >= segment.front)
-      return 0.;
-    return (on < D ? 1. : -1.) * (segment.high - segment.low) / segment.front;
+    const double phase = fraction(x), D = parameters_.duty_cycle;
+    const bool is_on   = phase < D;
+    const double since = is_on ? phase : phase - D, start = is_on ? segment.low : segment.high,
+                 end = is_on ? segment.high : segment.low;
+    if (since >= segment.front)
+      return rate ? 0. : end;
+    return rate ? (end - start) / segment.front : start + (end - start) * (since / segment.front);
   }
 
   std::vector<double>
@@ -275,9 +265,9 @@ namespace crawler
       for (std::size_t i = 0; i < segments_.size(); ++i)
       {
         const double x = f * t + segments_[i].phase;
-        now[i]         = ramp * (rate ? f * this->rate(segments_[i], x) : value(segments_[i], x));
+        now[i]         = ramp * ((rate ? f : 1.) * signal(segments_[i], x, rate));
         if (rate && envelope_.ramp_end() > 0.)
-          now[i] += envelope_.ramp_rate(t) * value(segments_[i], x);
+          now[i] += envelope_.ramp_rate(t) * signal(segments_[i], x, /*rate=*/false);
       }
       for (std::size_t p = 0; p < segment.size(); ++p)
         m[p] = now[segment[p]];

@@ -251,6 +251,7 @@ namespace crawler
       add(facts_.breaks_in_space, term.in_s.breaks());
       add(facts_.breaks_in_time, term.stress->breaks_in_time());
       add(facts_.breaks_in_time, term.in_t.ends());
+      facts_.has_rate = facts_.has_rate && term.stress->rate_at({0.}) != nullptr;
     }
   }
 
@@ -259,15 +260,6 @@ namespace crawler
   {
     return std::make_unique<SumAtPoints>(
       terms_, points, rate ? SumAtPoints::Wanted::rates : SumAtPoints::Wanted::values);
-  }
-
-  std::unique_ptr<ActiveStressAtPoints>
-  Sum::rate_at(const std::vector<double> &points) const
-  {
-    for (const SumTerm &term : terms_)
-      if (!term.stress->rate_at({0.}))
-        return nullptr;
-    return evaluator(points, /*rate=*/true);
   }
 
   std::optional<ActiveStress::Repetition>

@@ -93,9 +93,7 @@ namespace crawler
 
     /// Value of y_i(x), or its derivative [force/period].
     double
-    value(const Segment &segment, double x) const;
-    double
-    rate(const Segment &segment, double x) const;
+    signal(const Segment &segment, double x, bool rate) const;
 
     /// Places of a period at which y_i or its derivative jumps.
     std::vector<double>

@@ -49,10 +49,6 @@ namespace crawler
     /// Throws InputError if no term adds, or if terms use the stretch at different distances or with different delays.
     Sum(std::vector<SumTerm> terms, double length, double end_time);
 
-    /// Makes an evaluator of the rate; null if a term has none.
-    std::unique_ptr<ActiveStressAtPoints>
-    rate_at(const std::vector<double> &points) const override;
-
     /// Bounds; terms that have none are sampled in the box, with a margin of 2. Nothing if no term has any.
     std::optional<Bounds>
     bounds(const Box &box) const override;
