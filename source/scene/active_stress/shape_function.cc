@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/cubic_spline.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/scene/active_stress/shape_function.h>
 
 #include <fmt/format.h>
@@ -68,16 +69,13 @@ namespace crawler
     const auto n_panels = static_cast<std::size_t>(std::ceil((to - from) / size * (1. - 1e-12)));
     if (n_panels > max_panels)
       throw std::logic_error("too many panels from the beginning");
-    const auto end_of = [&](const std::size_t i) {
-      return i == n_panels ? to : from + (to - from) * static_cast<double>(i) / static_cast<double>(n_panels);
-    };
+    const std::vector<double> ends = equal_parts(from, to, static_cast<unsigned int>(n_panels));
     // Largest |V|, and a check that it is finite.
     double largest = 0.;
-    std::vector<double> x(8), values(8);
+    std::vector<double> values(8);
     for (std::size_t i = 0; i < n_panels; ++i)
     {
-      for (unsigned int j = 0; j < 8; ++j)
-        x[j] = end_of(i) + (end_of(i + 1) - end_of(i)) * j / 7.;
+      const std::vector<double> x = equal_parts(ends[i], ends[i + 1], 7);
       function(x, values);
       for (unsigned int j = 0; j < 8; ++j)
       {
@@ -89,10 +87,8 @@ namespace crawler
         largest = std::max(largest, std::abs(values[j]));
       }
     }
-    double kink_panel = 0.;     // the smallest panel at the last kink
-    std::vector<double> rights; // right ends of pending panels, the leftmost last
-    for (std::size_t i = n_panels; i > 0; --i)
-      rights.push_back(end_of(i));
+    double kink_panel = 0.;                                     // the smallest panel at the last kink
+    std::vector<double> rights(ends.rbegin(), ends.rend() - 1); // right ends of pending panels, the leftmost last
     while (!rights.empty())
     {
       const double left = left_.back(), right = rights.back();
