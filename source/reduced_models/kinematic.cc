@@ -166,6 +166,29 @@ namespace crawler
       add(sums, end, 0.);
       return sums;
     }
+
+    /// Sets the numbers of the finest quadrature @p sums, or the place where the stretch is lost: @p lost, or where the
+    /// extremes are.
+    void
+    set_result(KinematicResult &result, const Sums &sums, const std::optional<StrainExtreme> &lost)
+    {
+      const bool is_lost_between = !(1. + result.extremes.smallest.strain > 0.);
+      if (lost || is_lost_between || !(1. + sums.smallest.strain > 0.))
+      {
+        result.inversion = lost ? *lost : is_lost_between ? result.extremes.smallest : sums.smallest;
+        return;
+      }
+      result.stopped = sums.stopped;
+      if (sums.stopped)
+        return;
+      if (sums.smallest.strain < result.extremes.smallest.strain)
+        result.extremes.smallest = sums.smallest;
+      if (sums.largest.strain > result.extremes.largest.strain)
+        result.extremes.largest = sums.largest;
+      result.displacement = sums.displacement;
+      result.energies     = sums.energies;
+      result.net_friction = sums.friction_impulse > 0. ? sums.net_impulse / sums.friction_impulse : 0.;
+    }
   } // namespace
 
   KinematicBody::KinematicBody(const Scene &scene,
@@ -257,32 +280,6 @@ namespace crawler
     energies.elastic_energy   = body.evaluate(end).sums.elastic_energy;
     return displacement;
   }
-
-  namespace
-  {
-    /// Sets the numbers of the finest quadrature @p sums, or the place where the stretch is lost: @p lost, or where the
-    /// extremes are.
-    void
-    set_result(KinematicResult &result, const Sums &sums, const std::optional<StrainExtreme> &lost)
-    {
-      const bool is_lost_between = !(1. + result.extremes.smallest.strain > 0.);
-      if (lost || is_lost_between || !(1. + sums.smallest.strain > 0.))
-      {
-        result.inversion = lost ? *lost : is_lost_between ? result.extremes.smallest : sums.smallest;
-        return;
-      }
-      result.stopped = sums.stopped;
-      if (sums.stopped)
-        return;
-      if (sums.smallest.strain < result.extremes.smallest.strain)
-        result.extremes.smallest = sums.smallest;
-      if (sums.largest.strain > result.extremes.largest.strain)
-        result.extremes.largest = sums.largest;
-      result.displacement = sums.displacement;
-      result.energies     = sums.energies;
-      result.net_friction = sums.friction_impulse > 0. ? sums.net_impulse / sums.friction_impulse : 0.;
-    }
-  } // namespace
 
   KinematicResult
   kinematic(const Scene &scene,

@@ -11,7 +11,8 @@ namespace crawler
 {
   namespace
   {
-    const std::string travelling_section = "Active stress/Travelling wave/";
+    const std::string travelling_section = "Active stress/Travelling wave/",
+                      standing_section   = "Active stress/Standing wave/";
     using std::numbers::pi;
 
     /// Frequency f [1/time].
@@ -146,11 +147,6 @@ namespace crawler
       out << "Travelling wave: the jumps of a square wave move through the cells of the mesh; its answer is that of "
              "waves with ever steeper fronts, which costs more than Profile = smoothed square\n";
   }
-
-  namespace
-  {
-    const std::string standing_section = "Active stress/Standing wave/";
-  } // namespace
 
   void
   StandingWaveParameters::add_parameters(Declarations &declarations)
