@@ -39,18 +39,9 @@ namespace crawler
     refuse("this needs deal.II, as adaptive meshes do");
   }
 
-  Library::Library(const LibraryParameters &, const Body &, double)
+  std::unique_ptr<ActiveStress>
+  load_library(const LibraryParameters &, const Body &, double)
   {
     refuse("\"Active stress/Library\" is a shared object", "Active stress/Library/File");
-  }
-  std::unique_ptr<ActiveStressAtPoints>
-  Library::evaluator(const std::vector<double> &, bool) const
-  {
-    refuse("\"Active stress/Library\" is a shared object");
-  }
-  void
-  Library::report(std::ostream &) const
-  {
-    refuse("\"Active stress/Library\" is a shared object");
   }
 } // namespace crawler

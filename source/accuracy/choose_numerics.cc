@@ -4,7 +4,6 @@
 #include <crawler/accuracy/mesh_choices.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/plain_numbers.h>
-#include <crawler/scene/moving_jumps.h>
 #include <crawler/time/integrators.h>
 
 #include <fmt/format.h>
@@ -271,35 +270,6 @@ namespace crawler
       double space_over_time_ = 1.; ///< ratio of the errors predicted by the rule
     };
 
-    /// Beginning of a scene, with the same active stress.
-    class Beginning
-    {
-    public:
-      Beginning(const Scene &whole, const double duration)
-        : scene_{whole.body,
-                 whole.friction->scaled(1.),
-                 std::unique_ptr<const ActiveStress>(whole.active_stress.get()), // lent, see below
-                 duration,
-                 whole.profiles,
-                 whole.ground}
-      {
-      }
-      ~Beginning()
-      {
-        static_cast<void>(scene_.active_stress.release());
-      }
-      Beginning(const Beginning &) = delete;
-
-      const Scene &
-      scene() const
-      {
-        return scene_;
-      }
-
-    private:
-      Scene scene_;
-    };
-
     /// End of the first strides of a run, if it has many more: numerics good for these are good for all.
     std::optional<double>
     end_of_first_strides(const RunParameters &parameters, const Scene &scene)
@@ -340,8 +310,9 @@ namespace crawler
           catch (const PilotsUnsettled &) // coarse steps keep cycles from repeating
           {
           }
-        const Beginning beginning(scene, *end);
-        NumericsChoice choice = Chooser(communicator, parameters, beginning.scene(), keep_going).choose();
+        Scene beginning       = scene;
+        beginning.end_time    = *end;
+        NumericsChoice choice = Chooser(communicator, parameters, beginning, keep_going).choose();
         if (std::isfinite(choice.wanted_error) || choice.is_of_several_runs())
         {
           choice.numerics.step_limits = stress_scales(scene).step_limits;

@@ -3,6 +3,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/reduced_models/perturbation.h>
 #include <crawler/reduced_models/reduced_scene.h>
+#include <crawler/scene/strain_extremes.h>
 
 #include <fmt/format.h>
 
@@ -23,12 +24,12 @@ namespace crawler
     void
     require_start_at_rest(const Scene &scene, const Model model)
     {
-      constexpr double round_off   = 1e-8; // also of numbers in a table
-      const StrainHistory *history = scene.active_stress->prescribed_strain();
-      if (history == nullptr)
+      constexpr double round_off = 1e-8; // also of numbers in a table
+      const ActiveStress *strain = scene.active_stress->prescribed_strain();
+      if (strain == nullptr)
         return;
-      const StrainExtremes start = find_extremes(*history, scene.body.length, 0., 129, 2),
-                           all   = find_extremes(*history, scene.body.length, scene.end_time, 65, 65);
+      const StrainExtremes start = find_extremes(*strain, scene.body.length, 0., 129, 2),
+                           all   = find_extremes(*strain, scene.body.length, scene.end_time, 65, 65);
       const auto size            = [](const StrainExtremes &e) {
         return std::max(std::abs(e.smallest.strain), std::abs(e.largest.strain));
       };
@@ -104,7 +105,7 @@ namespace crawler
       std::vector<Candidate> candidates;
       if (levels.wave())
         candidates.push_back(
-          {Model::perturbation, errors.known, errors.perturbation, Perturbation(*levels.wave()).displacement(1.)});
+          {Model::perturbation, errors.known, errors.perturbation, perturbation::displacement(*levels.wave(), 1.)});
       candidates.push_back({Model::kinematic, errors.known, errors.kinematic, errors.displacement});
       std::string tried;
       for (const Candidate &candidate : candidates)

@@ -2,7 +2,6 @@
 #include <crawler/accuracy/extrapolation.h>
 #include <crawler/accuracy/finer_run_errors.h>
 #include <crawler/accuracy/moving_fronts.h>
-#include <crawler/scene/moving_jumps.h>
 
 #include <fmt/format.h>
 

@@ -48,7 +48,7 @@ namespace crawler
   void
   ForcesAtPoints::slopes(std::vector<Slopes> &all)
   {
-    scene_.friction->values_and_log_derivatives(at_.w, g_, w_dg_);
+    scene_.friction->values(at_.w, g_, w_dg_);
     all.resize(g_.size());
     for (std::size_t p = 0; p < g_.size(); ++p)
     {

@@ -37,7 +37,7 @@ namespace crawler
         void
         operator()(const double *w, double *g, double *w_dg) const
         {
-          law.values_and_log_derivatives({w, n}, {g, n}, {w_dg, n});
+          law.values({w, n}, {g, n}, {w_dg, n});
         }
       };
       using Plain = PlainLaws<n, double, Friction>;

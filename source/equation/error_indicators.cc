@@ -88,7 +88,7 @@ namespace crawler
         const double w = std::max(1. + e, smallest_scale);
         // Relative errors of the friction are w g'/g times those of the stretch.
         double g = 0., w_dg = 0.;
-        scene_.friction->values_and_log_derivatives({&w, 1}, {&g, 1}, {&w_dg, 1});
+        scene_.friction->values({&w, 1}, {&g, 1}, {&w_dg, 1});
         const double relative = d / w * std::max(1., std::abs(w_dg / g));
         indicators[c] += h * element.weights[p] * relative * relative;
       }

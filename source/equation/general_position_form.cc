@@ -34,7 +34,7 @@ namespace crawler
     if (bad >= 0)
       return bad;
     force_.evaluate(t, e_, {w_, rate_, elsewhere_.near, elsewhere_.delayed}, in.m);
-    scene_.friction->values_and_log_derivatives(w_, g_, w_dg_);
+    scene_.friction->values(w_, g_, w_dg_);
     bad = sliding_.evaluate(u_, v_);
     if (bad >= 0)
       describe_bad_law_ = [this, bad](const Units &units) { return sliding_.describe(bad, units); };

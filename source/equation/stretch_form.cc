@@ -67,7 +67,7 @@ namespace crawler
     constexpr double empty = 1e-30; // its mobility is 0 if friction grows without bound
     for (std::size_t j = 0; j < w.size(); ++j)
       w_[j] = std::max(w[j], empty);
-    scene_.friction->values_and_log_derivatives(w_, friction, w_dg_);
+    scene_.friction->values(w_, friction, w_dg_);
     long bad = -1;
     for (std::size_t j = 0; j < w.size(); ++j)
     {

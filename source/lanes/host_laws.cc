@@ -42,7 +42,7 @@ namespace crawler
     if (at.g != nullptr)
     {
       if (at.w_dg != nullptr)
-        scene_.friction->values_and_log_derivatives({at.w, n}, {at.g, n}, {at.w_dg, n});
+        scene_.friction->values({at.w, n}, {at.g, n}, {at.w_dg, n});
       else
         scene_.friction->values({at.w, n}, {at.g, n});
       good = are_positive({at.g, n});

@@ -72,13 +72,6 @@ namespace crawler
       return fmt::format("{}", fmt::join(words, "/"));
     }
 
-    /// Path of the section of an entry.
-    std::string
-    section_of(const std::vector<std::string> &words)
-    {
-      return fmt::format("{}", fmt::join(words.begin(), words.end() - 1, "/"));
-    }
-
     template <typename Value>
     constexpr bool may_be_automatic = false;
     template <typename Value>
@@ -394,17 +387,17 @@ namespace crawler
   void
   Declarations::refuse_name(const std::vector<std::string> &words) const
   {
-    const std::string full = path_text(words), section = section_of(words);
+    const std::string full = path_text(words), section = section_of(full);
     if (!section.empty())
       require_section(section);
     const std::string top = "at the top level of the file";
     std::vector<std::string> same_section, elsewhere;
     for (const EntryInfo &e : entries_)
     {
-      const auto other = split_path(e.path);
-      if (section_of(other) == section)
-        same_section.push_back(other.back());
-      else if (!nearest_names(words.back(), {other.back()}).empty())
+      const std::string name = split_path(e.path).back();
+      if (section_of(e.path) == section)
+        same_section.push_back(name);
+      else if (!nearest_names(words.back(), {name}).empty())
         elsewhere.push_back(e.path);
     }
     if (std::find(sections_.begin(), sections_.end(), full) != sections_.end())
@@ -457,6 +450,13 @@ namespace crawler
     if (words.empty())
       words.emplace_back();
     return words;
+  }
+
+  std::string
+  section_of(const std::string &path)
+  {
+    const std::size_t slash = path.rfind('/');
+    return slash == std::string::npos ? "" : path.substr(0, slash);
   }
 
   std::string

@@ -26,28 +26,4 @@ namespace crawler
     return fmt::format(
       "a number {} {} {} {}", lower_included ? "from" : "above", lower, upper_included ? "to" : "and below", upper);
   }
-
-  Range
-  any_number()
-  {
-    return {};
-  }
-
-  Range
-  positive()
-  {
-    return {.lower = 0.};
-  }
-
-  Range
-  not_negative()
-  {
-    return {.lower = 0., .lower_included = true};
-  }
-
-  Range
-  between(const double lower, const double upper)
-  {
-    return {lower, upper, true, true};
-  }
 } // namespace crawler

@@ -16,14 +16,6 @@ namespace crawler
   {
     using Json = nlohmann::ordered_json;
 
-    /// Path of the section of an entry; empty at the top level.
-    std::string
-    section_of(const std::string &path)
-    {
-      const std::size_t slash = path.rfind('/');
-      return slash == std::string::npos ? "" : path.substr(0, slash);
-    }
-
     bool
     is_text(const EntryKind kind)
     {

@@ -107,31 +107,7 @@ namespace crawler
       const bool is_told = !slip.empty() && sentence.find(slip.substr(2)) != std::string::npos;
       return InputError(assignment.place + ": " + sentence + (is_told ? "" : slip), error.entry);
     }
-  } // namespace
 
-  ParameterFile
-  ParameterFile::read(const std::string &file_name)
-  {
-    return from_text(read_whole(file_name), file_name == "-" ? "standard input" : file_name);
-  }
-
-  ParameterFile
-  ParameterFile::from_text(const std::string &text, const std::string &name)
-  {
-    ParameterFile file;
-    file.name_ = name;
-    file.text_ = text;
-    file.parse(text, name, 0);
-    if (file.assignments_.empty() && file.sections_.empty())
-      throw InputError(
-        fmt::format("{}: the file sets nothing; at least one line \"set Entry = value\" is expected (see crawler "
-                    "parameters)",
-                    name));
-    return file;
-  }
-
-  namespace
-  {
     /// Throws InputError for a statement that is not of the parameter files.
     [[noreturn]] void
     refuse(const std::string &statement, const std::string &place)
@@ -155,6 +131,27 @@ namespace crawler
         throw InputError(fmt::format("{}: this is a binary file; a text file of parameters is expected", name));
     }
   } // namespace
+
+  ParameterFile
+  ParameterFile::read(const std::string &file_name)
+  {
+    return from_text(read_whole(file_name), file_name == "-" ? "standard input" : file_name);
+  }
+
+  ParameterFile
+  ParameterFile::from_text(const std::string &text, const std::string &name)
+  {
+    ParameterFile file;
+    file.name_ = name;
+    file.text_ = text;
+    file.parse(text, name, 0);
+    if (file.assignments_.empty() && file.sections_.empty())
+      throw InputError(
+        fmt::format("{}: the file sets nothing; at least one line \"set Entry = value\" is expected (see crawler "
+                    "parameters)",
+                    name));
+    return file;
+  }
 
   void
   ParameterFile::parse(const std::string &text, const std::string &name, const unsigned int depth)

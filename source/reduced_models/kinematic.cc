@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/grid_samples.h>
 #include <crawler/equation/cell_loops.h>
 #include <crawler/equation/crawler_equation.h>
 #include <crawler/reduced_models/kinematic.h>
+#include <crawler/scene/fast_changes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -55,31 +55,18 @@ namespace crawler
 
     /// Bounds of the strain from some points of the box, where it has no bounds of its own or an enclosure is too wide
     /// to be of use.
-    FieldBounds
-    bounds_of(const StrainHistory &strain, const SpaceTimeBox &box)
+    ActiveStress::Bounds
+    bounds_of(const ActiveStress &strain, const ActiveStress::Box &box)
     {
       if (const auto bounds = strain.bounds(box); bounds && std::isfinite(bounds->value) && std::isfinite(bounds->rate))
         return *bounds;
-      constexpr unsigned int n_s = 9, n_t = 3;
-      std::vector<double> values(n_s);
-      const auto at = strain.at(equal_parts(box.s_from, box.s_to, n_s - 1));
-      FieldBounds largest{0., 0.};
-      for (const double t : equal_parts(box.t_from, box.t_to, n_t - 1))
-      {
-        at->strain(t, values);
-        for (const double e : values)
-          largest.value = std::max(largest.value, std::abs(e));
-        at->rate(t, values);
-        for (const double e_t : values)
-          largest.rate = std::max(largest.rate, std::abs(e_t));
-      }
-      return largest;
+      return sampled_bounds(strain, box, 9, 3);
     }
 
     /// Ends of panels in time such that the strain changes by at most a few times its size in each (two waves of a
     /// sine), so that their points resolve it, however short its events are. Nothing if there are more than @p most.
     std::optional<std::vector<double>>
-    time_panels(const StrainHistory &strain, std::vector<double> breaks, const std::size_t most)
+    time_panels(const ActiveStress &strain, std::vector<double> breaks, const std::size_t most)
     {
       constexpr unsigned int fewest = 4;
       constexpr double max_changes  = 12.;
@@ -153,7 +140,7 @@ namespace crawler
     /// @p space_ends and @p ends are those of the panels in space and time.
     Sums
     integrate(const Scene &scene,
-              const StrainHistory &strain,
+              const ActiveStress &strain,
               const std::vector<double> &space_ends,
               const std::vector<double> &ends,
               const std::function<bool()> &keep_going)
@@ -179,23 +166,46 @@ namespace crawler
       add(sums, end, 0.);
       return sums;
     }
+
+    /// Sets the numbers of the finest quadrature @p sums, or the place where the stretch is lost: @p lost, or where the
+    /// extremes are.
+    void
+    set_result(KinematicResult &result, const Sums &sums, const std::optional<StrainExtreme> &lost)
+    {
+      const bool is_lost_between = !(1. + result.extremes.smallest.strain > 0.);
+      if (lost || is_lost_between || !(1. + sums.smallest.strain > 0.))
+      {
+        result.inversion = lost ? *lost : is_lost_between ? result.extremes.smallest : sums.smallest;
+        return;
+      }
+      result.stopped = sums.stopped;
+      if (sums.stopped)
+        return;
+      if (sums.smallest.strain < result.extremes.smallest.strain)
+        result.extremes.smallest = sums.smallest;
+      if (sums.largest.strain > result.extremes.largest.strain)
+        result.extremes.largest = sums.largest;
+      result.displacement = sums.displacement;
+      result.energies     = sums.energies;
+      result.net_friction = sums.friction_impulse > 0. ? sums.net_impulse / sums.friction_impulse : 0.;
+    }
   } // namespace
 
   KinematicBody::KinematicBody(const Scene &scene,
-                               const StrainHistory &strain,
+                               const ActiveStress &strain,
                                const std::vector<double> &panels,
                                const std::vector<double> &points)
     : panels_(panels)
     , points_(points)
     , inside_(with_ends(panels_.points()))
     , strain_(strain.at(inside_))
+    , rate_(strain.rate_at(inside_))
     , strain_at_points_(strain.at(points))
     , body_(scene, inside_)
     , body_at_points_(scene, points)
     , places_(panels_, points)
     , e_(inside_.size())
     , e_t_(inside_.size())
-    , motion_(panels_.points().size())
     , B_(panels_.points().size())
     , m_(panels_.points().size())
   {
@@ -207,8 +217,8 @@ namespace crawler
     const std::size_t n = m_.size();
     const auto &weights = panels_.weights();
     time_               = t;
-    strain_->strain(t, e_);
-    strain_->rate(t, e_t_);
+    strain_->values(t, e_);
+    rate_->values(t, e_t_);
     integrals_               = {};
     const auto [least, most] = std::minmax_element(e_.begin(), e_.end());
     integrals_.smallest      = {*least, inside_[static_cast<std::size_t>(least - e_.begin())], t};
@@ -247,7 +257,7 @@ namespace crawler
     fields.displacement.resize(n_points);
     fields.velocity.resize(n_points);
     fields.active_stress.resize(n_points);
-    strain_at_points_->strain(time_, fields.strain);
+    strain_at_points_->values(time_, fields.strain);
     places_.running_integral({e_.data(), n}, fields.displacement);
     places_.running_integral({e_t_.data(), n}, fields.velocity);
     places_.running_integral(motion_.gv, fields.active_stress);
@@ -271,35 +281,9 @@ namespace crawler
     return displacement;
   }
 
-  namespace
-  {
-    /// Sets the numbers of the finest quadrature @p sums, or the place where the stretch is lost: @p lost, or where the
-    /// extremes are.
-    void
-    set_result(KinematicResult &result, const Sums &sums, const std::optional<StrainExtreme> &lost)
-    {
-      const bool is_lost_between = !(1. + result.extremes.smallest.strain > 0.);
-      if (lost || is_lost_between || !(1. + sums.smallest.strain > 0.))
-      {
-        result.inversion = lost ? *lost : is_lost_between ? result.extremes.smallest : sums.smallest;
-        return;
-      }
-      result.stopped = sums.stopped;
-      if (sums.stopped)
-        return;
-      if (sums.smallest.strain < result.extremes.smallest.strain)
-        result.extremes.smallest = sums.smallest;
-      if (sums.largest.strain > result.extremes.largest.strain)
-        result.extremes.largest = sums.largest;
-      result.displacement = sums.displacement;
-      result.energies     = sums.energies;
-      result.net_friction = sums.friction_impulse > 0. ? sums.net_impulse / sums.friction_impulse : 0.;
-    }
-  } // namespace
-
   KinematicResult
   kinematic(const Scene &scene,
-            const StrainHistory &strain,
+            const ActiveStress &strain,
             const double tolerance,
             const std::function<bool()> &keep_going)
   {

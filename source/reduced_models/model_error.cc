@@ -75,17 +75,17 @@ namespace crawler
 
     /// Motion for e = -m/k, f = 0.
     Motion
-    motion_of(const StrainHistory &strain, const std::size_t n_s, const std::size_t n_t)
+    motion_of(const ActiveStress &strain, const std::size_t n_s, const std::size_t n_t)
     {
       Motion motion{n_s, n_t, std::vector<double>(n_s * (n_t + 1)), std::vector<double>(n_s * (n_t + 1)), {}};
       std::vector<double> points(n_s), e_t(n_s);
       for (std::size_t i = 0; i < n_s; ++i)
         points[i] = motion.place(i);
-      const auto at = strain.at(points);
+      const auto at = strain.at(points), rate_at = strain.rate_at(points);
       for (std::size_t n = 0; n <= n_t; ++n)
       {
-        at->strain(motion.time(n), {motion.e.data() + n * n_s, n_s});
-        at->rate(motion.time(n), e_t);
+        at->values(motion.time(n), {motion.e.data() + n * n_s, n_s});
+        rate_at->values(motion.time(n), e_t);
         double sum = 0.;
         for (std::size_t i = 0; i < n_s; ++i)
         {
@@ -273,7 +273,7 @@ namespace crawler
   }
 
   ModelErrors
-  estimate_model_errors(const Scene &scene, const StrainHistory &strain)
+  estimate_model_errors(const Scene &scene, const ActiveStress &strain)
   {
     constexpr std::size_t most = 512;
     constexpr double tolerance = 0.1;

@@ -18,33 +18,33 @@ namespace crawler
   } // namespace
 
   double
-  Perturbation::displacement(const double t) const
+  perturbation::displacement(const NaturalWave &wave, const double t)
   {
     double sum = 0.;
-    for (const auto &h : wave_.harmonics)
-      sum += power(h) * (-0.5 * wave_.speed * t + 0.5 * std::sin(h.q * wave_.speed * t) / h.q);
-    return wave_.friction_exponent * sum;
+    for (const auto &h : wave.harmonics)
+      sum += power(h) * (-0.5 * wave.speed * t + 0.5 * std::sin(h.q * wave.speed * t) / h.q);
+    return wave.friction_exponent * sum;
   }
 
   double
-  Perturbation::velocity(const double t) const
+  perturbation::velocity(const NaturalWave &wave, const double t)
   {
     double sum = 0.;
-    for (const auto &h : wave_.harmonics)
-      sum += power(h) * (std::cos(h.q * wave_.speed * t) - 1.);
-    return 0.5 * wave_.friction_exponent * wave_.speed * sum + 0.; // never -0
+    for (const auto &h : wave.harmonics)
+      sum += power(h) * (std::cos(h.q * wave.speed * t) - 1.);
+    return 0.5 * wave.friction_exponent * wave.speed * sum + 0.; // never -0
   }
 
   EnergyBalance
-  Perturbation::energies(const double t) const
+  perturbation::energies(const NaturalWave &wave, const double t)
   {
     EnergyBalance energies;
     energies.positive_work = std::numeric_limits<double>::quiet_NaN();
-    for (const auto &h : wave_.harmonics)
+    for (const auto &h : wave.harmonics)
     {
-      const double half = std::sin(0.5 * h.q * wave_.speed * t);
-      energies.dissipation += 0.5 * wave_.speed * wave_.speed * power(h) * t;
-      energies.elastic_energy += wave_.stiffness * power(h) * half * half;
+      const double half = std::sin(0.5 * h.q * wave.speed * t);
+      energies.dissipation += 0.5 * wave.speed * wave.speed * power(h) * t;
+      energies.elastic_energy += wave.stiffness * power(h) * half * half;
     }
     energies.stress_work    = energies.dissipation + energies.elastic_energy;
     energies.exchanged_work = energies.stress_work; // lower bound
@@ -52,17 +52,17 @@ namespace crawler
   }
 
   ReducedFields
-  Perturbation::fields(const double t, const std::vector<double> &points) const
+  perturbation::fields(const NaturalWave &wave, const double t, const std::vector<double> &points)
   {
-    const double c = wave_.speed, D = displacement(t), V = velocity(t);
+    const double c = wave.speed, D = displacement(wave, t), V = velocity(wave, t);
     ReducedFields fields;
     fields.strain.resize(points.size());
-    leading_order_strain(wave_).at(points)->strain(t, fields.strain);
+    leading_order_strain(wave).at(points)->values(t, fields.strain);
     for (std::size_t i = 0; i < points.size(); ++i)
     {
       const double s = points[i];
       double u = 0., v = 0., m = 0.;
-      for (const auto &h : wave_.harmonics)
+      for (const auto &h : wave.harmonics)
       {
         const double theta = h.q * (s + c * t), start = h.q * s, head = h.q * c * t;
         u += (h.a * (std::cos(start) - std::cos(theta)) + h.b * (std::sin(theta) - std::sin(start))) / h.q;
@@ -71,19 +71,19 @@ namespace crawler
       }
       fields.displacement.push_back(D + u);
       fields.velocity.push_back(V + v);
-      fields.active_stress.push_back(m - wave_.stiffness * fields.strain[i]);
+      fields.active_stress.push_back(m - wave.stiffness * fields.strain[i]);
     }
     return fields;
   }
 
   StrainExtremes
-  Perturbation::extremes() const
+  perturbation::extremes(const NaturalWave &wave)
   {
     constexpr unsigned int per_wave = 16, most = 2001;
-    const double waves = wave_.n_waves(), strides = std::abs(wave_.speed);
+    const double waves = wave.n_waves(), strides = std::abs(wave.speed);
     const auto n_of = [](const double n) {
       return static_cast<unsigned int>(std::min<double>(most, per_wave * std::ceil(n) + 1));
     };
-    return find_extremes(leading_order_strain(wave_), 1., 1., n_of(waves), n_of(waves * std::max(1., strides)));
+    return find_extremes(leading_order_strain(wave), 1., 1., n_of(waves), n_of(waves * std::max(1., strides)));
   }
 } // namespace crawler

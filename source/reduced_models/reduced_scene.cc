@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/reduced_models/reduced_scene.h>
+#include <crawler/scene/strain_extremes.h>
 
 namespace crawler
 {
@@ -15,7 +16,7 @@ namespace crawler
       strain_ = &approximate_.emplace(leading_order_strain(*wave_));
     else if (scene_.active_stress->rate_at({0.}) != nullptr)
     {
-      const StrainHistory &stiff = approximate_.emplace(stiff_strain(scene_));
+      const ActiveStress &stiff = approximate_.emplace(stiff_strain(scene_));
       if (!find_jump(stiff, 1., 1.))
         strain_ = &stiff;
     }

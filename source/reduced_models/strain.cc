@@ -31,18 +31,18 @@ namespace crawler
     return result;
   }
 
-  StrainByEvaluators
+  StressByFunctions
   leading_order_strain(const NaturalWave &wave)
   {
     using Harmonic = NaturalWave::Harmonic;
-    FieldBounds bounds{0., 0.};
+    ActiveStress::Bounds bounds{0., 0.};
     for (const Harmonic &h : wave.harmonics)
     {
       const double amplitude = std::hypot(h.a, h.b);
       bounds.value += 2. * amplitude;
       bounds.rate += h.q * std::abs(wave.speed) * amplitude;
     }
-    const auto evaluators = [wave](const std::vector<double> &points) -> StrainByEvaluators::Evaluators {
+    const auto evaluator = [wave](const std::vector<double> &points, const bool rate) {
       std::vector<double> sine, cosine; // [harmonic][point]
       for (const Harmonic &h : wave.harmonics)
         for (const double s : points)
@@ -64,35 +64,34 @@ namespace crawler
           }
         });
       };
-      return {combine([](const Harmonic &h, const double theta) {
-                const double half = std::sin(0.5 * theta), st = std::sin(theta), ct_minus_1 = -2. * half * half;
-                return std::pair(h.a * ct_minus_1 - h.b * st, h.a * st + h.b * ct_minus_1);
-              }),
-              combine([c = wave.speed](const Harmonic &h, const double theta) {
-                const double rate = h.q * c, st = std::sin(theta), ct = std::cos(theta);
-                return std::pair(-rate * (h.a * st + h.b * ct), rate * (h.a * ct - h.b * st));
-              })};
+      if (rate)
+        return combine([c = wave.speed](const Harmonic &h, const double theta) {
+          const double qc = h.q * c, st = std::sin(theta), ct = std::cos(theta);
+          return std::pair(-qc * (h.a * st + h.b * ct), qc * (h.a * ct - h.b * st));
+        });
+      return combine([](const Harmonic &h, const double theta) {
+        const double half = std::sin(0.5 * theta), st = std::sin(theta), ct_minus_1 = -2. * half * half;
+        return std::pair(h.a * ct_minus_1 - h.b * st, h.a * st + h.b * ct_minus_1);
+      });
     };
-    return StrainByEvaluators(evaluators, [bounds](const SpaceTimeBox &) { return bounds; });
+    return StressByFunctions(evaluator, [bounds](const ActiveStress::Box &) { return bounds; });
   }
 
-  StrainByEvaluators
+  StressByFunctions
   stiff_strain(const Scene &scene)
   {
     const ActiveStress &stress = *scene.active_stress;
     const double k             = scene.body.elastic_modulus;
-    const auto divided         = [k](std::unique_ptr<ActiveStressAtPoints> m) {
-      return stress_at_points([k, m = std::move(m)](const double t, const std::span<double> e) {
-        m->values(t, e);
-        for (double &value : e)
-          value /= -k;
-      });
-    };
-    return StrainByEvaluators(
-      [&stress, divided](const std::vector<double> &points) -> StrainByEvaluators::Evaluators {
-        return {divided(stress.at(points)), divided(stress.rate_at(points))};
+    return StressByFunctions(
+      [&stress, k](const std::vector<double> &points, const bool rate) {
+        auto at = rate ? stress.rate_at(points) : stress.at(points);
+        return stress_at_points([k, m = std::move(at)](const double t, const std::span<double> e) {
+          m->values(t, e);
+          for (double &value : e)
+            value /= -k;
+        });
       },
-      [&stress, k](const SpaceTimeBox &box) {
+      [&stress, k](const ActiveStress::Box &box) {
         auto bounds = stress.bounds(box);
         if (bounds)
           *bounds = {bounds->value / k, bounds->rate / k};

@@ -10,8 +10,7 @@ namespace crawler
   struct StrainFunctional::State
   {
     explicit State(const std::size_t n)
-      : motion(n)
-      , m(n)
+      : m(n)
       , by_B(n)
       , by_rate(n)
     {
@@ -35,15 +34,15 @@ namespace crawler
   }
 
   StrainSamples
-  StrainFunctional::sample(const StrainHistory &history) const
+  StrainFunctional::sample(const ActiveStress &strain) const
   {
     StrainSamples samples;
     samples.resize(points_.size() * times_.size());
-    const auto at = history.at(points_);
+    const auto at = strain.at(points_), rate_at = strain.rate_at(points_);
     for (std::size_t i = 0; i < times_.size(); ++i)
     {
-      at->strain(times_[i], {&samples.strain[i * points_.size()], points_.size()});
-      at->rate(times_[i], {&samples.rate[i * points_.size()], points_.size()});
+      at->values(times_[i], {&samples.strain[i * points_.size()], points_.size()});
+      rate_at->values(times_[i], {&samples.rate[i * points_.size()], points_.size()});
     }
     return samples;
   }

@@ -45,12 +45,12 @@ namespace crawler
   void
   ReducedModel::compute_perturbation(SimulationResult &result) const
   {
-    const Perturbation series(*reduced_scene_.wave());
+    const NaturalWave &wave       = *reduced_scene_.wave();
     const ModelErrors errors      = reduced_scene_.model_errors();
-    const StrainExtremes extremes = series.extremes();
-    result.displacement           = series.displacement(1.);
+    const StrainExtremes extremes = perturbation::extremes(wave);
+    result.displacement           = perturbation::displacement(wave, 1.);
     result.error                  = {.space = 0., .time = 0., .model = errors.known ? errors.perturbation : unknown};
-    result.energy_balance         = series.energies(1.);
+    result.energy_balance         = perturbation::energies(wave, 1.);
     result.net_friction           = unknown;
     result.min_stretch            = stretch_of(extremes.smallest);
     result.max_stretch            = stretch_of(extremes.largest);
@@ -155,17 +155,17 @@ namespace crawler
     State state;
     if (model_ == Model::perturbation)
     {
-      const Perturbation series(*reduced_scene_.wave());
+      const NaturalWave &wave = *reduced_scene_.wave();
       KinematicBody body(reduced_scene_.scene(), *reduced_scene_.strain(), {0., 0.5, 1.}, points);
       for (const double t : times)
       {
         const auto &now    = body.evaluate(t); // for its extremes
-        state.displacement = series.displacement(t);
-        state.velocity     = series.velocity(t);
-        state.energies     = series.energies(t);
+        state.displacement = perturbation::displacement(wave, t);
+        state.velocity     = perturbation::velocity(wave, t);
+        state.energies     = perturbation::energies(wave, t);
         state.smallest     = now.smallest;
         state.largest      = now.largest;
-        state.fields       = series.fields(t, points);
+        state.fields       = perturbation::fields(wave, t, points);
         if (!see(t, state))
           return;
       }

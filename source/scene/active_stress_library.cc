@@ -53,23 +53,16 @@ namespace crawler
       return std::make_unique<Sum>(std::move(terms), scene.body.length, scene.end_time);
     }
 
-    /// No actuation: m = 0.
-    class NoActiveStress : public KnownStress
+    std::unique_ptr<ActiveStress>
+    create_nothing(const ActiveStressParameters &, const Scene &)
     {
-    public:
-      std::optional<Bounds>
-      bounds(const Box &) const override
-      {
-        return Bounds{0., 0.};
-      }
-
-    private:
-      std::unique_ptr<ActiveStressAtPoints>
-      evaluator(const std::vector<double> &, bool) const override
-      {
-        return stress_at_points([](double, const std::span<double> m) { std::ranges::fill(m, 0.); });
-      }
-    };
+      const auto no_stress = [](double, const std::span<double> m) { std::ranges::fill(m, 0.); };
+      return std::make_unique<StressByFunctions>(
+        [=](const std::vector<double> &, bool) { return stress_at_points(no_stress); },
+        [](const ActiveStress::Box &) {
+          return ActiveStress::Bounds{0., 0.};
+        });
+    }
 
     /// Makes a wave by Fourier coefficients or of any shape.
     std::unique_ptr<ActiveStress>
@@ -120,9 +113,7 @@ namespace crawler
     {
       using P                                  = ActiveStressParameters;
       static const std::vector<Generator> list = {
-        {"none",
-         "no actuation, m = 0",
-         [](const P &, const Scene &) -> std::unique_ptr<ActiveStress> { return std::make_unique<NoActiveStress>(); }},
+        {"none", "no actuation, m = 0", create_nothing},
         {"optimal wave",
          "the wave of largest displacement for a given energy, to leading order in chi",
          create_any_optimal_wave},
@@ -136,7 +127,9 @@ namespace crawler
         {"two-level wave",
          "the two-level strain that goes farthest of all for its work, and the stress that produces it",
          create<TwoLevelWave, &P::two_level_wave>},
-        {"library", "a shared object that the user has compiled", create<Library, &P::library>},
+        {"library",
+         "a shared object that the user has compiled",
+         [](const P &own, const Scene &scene) { return load_library(own.library, scene.body, scene.end_time); }},
         {"segments", "actuated segments of a robot that switch one after the other", create<Segments, &P::segments>},
         {"strain feedback",
          "a formula of s, t, the stretch, its rate, and stretches nearby and before",
@@ -161,6 +154,15 @@ namespace crawler
   {
     for (std::size_t i = 0; i < terms.size(); ++i)
       declarations.section(fmt::format("Term {}", i + 1), terms[i]);
+  }
+
+  void
+  LibraryParameters::add_parameters(Declarations &declarations)
+  {
+    declarations.file("File", file, "the name of a shared object")
+      .means("Shared object with the active stress as a plug-in (doc/generators/library.md).");
+    declarations.text("Parameters", parameters, "a list name=value, name=value")
+      .means("Parameters that are passed to the plug-in, which defines their names.");
   }
 
   void

@@ -35,12 +35,10 @@ namespace crawler
   read_profiles(const Body &body, const double end_time)
   {
     const auto read = [&](const std::string &name, const std::string &quantity, const std::string &text) {
-      const ProfileInput input{
-        quantity, "s", text, body.profile_interpolation, "hold", "Body/" + name, body.constants, "Body/Constants"};
-      auto profile = read_profile(input, body.length, end_time);
-      if (profile)
-        require_positive(*profile, 0., body.length, input);
-      return profile;
+      return read_profile(
+        {quantity, "s", text, body.profile_interpolation, "hold", "Body/" + name, body.constants, "Body/Constants"},
+        body.length,
+        end_time);
     };
     return {read("Elastic modulus profile", "profile of the elastic modulus", body.elastic_modulus_profile),
             read("Friction profile", "profile of the friction", body.friction_profile),

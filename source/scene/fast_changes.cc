@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/grid_samples.h>
-#include <crawler/scene/active_stress.h>
 #include <crawler/scene/fast_changes.h>
 
 #include <algorithm>
@@ -20,40 +19,8 @@ namespace crawler
     /// Shortest time of a box, relative to the duration.
     constexpr double shortest = 1e-9;
 
-    class Search
+    struct Search
     {
-    public:
-      Search(const ActiveStress &stress,
-             const double duration,
-             const std::function<double(double, double)> &explained,
-             const FastChangeLimits &limits,
-             double &largest)
-        : stress_(stress)
-        , duration_(duration)
-        , explained_(explained)
-        , limits_(limits)
-        , largest_(largest)
-      {
-      }
-
-      FastChanges
-      look(const ActiveStress::Box &all)
-      {
-        FastChanges result;
-        const auto bounds = stress_.bounds(all);
-        if (!bounds)
-          return result;
-        boxes_.push_back({all, bounds->rate, /*in_s=*/true});
-        for (; !boxes_.empty() && n_bounds_ < limits_.max_bounds; boxes_.pop_front())
-          look_at(boxes_.front(), result.list);
-        result.is_complete = boxes_.empty();
-        for (const Part &part : boxes_)
-          result.list.push_back({part.box.t_from, part.box.t_to, std::min(part.bound, rate_in(part.box))});
-        std::ranges::sort(result.list, {}, &FastChange::from);
-        return result;
-      }
-
-    private:
       struct Part
       {
         ActiveStress::Box box;
@@ -61,27 +28,52 @@ namespace crawler
         bool in_s; ///< the box is a half in s
       };
 
+      const ActiveStress &stress;
+      const double duration;
+      const std::function<double(double, double)> &explained;
+      const FastChangeLimits limits;
+      double &largest_m;
+      std::deque<Part> boxes = {};
+      unsigned int n_bounds  = 0;
+
+      FastChanges
+      look(const ActiveStress::Box &all)
+      {
+        FastChanges result;
+        const auto bounds = stress.bounds(all);
+        if (!bounds)
+          return result;
+        boxes.push_back({all, bounds->rate, /*in_s=*/true});
+        for (; !boxes.empty() && n_bounds < limits.max_bounds; boxes.pop_front())
+          look_at(boxes.front(), result.list);
+        result.is_complete = boxes.empty();
+        for (const Part &part : boxes)
+          result.list.push_back({part.box.t_from, part.box.t_to, std::min(part.bound, rate_in(part.box))});
+        std::ranges::sort(result.list, {}, &FastChange::from);
+        return result;
+      }
+
       void
       look_at(const Part &part, std::vector<FastChange> &list)
       {
         const ActiveStress::Box box = part.box;
         const double bound = part.bound, time = box.t_to - box.t_from;
-        const double admitted = explained_(box.t_from, box.t_to);
-        if (bound <= admitted || bound * time <= negligible * largest_)
+        const double admitted = explained(box.t_from, box.t_to);
+        if (bound <= admitted || bound * time <= negligible * largest_m)
           return;
         const double rate = rate_in(box);
         if (rate * explained_by_point >= bound && 2. * rate > admitted && std::isfinite(bound))
         {
           see_values(box);
-          if (bound * time <= max_changes * largest_)
+          if (bound * time <= max_changes * largest_m)
           {
             list.push_back({box.t_from, box.t_to, std::min(bound, 2. * rate)});
             return;
           }
         }
-        if (time <= shortest * duration_)
+        if (time <= shortest * duration)
         {
-          if (const double change = see_values(box); change >= limits_.min_jump * largest_ && change > 0.)
+          if (const double change = see_values(box); change >= limits.min_jump * largest_m && change > 0.)
             list.push_back({box.t_from, box.t_to, change / time});
           return;
         }
@@ -94,15 +86,15 @@ namespace crawler
         const double of_left = is_jump ? HUGE_VAL : bound_in(left), of_right = is_jump ? HUGE_VAL : bound_in(right);
         const double in_time = of_early + of_late, in_space = of_left + of_right;
         const bool in_s = !is_jump && (in_space < 0.99 * in_time || (in_space <= 1.01 * in_time && !part.in_s));
-        boxes_.push_back(in_s ? Part{left, of_left, true} : Part{early, of_early, false});
-        boxes_.push_back(in_s ? Part{right, of_right, true} : Part{late, of_late, false});
+        boxes.push_back(in_s ? Part{left, of_left, true} : Part{early, of_early, false});
+        boxes.push_back(in_s ? Part{right, of_right, true} : Part{late, of_late, false});
       }
 
       double
       bound_in(const ActiveStress::Box &box)
       {
-        ++n_bounds_;
-        return stress_.bounds(box)->rate;
+        ++n_bounds;
+        return stress.bounds(box)->rate;
       }
 
       /// Largest |m_t| at some points of the box, where bounds are not too large.
@@ -130,29 +122,21 @@ namespace crawler
       {
         constexpr unsigned int n = 4;
         std::vector<double> m(n + 1), least(n + 1, HUGE_VAL), most(n + 1, -HUGE_VAL);
-        const auto at = stress_.at(equal_parts(box.s_from, box.s_to, n));
+        const auto at = stress.at(equal_parts(box.s_from, box.s_to, n));
         double change = 0.;
         for (const double t : equal_parts(box.t_from, box.t_to, n))
         {
           at->values(t, m);
           for (unsigned int i = 0; i <= n; ++i)
           {
-            largest_ = std::max(largest_, std::abs(m[i]));
-            least[i] = std::min(least[i], m[i]);
-            most[i]  = std::max(most[i], m[i]);
-            change   = std::max(change, most[i] - least[i]);
+            largest_m = std::max(largest_m, std::abs(m[i]));
+            least[i]  = std::min(least[i], m[i]);
+            most[i]   = std::max(most[i], m[i]);
+            change    = std::max(change, most[i] - least[i]);
           }
         }
         return change;
       }
-
-      const ActiveStress &stress_;
-      const double duration_;
-      const std::function<double(double, double)> &explained_;
-      const FastChangeLimits limits_;
-      double &largest_;
-      std::deque<Part> boxes_;
-      unsigned int n_bounds_ = 0;
     };
   } // namespace
 
@@ -165,6 +149,33 @@ namespace crawler
                     double &largest,
                     const FastChangeLimits &limits)
   {
-    return Search(stress, to - from, explained, limits, largest).look({0., length, from, to});
+    return Search{stress, to - from, explained, limits, largest}.look({0., length, from, to});
+  }
+
+  ActiveStress::Bounds
+  sampled_bounds(const ActiveStress &stress,
+                 const ActiveStress::Box &box,
+                 const unsigned int n_s,
+                 const unsigned int n_t)
+  {
+    const std::vector<double> places = equal_parts(box.s_from, box.s_to, n_s - 1);
+    const auto at = stress.at(places), rate_at = stress.rate_at(places);
+    const double step = (box.t_to - box.t_from) / (n_t - 1);
+    std::vector<double> before, now(n_s), rates(n_s);
+    ActiveStress::Bounds largest{0., 0.};
+    for (const double t : equal_parts(box.t_from, box.t_to, n_t - 1))
+    {
+      at->values(t, now);
+      if (rate_at)
+        rate_at->values(t, rates);
+      for (unsigned int i = 0; i < n_s; ++i)
+      {
+        if (!rate_at && !before.empty() && step > 0.)
+          rates[i] = (now[i] - before[i]) / step;
+        largest = {std::max(largest.value, std::abs(now[i])), std::max(largest.rate, std::abs(rates[i]))};
+      }
+      before = now;
+    }
+    return largest;
   }
 } // namespace crawler

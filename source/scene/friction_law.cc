@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/grid_samples.h>
 #include <crawler/scene/friction_law.h>
 
 #include <algorithm>
@@ -24,19 +25,23 @@ namespace crawler
     std::vector<double>
     stretches(const FrictionLaw &friction, const double from, const double to)
     {
-      const std::size_t n = dynamic_cast<const PowerFriction *>(&friction) != nullptr ? 2 : 1025;
-      std::vector<double> w(n);
-      for (std::size_t i = 0; i < n; ++i)
-        w[i] = from + (to - from) * static_cast<double>(i) / static_cast<double>(n - 1);
-      return w;
+      return equal_parts(from, to, dynamic_cast<const PowerFriction *>(&friction) != nullptr ? 1 : 1024);
     }
   } // namespace
+
+  double
+  FrictionLaw::value(const double w) const
+  {
+    double g = 0.;
+    values({&w, 1}, {&g, 1});
+    return g;
+  }
 
   double
   FrictionLaw::exponent(const double w) const
   {
     double g = 0., w_dg = 0.;
-    values_and_log_derivatives({&w, 1}, {&g, 1}, {&w_dg, 1});
+    values({&w, 1}, {&g, 1}, {&w_dg, 1});
     return w_dg / g;
   }
 
@@ -48,7 +53,7 @@ namespace crawler
   }
 
   void
-  PowerFriction::values(const std::span<const double> w, const std::span<double> g) const
+  PowerFriction::values(const std::span<const double> w, const std::span<double> g, const std::span<double> w_dg) const
   {
     if (a_is_small_integer_)
     {
@@ -59,15 +64,7 @@ namespace crawler
     else
       for (std::size_t i = 0; i < w.size(); ++i)
         g[i] = gamma_ * std::pow(w[i], a_);
-  }
-
-  void
-  PowerFriction::values_and_log_derivatives(const std::span<const double> w,
-                                            const std::span<double> g,
-                                            const std::span<double> w_dg) const
-  {
-    values(w, g);
-    for (std::size_t i = 0; i < w.size(); ++i)
+    for (std::size_t i = 0; i < w_dg.size(); ++i)
       w_dg[i] = a_ == 0. ? 0. : a_ * g[i];
   }
 

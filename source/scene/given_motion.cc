@@ -4,22 +4,12 @@
 namespace crawler
 {
   BodyAtPoints::BodyAtPoints(const Scene &scene, const std::vector<double> &points)
-    : friction(*scene.friction)
+    : friction(scene.friction)
     , friction_profile(profile_at(scene.profiles.friction, points))
     , elastic_modulus(profile_at(scene.profiles.elastic_modulus, points))
   {
     for (double &k : elastic_modulus)
       k *= scene.body.elastic_modulus;
-  }
-
-  GivenMotion::GivenMotion(const std::size_t n)
-    : w(n)
-    , g(n)
-    , w_dg(n)
-    , B_t(n)
-    , v(n)
-    , gv(n)
-  {
   }
 
   void
@@ -30,13 +20,12 @@ namespace crawler
                     const bool with_slopes)
   {
     const auto &weights = panels.weights();
+    for (auto *const list : {&w, &g, &w_dg, &B_t, &v, &gv})
+      list->resize(weights.size());
     panels.running_integral(rate, B_t);
     for (std::size_t i = 0; i < w.size(); ++i)
       w[i] = 1. + strain[i];
-    if (with_slopes)
-      body.friction.values_and_log_derivatives(w, g, w_dg);
-    else
-      body.friction.values(w, g);
+    body.friction->values(w, g, with_slopes ? std::span<double>(w_dg) : std::span<double>());
     for (std::size_t i = 0; i < w.size(); ++i)
     {
       g[i] *= body.friction_profile[i];

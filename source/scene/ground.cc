@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
-#include <crawler/base/grid_samples.h>
 #include <crawler/formula/formula_gradient.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/formula_input.h>
@@ -18,38 +17,20 @@ namespace crawler
   {
     /// A viscous film under the body, the simplest law: force per present length proportional to the velocity, g(w) =
     /// gamma w.
-    class NewtonianFriction : public FrictionLaw
+    class NewtonianFriction : public PowerFriction
     {
     public:
       /// @param gamma friction coefficient [force time/length^2].
       explicit NewtonianFriction(const double gamma)
-        : gamma_(gamma)
+        : PowerFriction(gamma, /*a=*/1.)
+        , gamma_(gamma)
       {
       }
 
-      void
-      values(const std::span<const double> w, const std::span<double> g) const override
-      {
-        for (std::size_t i = 0; i < w.size(); ++i)
-          g[i] = gamma_ * w[i];
-      }
-      void
-      values_and_log_derivatives(const std::span<const double> w,
-                                 const std::span<double> g,
-                                 const std::span<double> w_dg) const override
-      {
-        values(w, g);
-        std::copy(g.begin(), g.end(), w_dg.begin());
-      }
       std::unique_ptr<FrictionLaw>
       scaled(const double factor) const override
       {
         return std::make_unique<NewtonianFriction>(gamma_ * factor);
-      }
-      double
-      exponent(double) const override
-      {
-        return 1.;
       }
 
     private:
@@ -69,26 +50,15 @@ namespace crawler
       }
 
       void
-      values(const std::span<const double> w, const std::span<double> g) const override
-      {
-        const std::span<const double> stretch[] = {w};
-        gradient_.evaluate(stretch, g);
-        for (double &value : g)
-          value *= gamma_;
-      }
-      void
-      values_and_log_derivatives(const std::span<const double> w,
-                                 const std::span<double> g,
-                                 const std::span<double> w_dg) const override
+      values(const std::span<const double> w, const std::span<double> g, const std::span<double> w_dg) const override
       {
         const std::span<const double> stretch[] = {w};
         const std::span<double> derivatives[]   = {w_dg};
         gradient_.evaluate(stretch, g, derivatives);
-        for (std::size_t i = 0; i < w.size(); ++i)
-        {
-          g[i] *= gamma_;
+        for (double &value : g)
+          value *= gamma_;
+        for (std::size_t i = 0; i < w_dg.size(); ++i)
           w_dg[i] *= gamma_ * w[i];
-        }
       }
       std::unique_ptr<FrictionLaw>
       scaled(const double factor) const override
@@ -108,23 +78,6 @@ namespace crawler
       std::function<std::unique_ptr<const FrictionLaw>(const GroundParameters &, const Body &, double)> create;
     };
 
-    /// Throws InputError unless the law is positive near the stretch 1, where every body is; other stretches are
-    /// checked when a body gets there.
-    void
-    require_positive_law(const FrictionLaw &law, const std::string &formula)
-    {
-      constexpr unsigned int n = 100;
-      for (const double w : equal_parts(0.9, 1.1, n))
-      {
-        double g = 0.;
-        law.values({&w, 1}, {&g, 1});
-        if (!(std::isfinite(g) && g > 0.))
-          throw InputError(
-            fmt::format("the friction law \"{}\" is {} at w = {:g}; a positive number is expected", formula, g, w),
-            "Ground/Expression");
-      }
-    }
-
     /// The list of all friction laws, kept only here.
     const std::vector<Law> &
     laws()
@@ -143,12 +96,12 @@ namespace crawler
         {"expression",
          "gamma times a formula of the stretch w",
          [](const auto &p, const Body &body, const double end_time) -> std::unique_ptr<const FrictionLaw> {
-           auto law = std::make_unique<ExpressionFriction>(
-             body.friction_coefficient,
-             read_formula({"friction law", p.expression, p.constants, "Ground/Expression", "Ground/Constants", {"w"}},
-                          body.length,
-                          end_time));
-           require_positive_law(*law, p.expression);
+           const ProfileInput input{
+             "friction law", "w", p.expression, "", "", "Ground/Expression", p.constants, "Ground/Constants"};
+           auto law = std::make_unique<ExpressionFriction>(body.friction_coefficient,
+                                                           read_formula(input.formula(), body.length, end_time));
+           // Every body is near the stretch 1; other stretches are checked when a body gets there.
+           require_positive([&](const double w) { return law->value(w); }, 0.9, 1.1, input);
            return law;
          }},
       };
@@ -203,17 +156,17 @@ namespace crawler
   Ground
   create_ground(const GroundParameters &parameters, const Body &body, const double end_time)
   {
-    const ProfileInput input{"profile of the ground",
-                             "x",
-                             parameters.profile,
-                             parameters.interpolation,
-                             parameters.outside,
-                             "Ground/Profile",
-                             parameters.constants,
-                             "Ground/Constants"};
-    Ground ground{read_profile(input, body.length, end_time), {}};
-    if (ground.profile)
-      require_positive(*ground.profile, 0., body.length, input);
+    Ground ground{read_profile({"profile of the ground",
+                                "x",
+                                parameters.profile,
+                                parameters.interpolation,
+                                parameters.outside,
+                                "Ground/Profile",
+                                parameters.constants,
+                                "Ground/Constants"},
+                               body.length,
+                               end_time),
+                  {}};
     if (parameters.backward_ratio != 1.)
     {
       if (!parameters.switching_velocity)

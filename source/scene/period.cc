@@ -434,21 +434,14 @@ namespace crawler
     double common = periods.front();
     for (const double P : periods)
     {
-      // Convergents p/q of the continued fraction of the ratio.
-      const double ratio = common / P;
-      double rest = ratio, p = std::floor(ratio), q = 1., p_before = 1., q_before = 0.;
-      while (std::abs(ratio - p / q) > tolerance * ratio)
-      {
-        rest = 1. / (rest - std::floor(rest));
-        if (!(std::max(p, q) <= largest) || !std::isfinite(rest))
-          return std::nullopt;
-        const double digit = std::floor(rest), p_next = digit * p + p_before, q_next = digit * q + q_before;
-        p_before = p;
-        q_before = q;
-        p        = p_next;
-        q        = q_next;
-      }
-      if (std::max(p, q) > largest)
+      const double ratio    = common / P;
+      const auto is_product = [ratio](const double q) {
+        return std::abs(ratio - std::round(ratio * q) / q) <= tolerance * ratio;
+      };
+      double q = 1.;
+      while (q <= largest && !is_product(q))
+        ++q;
+      if (std::max(q, std::round(ratio * q)) > largest)
         return std::nullopt;
       common *= q; // q times the one is p times the other
     }
@@ -458,20 +451,11 @@ namespace crawler
   double
   shortest_period(const ActiveStress &stress, const double length, const double period, const double from)
   {
-    constexpr unsigned int n = 256;
-    StressAtPlaces m(stress, length);
-    const auto time = [&](const unsigned int i) { return from + (i + 0.381966) / n * period; };
-    double largest  = 0.;
-    for (unsigned int i = 0; i < n; ++i)
-      largest = std::max(largest, StressAtPlaces::size(m.at(time(i))));
-    const auto repeats_after = [&](const double P) {
-      for (unsigned int i = 0; i < n; ++i)
-        if (StressAtPlaces::difference(m.at(time(i) + P), m.at(time(i))) > same * largest)
-          return false;
-      return true;
-    };
     constexpr unsigned int most = 10; // times each factor
-    double shortest             = period;
+    const auto repeats_after = [&](const double P) { return PeriodTest(stress, length, from, from + period).holds(P); };
+    double shortest          = period;
+    if (repeats_after(0.381966 * period)) // steady
+      return period;
     for (const unsigned int factor : {2, 3, 5, 7})
       for (unsigned int i = 0; i < most && repeats_after(shortest / factor); ++i)
         shortest /= factor;

@@ -203,16 +203,24 @@ namespace crawler
     std::shared_ptr<const Profile>
     list_profile(const std::vector<double> &values, const double length, const ProfileInput &input)
     {
-      std::vector<double> places;
       for (std::size_t i = 0; i < values.size(); ++i)
-      {
         if (!(values[i] > 0.))
           throw InputError(
             fmt::format("number {} of \"{}\" is {:g}, but a positive number is expected", i + 1, input.text, values[i]),
             input.entry);
-        places.push_back(length * static_cast<double>(i) / static_cast<double>(values.size() - 1));
-      }
-      return table_profile(std::move(places), values, "numbers", input);
+      return table_profile(equal_parts(0., length, values.size() - 1), values, "numbers", input);
+    }
+
+    std::shared_ptr<const Profile>
+    read_any_profile(const ProfileInput &input, const double length, const double end_time)
+    {
+      if (input.text.ends_with(".csv"))
+        return read_table(input);
+      if (input.variable == "s" && input.text.find(',') != std::string::npos)
+        if (const auto values = to_numbers(input.text))
+          return list_profile(*values, length, input);
+      return std::make_shared<FormulaProfile>(read_formula(input.formula(), length, end_time),
+                                              input.variable == "s" ? length : 0.);
     }
   } // namespace
 
@@ -236,19 +244,11 @@ namespace crawler
   std::shared_ptr<const Profile>
   read_profile(const ProfileInput &input, const double length, const double end_time)
   {
-    const std::string text = trimmed(input.text);
-    if (to_number(text) == 1.)
+    if (to_number(input.text) == 1.)
       return nullptr;
-    if (text.ends_with(".csv"))
-      return read_table(input);
-    if (input.variable == "s" && text.find(',') != std::string::npos)
-      if (const auto values = to_numbers(text))
-        return list_profile(*values, length, input);
-    return std::make_shared<FormulaProfile>(
-      read_formula({input.quantity, text, input.constants, input.entry, input.constants_entry, {input.variable}},
-                   length,
-                   end_time),
-      input.variable == "s" ? length : 0.);
+    const auto profile = read_any_profile(input, length, end_time);
+    require_positive([&](const double x) { return profile->value(x); }, 0., length, input);
+    return profile;
   }
 
   std::shared_ptr<const Profile>
@@ -258,11 +258,14 @@ namespace crawler
   }
 
   void
-  require_positive(const Profile &profile, const double from, const double to, const ProfileInput &input)
+  require_positive(const std::function<double(double)> &factor,
+                   const double from,
+                   const double to,
+                   const ProfileInput &input)
   {
     constexpr unsigned int n = 1000;
     for (const double x : equal_parts(from, to, n))
-      if (const double f = profile.value(x); !(std::isfinite(f) && f > 0.))
+      if (const double f = factor(x); !(std::isfinite(f) && f > 0.))
         throw InputError(fmt::format("the {} \"{}\" is {} at {} = {:g}; a positive number is expected",
                                      input.quantity,
                                      input.text,

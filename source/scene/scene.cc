@@ -24,35 +24,6 @@ namespace crawler
       return values;
     }
 
-    SpaceTimeBox
-    physical(const SpaceTimeBox &box, const Units &units)
-    {
-      return {box.s_from * units.length, box.s_to * units.length, box.t_from * units.time, box.t_to * units.time};
-    }
-
-    /// A strain history in other units.
-    StrainByEvaluators
-    scaled(const StrainHistory &history, const Units &units)
-    {
-      return StrainByEvaluators(
-        [&history, units](const std::vector<double> &points) -> StrainByEvaluators::Evaluators {
-          const std::shared_ptr<StrainAtPoints> at = history.at(times(points, units.length));
-          const double unit                        = units.time;
-          return {stress_at_points([at, unit](const double t, const std::span<double> e) { at->strain(t * unit, e); }),
-                  stress_at_points([at, unit](const double t, const std::span<double> e_t) {
-                    at->rate(t * unit, e_t);
-                    for (double &value : e_t)
-                      value *= unit;
-                  })};
-        },
-        [&history, units](const SpaceTimeBox &box) {
-          auto bounds = history.bounds(physical(box, units));
-          if (bounds)
-            bounds->rate *= units.time;
-          return bounds;
-        });
-    }
-
     /// An active stress in other units. @p pieces may be null.
     class ScaledActiveStress : public KnownStress
     {
@@ -63,7 +34,8 @@ namespace crawler
         , pieces_(pieces)
       {
         if (stress.prescribed_strain() != nullptr)
-          strain_.emplace(scaled(*stress.prescribed_strain(), units));
+          strain_ = std::make_unique<ScaledActiveStress>(
+            *stress.prescribed_strain(), Units{units.length, units.time, /*force=*/1.}, nullptr);
         if (const StretchFeedback *feedback = stress.feedback())
           feedback_.emplace(KnownFeedback::Facts{feedback->uses_rate(),
                                                  feedback->distance() / units.length,
@@ -75,10 +47,10 @@ namespace crawler
       }
       ScaledActiveStress(const ScaledActiveStress &) = delete;
 
-      const StrainHistory *
+      const ActiveStress *
       prescribed_strain() const override
       {
-        return strain_ ? &*strain_ : nullptr;
+        return strain_.get();
       }
       const StressFailures *
       failures() const override
@@ -98,7 +70,8 @@ namespace crawler
       std::optional<Bounds>
       bounds(const Box &box) const override
       {
-        auto bounds = stress_.bounds(physical(box, units_));
+        auto bounds = stress_.bounds(
+          {box.s_from * units_.length, box.s_to * units_.length, box.t_from * units_.time, box.t_to * units_.time});
         if (bounds)
           *bounds = {bounds->value / units_.force, bounds->rate * units_.time / units_.force};
         return bounds;
@@ -155,7 +128,7 @@ namespace crawler
       const ActiveStress &stress_;
       const Units units_;
       const TimeSegments *pieces_;
-      std::optional<StrainByEvaluators> strain_;
+      std::unique_ptr<const ActiveStress> strain_;
       std::optional<KnownFeedback> feedback_;
     };
 
@@ -235,10 +208,9 @@ namespace crawler
   std::pair<double, double>
   Scene::end_moduli() const
   {
-    const double k = body.elastic_modulus;
-    if (!profiles.elastic_modulus)
-      return {k, k};
-    return {k * profiles.elastic_modulus->value(0.), k * profiles.elastic_modulus->value(body.length)};
+    const double k     = body.elastic_modulus;
+    const auto factors = profile_at(profiles.elastic_modulus, {0., body.length});
+    return {k * factors[0], k * factors[1]};
   }
 
   std::vector<double>
@@ -252,6 +224,15 @@ namespace crawler
         places.insert(places.end(), more.begin(), more.end());
       }
     return distinct_breaks_in_space(std::move(places), body.length);
+  }
+
+  std::optional<Scene>
+  with_fronts(const Scene &scene, const double part)
+  {
+    const auto *const known = dynamic_cast<const KnownStress *>(scene.active_stress.get());
+    Scene smooth            = scene;
+    smooth.active_stress    = known != nullptr ? known->with_fronts(part) : nullptr;
+    return smooth.active_stress ? std::optional(std::move(smooth)) : std::nullopt;
   }
 
   Units
@@ -298,20 +279,20 @@ namespace crawler
   Scene
   in_units(const Scene &scene, const Units &units, const TimeSegments *pieces)
   {
-    Scene scaled;
-    const double friction            = units.force * units.time / units.length / units.length;
-    scaled.body                      = scene.body;
-    scaled.body.length               = scene.body.length / units.length;
-    scaled.body.elastic_modulus      = scene.body.elastic_modulus / units.force;
-    scaled.body.friction_coefficient = scene.body.friction_coefficient / friction;
-    scaled.friction                  = scene.friction->scaled(1. / friction);
-    scaled.active_stress             = std::make_unique<ScaledActiveStress>(*scene.active_stress, units, pieces);
-    scaled.end_time                  = scene.end_time / units.time;
-    for (const auto member : {&BodyProfiles::elastic_modulus, &BodyProfiles::friction, &BodyProfiles::initial_stretch})
-      scaled.profiles.*member = in_units(scene.profiles.*member, units.length);
-    scaled.ground.profile                      = in_units(scene.ground.profile, units.length);
-    scaled.ground.direction                    = scene.ground.direction;
-    scaled.ground.direction.switching_velocity = scene.ground.direction.switching_velocity / units.velocity();
+    Scene scaled          = scene;
+    const double friction = units.force * units.time / units.length / units.length;
+    scaled.body.length /= units.length;
+    scaled.body.elastic_modulus /= units.force;
+    scaled.body.friction_coefficient /= friction;
+    scaled.friction      = scene.friction->scaled(1. / friction);
+    scaled.active_stress = std::make_unique<ScaledActiveStress>(*scene.active_stress, units, pieces);
+    scaled.end_time /= units.time;
+    for (auto *const profile : {&scaled.profiles.elastic_modulus,
+                                &scaled.profiles.friction,
+                                &scaled.profiles.initial_stretch,
+                                &scaled.ground.profile})
+      *profile = in_units(*profile, units.length);
+    scaled.ground.direction.switching_velocity /= units.velocity();
     return scaled;
   }
 } // namespace crawler

@@ -26,10 +26,9 @@ namespace crawler
     Derivatives
     derivatives_at_start(const Scene &scene, const std::vector<double> &points, const double change)
     {
-      const auto &profile = scene.profiles.initial_stretch;
-      std::vector<double> w(points.size(), 1. + change);
-      for (std::size_t i = 0; profile && i < points.size(); ++i)
-        w[i] *= profile->value(points[i]);
+      std::vector<double> w = profile_at(scene.profiles.initial_stretch, points);
+      for (double &stretch : w)
+        stretch *= 1. + change;
       const std::vector<double> rate(points.size(), change / scene.end_time), zero(points.size());
       Derivatives at = {zero, zero, zero, zero};
       scene.active_stress->feedback()->at(points)->values(
@@ -43,16 +42,16 @@ namespace crawler
   {
     if (!scene.active_stress || scene.active_stress->feedback() == nullptr)
       return;
-    constexpr unsigned int n   = 37;
-    const auto points          = equal_parts(0., scene.body.length, n);
-    const Derivatives around[] = {derivatives_at_start(scene, points, -both_sides),
-                                  derivatives_at_start(scene, points, 0.),
-                                  derivatives_at_start(scene, points, both_sides)};
+    constexpr unsigned int n            = 37;
+    const auto points                   = equal_parts(0., scene.body.length, n);
+    const Derivatives around[]          = {derivatives_at_start(scene, points, -both_sides),
+                                           derivatives_at_start(scene, points, 0.),
+                                           derivatives_at_start(scene, points, both_sides)};
+    const std::vector<double> stiffness = profile_at(scene.profiles.elastic_modulus, points);
     for (std::size_t i = 0; i < points.size(); ++i)
     {
-      const auto &modulus = scene.profiles.elastic_modulus;
-      const double k      = scene.body.elastic_modulus * (modulus ? modulus->value(points[i]) : 1.);
-      const auto all      = [&](const auto &violates) { return std::ranges::all_of(around, violates); };
+      const double k = scene.body.elastic_modulus * stiffness[i];
+      const auto all = [&](const auto &violates) { return std::ranges::all_of(around, violates); };
       if (all([&](const Derivatives &at) { return at.by_rate[i] < -round_off * k * scene.end_time; }))
         throw InputError(fmt::format("the feedback makes the equation ill-posed: at s = {:g}, t = 0 the derivative of "
                                      "the active stress with respect to w_t is {:.4g}, but 0 or a positive number is "

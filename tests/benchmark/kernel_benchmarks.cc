@@ -155,7 +155,7 @@ namespace crawler::test
              "expression; Active stress = 0.4*(0.0886*(erf(10*(s+t)) - erf(10*t) - s*(erf(10*(1+t)) - erf(10*t))) - "
              "exp(-100*(s+t)^2) + exp(-100*s^2))"}})
         add(std::string("kernel/") + name + "/values", stress_values, [settings = settings]() {
-          return std::move(parameters_with(set(settings)).create_scene().active_stress);
+          return parameters_with(set(settings)).create_scene().active_stress;
         });
     }
 

@@ -23,7 +23,8 @@ LLVMFuzzerTestOneInput(const std::uint8_t *data, const std::size_t size)
     const std::vector<double> points = {0., 0.3, 1.};
     std::vector<double> values(points.size()), rates(points.size());
     FormulaAtPoints(formula, points).values(0.7, values);
-    FormulaRateAtPoints(formula, points).values(0.7, rates);
+    FormulaGradient(formula).evaluate(
+      std::array<std::span<const double>, 2>{{points, points}}, values, std::array<std::span<double>, 2>{{{}, rates}});
     FormulaBound bound(formula);
     bound({0., 1.}, {0., 2.});
     bound({0.3, 0.3}, {0.7, 0.7});

@@ -12,10 +12,10 @@
 namespace crawler::test
 {
   /// Active stress of a scene, by full names of entries.
-  inline std::unique_ptr<const ActiveStress>
+  inline std::shared_ptr<const ActiveStress>
   stress_with(const Settings &settings)
   {
-    return std::move(parameters_with(settings).create_scene().active_stress);
+    return parameters_with(settings).create_scene().active_stress;
   }
 
   inline std::vector<double>

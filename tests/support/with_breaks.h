@@ -13,7 +13,7 @@ namespace crawler::test
   class WithBreaks : public ActiveStress
   {
   public:
-    WithBreaks(std::unique_ptr<const ActiveStress> stress, std::vector<double> in_space, std::vector<double> in_time)
+    WithBreaks(std::shared_ptr<const ActiveStress> stress, std::vector<double> in_space, std::vector<double> in_time)
       : stress_(std::move(stress))
       , in_space_(std::move(in_space))
       , in_time_(std::move(in_time))
@@ -42,7 +42,7 @@ namespace crawler::test
     }
 
   private:
-    const std::unique_ptr<const ActiveStress> stress_;
+    const std::shared_ptr<const ActiveStress> stress_;
     const std::vector<double> in_space_, in_time_;
   };
 } // namespace crawler::test

@@ -49,7 +49,7 @@ main(int argc, char **argv)
       continue;
     }
     ++total;
-    const double series       = Perturbation(*levels.wave()).displacement(1.);
+    const double series       = perturbation::displacement(*levels.wave(), 1.);
     const double motion       = kinematic(levels.scene(), *levels.strain(), 1e-8).displacement;
     const double is[2]        = {std::abs(series - *truth), std::abs(motion - *truth)};
     const double estimated[2] = {errors.perturbation, errors.kinematic};

@@ -25,7 +25,7 @@ namespace crawler
     using Constants = std::vector<std::pair<std::string, double>>;
 
     /// Compiles a formula. Throws mu::ParserError if @p text is not a formula of the @p variables and the @p constants.
-    /// FormulaAtPoints and FormulaRateAtPoints need the variables s and t; FormulaGradient takes any.
+    /// FormulaAtPoints needs the variables s and t; FormulaGradient takes any.
     Formula(const std::string &text,
             const Constants &constants,
             const std::vector<std::string> &variables = {"s", "t"});
@@ -39,7 +39,6 @@ namespace crawler
 
   private:
     friend class FormulaAtPoints;
-    friend class FormulaRateAtPoints;
     friend class FormulaGradient;
     friend class FormulaBound;
     friend class FormulaReader;

@@ -183,6 +183,10 @@ namespace crawler
   std::vector<std::string>
   split_path(const std::string &path);
 
+  /// Path of the section of an entry; empty at the top level.
+  std::string
+  section_of(const std::string &path);
+
   /// The normal spelling of a path, for comparing entries: without blanks around its words.
   std::string
   normal_path(const std::string &path);

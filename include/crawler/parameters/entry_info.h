@@ -21,14 +21,26 @@ namespace crawler
     in_words() const;
   };
 
-  Range
-  any_number();
-  Range
-  positive();
-  Range
-  not_negative();
-  Range
-  between(double lower, double upper);
+  constexpr Range
+  any_number()
+  {
+    return {};
+  }
+  constexpr Range
+  positive()
+  {
+    return {.lower = 0.};
+  }
+  constexpr Range
+  not_negative()
+  {
+    return {.lower = 0., .lower_included = true};
+  }
+  constexpr Range
+  between(const double lower, const double upper)
+  {
+    return {lower, upper, true, true};
+  }
 
   enum class EntryKind
   {

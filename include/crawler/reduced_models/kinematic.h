@@ -6,6 +6,7 @@
 #include <crawler/reduced_models/reduced_fields.h>
 #include <crawler/scene/given_motion.h>
 #include <crawler/scene/scene.h>
+#include <crawler/scene/strain_extremes.h>
 
 #include <functional>
 #include <memory>
@@ -27,7 +28,7 @@ namespace crawler
     /// @p panels are the ends of the panels, @p points those of fields(). Scene (in natural units) and strain must
     /// outlive it.
     KinematicBody(const Scene &scene,
-                  const StrainHistory &strain,
+                  const ActiveStress &strain,
                   const std::vector<double> &panels,
                   const std::vector<double> &points = {});
 
@@ -57,7 +58,7 @@ namespace crawler
     const GaussPanels panels_;
     const std::vector<double> points_;
     std::vector<double> inside_; ///< the Gauss points, then both ends
-    const std::unique_ptr<StrainAtPoints> strain_, strain_at_points_;
+    const std::unique_ptr<ActiveStressAtPoints> strain_, rate_, strain_at_points_;
     const BodyAtPoints body_, body_at_points_;
     const GaussPanels::Places places_;
     double time_ = 0.;
@@ -87,7 +88,7 @@ namespace crawler
    */
   KinematicResult
   kinematic(const Scene &scene,
-            const StrainHistory &strain,
+            const ActiveStress &strain,
             double tolerance,
             const std::function<bool()> &keep_going = {});
 

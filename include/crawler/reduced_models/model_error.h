@@ -37,5 +37,5 @@ namespace crawler
   /// Version for an active stress whose strain is taken as that of a stiff body, e = -m/k. The grid is doubled until
   /// the estimate changes by less than a tenth.
   ModelErrors
-  estimate_model_errors(const Scene &scene, const StrainHistory &strain);
+  estimate_model_errors(const Scene &scene, const ActiveStress &strain);
 } // namespace crawler

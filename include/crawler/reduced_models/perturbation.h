@@ -5,6 +5,7 @@
 #include <crawler/equation/energy_balance.h>
 #include <crawler/reduced_models/reduced_fields.h>
 #include <crawler/reduced_models/strain.h>
+#include <crawler/scene/strain_extremes.h>
 
 namespace crawler
 {
@@ -16,35 +17,26 @@ namespace crawler
    *   D(t) = -(a c/2) sum A_n^2 t + (a/(4 pi)) sum (A_n^2/n) sin(2 pi n c t),
    *   Q(t) = (c^2/2) sum A_n^2 t,   E(t) = (k/2) sum A_n^2 (1 - cos 2 pi n c t),   W = Q + E, which is chi^2 H.
    */
-  class Perturbation
+  namespace perturbation
   {
-  public:
-    explicit Perturbation(const NaturalWave &wave)
-      : wave_(wave)
-    {
-    }
-
     /// Displacement of the centre of mass, of order chi^2.
     double
-    displacement(double t) const;
+    displacement(const NaturalWave &wave, double t);
 
     /// Velocity: its derivative.
     double
-    velocity(double t) const;
+    velocity(const NaturalWave &wave, double t);
 
     /// Energies to leading order; the positive work of the actuator is not known.
     EnergyBalance
-    energies(double t) const;
+    energies(const NaturalWave &wave, double t);
 
     /// Fields to order chi at @p points, moved along with the centre of mass.
     ReducedFields
-    fields(double t, const std::vector<double> &points) const;
+    fields(const NaturalWave &wave, double t, const std::vector<double> &points);
 
     /// Extremes over the whole run.
     StrainExtremes
-    extremes() const;
-
-  private:
-    const NaturalWave wave_;
-  };
+    extremes(const NaturalWave &wave);
+  } // namespace perturbation
 } // namespace crawler

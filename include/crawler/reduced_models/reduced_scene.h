@@ -39,7 +39,7 @@ namespace crawler
     /// Strain of the kinematic level: the prescribed one, that of the optimal wave to leading order, or that of a stiff
     /// body, -m/k. Null if the rate of the active stress is not known, or the stress jumps, so that the level does not
     /// fit.
-    const StrainHistory *
+    const ActiveStress *
     strain() const
     {
       return strain_;
@@ -60,7 +60,7 @@ namespace crawler
     const Units units_;
     const Scene scene_;
     std::optional<NaturalWave> wave_;
-    std::optional<StrainByEvaluators> approximate_; ///< if none is prescribed
-    const StrainHistory *strain_ = nullptr;
+    std::optional<StressByFunctions> approximate_; ///< if none is prescribed
+    const ActiveStress *strain_ = nullptr;
   };
 } // namespace crawler

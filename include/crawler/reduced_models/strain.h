@@ -2,7 +2,7 @@
 #pragma once
 
 #include <crawler/scene/active_stress/optimal_wave.h>
-#include <crawler/scene/evaluators.h>
+#include <crawler/scene/known_stress.h>
 #include <crawler/scene/scene.h>
 
 #include <vector>
@@ -35,11 +35,11 @@ namespace crawler
 
   /// Strain of the optimal wave to leading order in chi (theory.md, section 3), in natural units: e = sum a (sin
   /// q(s+ct) - sin q s) + b (cos q(s+ct) - cos q s).
-  StrainByEvaluators
+  StressByFunctions
   leading_order_strain(const NaturalWave &wave);
 
   /// Strain of a body so stiff that its elastic force balances the active stress at any time: e = -m/k. @p scene must
   /// outlive it, and its active stress must know its rate.
-  StrainByEvaluators
+  StressByFunctions
   stiff_strain(const Scene &scene);
 } // namespace crawler

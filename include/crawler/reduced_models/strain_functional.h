@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/scene/active_stress.h>
 #include <crawler/scene/given_motion.h>
-#include <crawler/scene/strain_history.h>
 
 #include <array>
 #include <optional>
@@ -62,7 +62,7 @@ namespace crawler
     }
 
     StrainSamples
-    sample(const StrainHistory &history) const;
+    sample(const ActiveStress &strain) const;
 
     /// Values for a strain; nothing if a stretch is not positive. @p body: at points().
     std::optional<Values>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/strain_history.h>
 #include <crawler/scene/stretch_feedback.h>
 
 #include <iosfwd>
@@ -74,8 +73,17 @@ namespace crawler
       return nullptr;
     }
 
-    using Box    = SpaceTimeBox;
-    using Bounds = FieldBounds; ///< of m [force] and m_t [force/time]
+    /// A part of the body in a time interval: s in [s_from, s_to] [length], t in [t_from, t_to] [time].
+    struct Box
+    {
+      double s_from, s_to, t_from, t_to;
+    };
+
+    /// Bounds of |m| [force] and |m_t| [force/time].
+    struct Bounds
+    {
+      double value, rate;
+    };
 
     /// Bounds in @p box, without the jumps at breaks_in_time(). They may be too large, but the less so the smaller the
     /// box. A rate is infinite where m may jump. Nothing if the generator does not know (the default): then events
@@ -109,8 +117,9 @@ namespace crawler
       return nullptr;
     }
 
-    /// The strain that this active stress is made to produce; null if it is not made from a strain.
-    virtual const StrainHistory *
+    /// The strain e(s,t) = zeta_s - 1 [1] that this active stress is made to produce, written as an active stress would
+    /// be, with its rate; null if it is not made from a strain.
+    virtual const ActiveStress *
     prescribed_strain() const
     {
       return nullptr;

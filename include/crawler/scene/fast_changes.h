@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/scene/active_stress.h>
+
 #include <functional>
 #include <vector>
 
 namespace crawler
 {
-  class ActiveStress;
-
   /// A time interval in which an active stress changes faster than was known.
   struct FastChange
   {
@@ -43,6 +43,10 @@ namespace crawler
                     const std::function<double(double, double)> &explained,
                     double &largest,
                     const FastChangeLimits &limits = {});
+
+  /// The largest |m| and |m_t| at @p n_s times @p n_t points of a box; from differences of m if its rate is not known.
+  ActiveStress::Bounds
+  sampled_bounds(const ActiveStress &stress, const ActiveStress::Box &box, unsigned int n_s, unsigned int n_t);
 
   /// Multiple of a known rate up to which it explains a bound: bounds are too large.
   inline constexpr double rates_explain = 4.;

@@ -16,14 +16,14 @@ namespace crawler
   public:
     virtual ~FrictionLaw() = default;
 
-    /// Computes g [force time/length^2] at all stretches @p w (spans of one length).
+    /// Computes g [force time/length^2] at all stretches @p w and, unless @p w_dg is empty, its derivative with respect
+    /// to the logarithm of the stretch, w dg/dw (spans of one length).
     virtual void
-    values(std::span<const double> w, std::span<double> g) const = 0;
+    values(std::span<const double> w, std::span<double> g, std::span<double> w_dg = {}) const = 0;
 
-    /// Computes g and its derivative with respect to the logarithm of the stretch, w dg/dw, at all stretches @p w
-    /// (spans of one length).
-    virtual void
-    values_and_log_derivatives(std::span<const double> w, std::span<double> g, std::span<double> w_dg) const = 0;
+    /// g at one stretch.
+    double
+    value(double w) const;
 
     /// The law with another coefficient: g times @p factor.
     virtual std::unique_ptr<FrictionLaw>
@@ -42,9 +42,7 @@ namespace crawler
     PowerFriction(double gamma, double a);
 
     void
-    values(std::span<const double> w, std::span<double> g) const override;
-    void
-    values_and_log_derivatives(std::span<const double> w, std::span<double> g, std::span<double> w_dg) const override;
+    values(std::span<const double> w, std::span<double> g, std::span<double> w_dg = {}) const override;
     std::unique_ptr<FrictionLaw>
     scaled(const double factor) const override
     {

@@ -13,10 +13,10 @@ namespace crawler
   /// stiffness k(s), at points.
   struct BodyAtPoints
   {
-    /// Takes a scene without features_beyond_strain(), which must outlive this.
+    /// Takes a scene without features_beyond_strain().
     BodyAtPoints(const Scene &scene, const std::vector<double> &points);
 
-    const FrictionLaw &friction;
+    std::shared_ptr<const FrictionLaw> friction;
     std::vector<double> friction_profile; ///< b(s) [1]
     std::vector<double> elastic_modulus;  ///< k(s) [force]
   };
@@ -28,8 +28,6 @@ namespace crawler
    */
   struct GivenMotion
   {
-    explicit GivenMotion(std::size_t n_points);
-
     /// Finds the motion from the strain and its rate at the points of the panels, the first of the points of @p body;
     /// @p with_slopes: w_dg, too. Strains above -1 are expected.
     void

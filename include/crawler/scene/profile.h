@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/scene/active_stress/formula_input.h>
+
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -45,11 +48,17 @@ namespace crawler
     std::string outside       = "hold";  ///< of a file; or error
     std::string entry;                   ///< full name of the entry
     std::string constants = "", constants_entry = ""; ///< of a formula
+
+    FormulaInput
+    formula() const
+    {
+      return {quantity, text, constants, entry, constants_entry, {variable}};
+    }
   };
 
   /**
    * Reads a profile; null if it is the number 1. Throws InputError if the formula, the list or the file has an error,
-   * with its position or row number.
+   * with its position or row number, or if it is not positive on a fine grid of 0 to @p length [length].
    */
   std::shared_ptr<const Profile>
   read_profile(const ProfileInput &input, double length, double end_time);
@@ -58,7 +67,7 @@ namespace crawler
   std::shared_ptr<const Profile>
   in_units(std::shared_ptr<const Profile> profile, double unit);
 
-  /// Throws InputError unless the profile is positive and finite on a fine grid of @p from to @p to [length].
+  /// Throws InputError unless the factor is positive and finite on a fine grid of @p from to @p to.
   void
-  require_positive(const Profile &profile, double from, double to, const ProfileInput &input);
+  require_positive(const std::function<double(double)> &factor, double from, double to, const ProfileInput &input);
 } // namespace crawler

@@ -9,6 +9,7 @@
 #include <crawler/scene/units.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,8 +20,8 @@ namespace crawler
   struct Scene
   {
     Body body;
-    std::unique_ptr<const FrictionLaw> friction;
-    std::unique_ptr<const ActiveStress> active_stress;
+    std::shared_ptr<const FrictionLaw> friction;
+    std::shared_ptr<const ActiveStress> active_stress;
     double end_time; ///< T [time]
     BodyProfiles profiles = {};
     Ground ground         = {};
@@ -78,6 +79,11 @@ namespace crawler
     std::vector<double>
     breaks_in_space() const;
   };
+
+  /// The scene with smooth fronts in place of jumps that move along the body (KnownStress::with_fronts); nothing if
+  /// the active stress knows none.
+  std::optional<Scene>
+  with_fronts(const Scene &scene, double part);
 
   /**
    * The units in which L = T = gamma = 1: length L, time T, force gamma L^2/T. One number of the body remains, its

@@ -141,11 +141,9 @@ namespace crawler
   std::pair<double, double>
   Window::largest(const double from, const double to) const
   {
-    if (is_everywhere_)
-      return {1., 0.};
-    if (to < from_ || from > to_)
+    if (!is_everywhere_ && (to < from_ || from > to_))
       return {0., 0.};
-    if (edge_ == 0.)
+    if (is_everywhere_ || edge_ == 0.)
       return {1., 0.};
     const double up   = largest_smooth_step_rate((from - from_) / edge_, (to - from_) / edge_),
                  down = largest_smooth_step_rate((to_ - to) / edge_, (to_ - from) / edge_);

@@ -7,22 +7,10 @@
 #include <crawler/scene/breaks.h>
 #include <crawler/scene/period.h>
 
+#include <array>
+
 namespace crawler
 {
-  namespace
-  {
-    FormulaInput
-    input_of(const ExpressionParameters &parameters)
-    {
-      const std::string expression_section = "Active stress/Expression/";
-      return {"active stress",
-              parameters.active_stress,
-              parameters.constants,
-              expression_section + "Active stress",
-              expression_section + "Constants"};
-    }
-  } // namespace
-
   void
   ExpressionParameters::add_parameters(Declarations &declarations)
   {
@@ -33,10 +21,10 @@ namespace crawler
     declarations.constants("Constants", constants, {"Active stress"}).means("Constants that the formula may use.");
   }
 
-  Expression::Expression(const ExpressionParameters &parameters, const double length, const double end_time)
+  Expression::Expression(const FormulaInput &input, const double length, const double end_time)
     : length_(length)
     , end_time_(end_time)
-    , compiled_(read_formula(input_of(parameters), length, end_time))
+    , compiled_(read_formula(input, length, end_time))
     , bound_(compiled_)
   {
     const FormulaBreaks breaks = formula_breaks(compiled_, length, end_time);
@@ -44,15 +32,31 @@ namespace crawler
     facts_.breaks_in_time      = breaks.in_time.value_or(std::vector<double>());
     if (breaks.in_time)
       bound_.leave_out_jumps();
-    require_finite_values(*this, input_of(parameters), "", length, end_time);
+    require_finite_values(*this, input, "", length, end_time);
+  }
+
+  Expression::Expression(const ExpressionParameters &parameters, const double length, const double end_time)
+    : Expression({"active stress",
+                  parameters.active_stress,
+                  parameters.constants,
+                  "Active stress/Expression/Active stress",
+                  "Active stress/Expression/Constants"},
+                 length,
+                 end_time)
+  {
   }
 
   std::unique_ptr<ActiveStressAtPoints>
   Expression::evaluator(const std::vector<double> &places, const bool rate) const
   {
     const std::vector<double> points = off_breaks_at_ends(places, facts_.breaks_in_space, length_);
-    return rate ? stress_at_points(FormulaRateAtPoints(compiled_, points))
-                : stress_at_points(FormulaAtPoints(compiled_, points));
+    if (!rate)
+      return stress_at_points(FormulaAtPoints(compiled_, points));
+    return stress_at_points([points, m = std::vector<double>(points.size()), gradient = FormulaGradient(compiled_)](
+                              const double t, const std::span<double> m_t) mutable {
+      gradient.evaluate(
+        std::array<std::span<const double>, 2>{{points, {&t, 1}}}, m, std::array<std::span<double>, 2>{{{}, m_t}});
+    });
   }
 
   std::optional<ActiveStress::Repetition>

@@ -117,6 +117,18 @@ namespace crawler
       }
       return constants;
     }
+
+    /// Equal parts of [0, @p end], and the middle between each two breaks.
+    std::vector<double>
+    samples(std::vector<double> breaks, const double end)
+    {
+      constexpr unsigned int n    = 16;
+      std::vector<double> samples = equal_parts(0., end, n);
+      std::ranges::sort(breaks);
+      for (std::size_t i = 1; i < breaks.size(); ++i)
+        samples.push_back(std::midpoint(breaks[i - 1], breaks[i]));
+      return samples;
+    }
   } // namespace
 
   std::shared_ptr<const Formula>
@@ -138,21 +150,6 @@ namespace crawler
       throw InputError(in_words(error, input, constants), input.formula_entry);
     }
   }
-
-  namespace
-  {
-    /// Equal parts of [0, @p end], and the middle between each two breaks.
-    std::vector<double>
-    samples(std::vector<double> breaks, const double end)
-    {
-      constexpr unsigned int n    = 16;
-      std::vector<double> samples = equal_parts(0., end, n);
-      std::ranges::sort(breaks);
-      for (std::size_t i = 1; i < breaks.size(); ++i)
-        samples.push_back(std::midpoint(breaks[i - 1], breaks[i]));
-      return samples;
-    }
-  } // namespace
 
   void
   require_finite_values(const ActiveStress &stress,

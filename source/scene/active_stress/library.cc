@@ -3,6 +3,7 @@
 #include <crawler/base/nearest_name.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/library.h>
+#include <crawler/scene/known_stress.h>
 #include <crawler/scene/stress_plugin.h>
 
 #include <fmt/format.h>
@@ -45,6 +46,12 @@ namespace crawler
       }
     }
 
+    /// Failures, and the name of the plug-in that caused them.
+    struct LibraryFailures : StressFailures
+    {
+      std::string plugin;
+    };
+
     void
     fail(LibraryFailures &failures, const std::string &what)
     {
@@ -53,21 +60,22 @@ namespace crawler
     }
 
     /// A guarded evaluator of the plug-in: errors become failures.
-    template <typename AtPoints>
     class Guarded
     {
     public:
       /// Makes evaluators for some points, one or all.
-      using Make = std::function<std::unique_ptr<AtPoints>(const std::vector<double> &)>;
+      using Make = std::function<std::unique_ptr<ActiveStressAtPoints>(const std::vector<double> &)>;
 
       /// Makes the evaluator; null, and a failure, if that throws. @p maker is the name of the plug-in's function that
-      /// @p make calls.
+      /// @p make calls, @p name that of the values.
       Guarded(std::shared_ptr<LibraryFailures> failures,
               Make make,
-              const char *maker,
+              const std::string &maker,
+              std::string name,
               const std::vector<double> &points)
         : failures_(std::move(failures))
         , make_(std::move(make))
+        , name_(std::move(name))
         , points_(points)
       {
         const auto thrown = thrown_by([&]() { at_points_ = make_(points); });
@@ -77,39 +85,33 @@ namespace crawler
           fail(*failures_, fmt::format("returned no evaluator in {}", maker));
       }
 
-      /// Makes an evaluator that calls @p call, whose name is @p name. If that throws, or writes a value that is not
-      /// finite, the whole result is NaN.
-      std::unique_ptr<ActiveStressAtPoints>
-      evaluator(const char *name, void (AtPoints::*call)(double, std::span<double>)) const
+      /// Writes the values; all are NaN if the plug-in throws, or writes one that is not finite.
+      void
+      values(const double t, const std::span<double> result)
       {
-        return stress_at_points([guarded = *this, name, call](const double t, const std::span<double> result) {
-          if (!guarded.is_well(name, call, t, result))
-            std::fill(result.begin(), result.end(), no_number);
-        });
+        if (!is_well(t, result))
+          std::fill(result.begin(), result.end(), no_number);
       }
 
     private:
       bool
-      is_well(const char *name,
-              void (AtPoints::*call)(double, std::span<double>),
-              const double t,
-              const std::span<double> result) const
+      is_well(const double t, const std::span<double> result) const
       {
         if (!at_points_) // has been reported already
         {
           ++failures_->count;
           return false;
         }
-        if (const auto thrown = thrown_by([&]() { (*at_points_.*call)(t, result); }))
+        if (const auto thrown = thrown_by([&]() { at_points_->values(t, result); }))
         {
           // Place of the failure: the first point that throws on its own.
           const auto place = std::find_if(points_.begin(), points_.end(), [&](const double s) {
             double value = 0.;
-            return thrown_by([&]() { (*make_({s}).*call)(t, {&value, 1}); }).has_value();
+            return thrown_by([&]() { make_({s})->values(t, {&value, 1}); }).has_value();
           });
           fail(*failures_,
                fmt::format("threw an exception in {} at {}t = {:.9g}: {}",
-                           name,
+                           name_,
                            place != points_.end() ? fmt::format("s = {:.9g}, ", *place) : "",
                            t,
                            *thrown));
@@ -122,7 +124,7 @@ namespace crawler
         fail(*failures_,
              fmt::format("returned {} in {} at s = {:.9g}, t = {:.9g}; a finite number is expected",
                          *bad,
-                         name,
+                         name_,
                          points_[static_cast<std::size_t>(bad - result.begin())],
                          t));
         return false;
@@ -130,23 +132,27 @@ namespace crawler
 
       std::shared_ptr<LibraryFailures> failures_;
       Make make_;
+      std::string name_;
       std::vector<double> points_;
-      std::shared_ptr<AtPoints> at_points_;
+      std::unique_ptr<ActiveStressAtPoints> at_points_;
     };
 
-    std::unique_ptr<const StrainHistory>
-    guarded_strain(const std::shared_ptr<LibraryFailures> &failures, const StrainHistory &history)
+    /// Makes a guarded evaluator of a stress of the plug-in or of its strain; @p whose follows names in messages.
+    std::unique_ptr<ActiveStressAtPoints>
+    guarded(const std::shared_ptr<LibraryFailures> &failures,
+            const ActiveStress &stress,
+            const char *whose,
+            const std::vector<double> &points,
+            const bool rate)
     {
-      return std::make_unique<StrainByEvaluators>(
-        [failures, &history](const std::vector<double> &points) -> StrainByEvaluators::Evaluators {
-          const Guarded<StrainAtPoints> guarded(
-            failures,
-            [&history](const std::vector<double> &places) { return history.at(places); },
-            "at() of its strain",
-            points);
-          return {guarded.evaluator("strain()", &StrainAtPoints::strain),
-                  guarded.evaluator("rate()", &StrainAtPoints::rate)};
-        });
+      return stress_at_points(Guarded(
+        failures,
+        [&stress, rate](const std::vector<double> &places) {
+          return rate ? stress.rate_at(places) : stress.at(places);
+        },
+        (rate ? "rate_at()" : "at()") + std::string(whose),
+        (rate ? "values() of the rate" : "values()") + std::string(whose),
+        points));
     }
 
     /// Notes a failure at the first of the numbers @p m that is not finite.
@@ -276,98 +282,129 @@ namespace crawler
                                        known.empty() ? "none" : quoted_list(known)),
                            parameters_entry);
     }
+
+    class Library : public KnownStress
+    {
+    public:
+      Library(const LibraryParameters &parameters, const Body &body, const double end_time)
+        : file_(parameters.file)
+        , failures_(std::make_shared<LibraryFailures>())
+      {
+        const Plugin &plugin = load(file_);
+        failures_->plugin    = plugin.name;
+        const PluginInput input{body.length,
+                                body.elastic_modulus,
+                                body.friction_coefficient,
+                                body.anchoring_exponent,
+                                end_time,
+                                PluginParameters(parse_parameters(parameters.parameters))};
+        if (const auto thrown = thrown_by([&]() { stress_ = plugin.create(input); }))
+          throw InputError(fmt::format("the plug-in \"{}\" refuses the scene: {}", plugin.name, *thrown),
+                           parameters_entry);
+        if (!stress_)
+          throw InputError(
+            fmt::format("the plug-in \"{}\" returned nothing; an active stress is expected", plugin.name), file_entry);
+        require_known(input.parameters, plugin.name);
+        ask(body.length, end_time);
+      }
+
+      const StretchFeedback *
+      feedback() const override
+      {
+        return feedback_.get();
+      }
+      const ActiveStress *
+      prescribed_strain() const override
+      {
+        return strain_.get();
+      }
+      const StressFailures *
+      failures() const override
+      {
+        return failures_.get();
+      }
+      void
+      report(std::ostream &out) const override
+      {
+        out << fmt::format("Plug-in \"{}\" from {}\n", failures_->plugin, file_) << report_;
+        if (!report_.empty() && report_.back() != '\n')
+          out << '\n';
+      }
+
+    private:
+      std::unique_ptr<ActiveStressAtPoints>
+      evaluator(const std::vector<double> &points, const bool rate) const override
+      {
+        return guarded(failures_, *stress_, "", points, rate);
+      }
+
+      /// Asks the plug-in once for its properties.
+      void
+      ask(const double length, const double end_time)
+      {
+        const char *asked = "";
+        const auto thrown = thrown_by([&]() {
+          asked                  = "repetition()";
+          facts_.repetition      = stress_->repetition();
+          asked                  = "breaks_in_space()";
+          facts_.breaks_in_space = stress_->breaks_in_space();
+          asked                  = "breaks_in_time()";
+          facts_.breaks_in_time  = stress_->breaks_in_time();
+          asked                  = "rate_at()";
+          facts_.has_rate        = stress_->rate_at({0.}) != nullptr;
+          asked                  = "feedback()";
+          if (const StretchFeedback *feedback = stress_->feedback())
+            feedback_ = std::make_unique<KnownFeedback>(
+              KnownFeedback::Facts{
+                feedback->uses_rate(), feedback->distance(), feedback->delay(), feedback->sensor_length()},
+              [failures = failures_, feedback](const std::vector<double> &points) {
+                return guarded_feedback_at(failures, *feedback, points);
+              });
+          asked = "prescribed_strain()";
+          if (const ActiveStress *strain = stress_->prescribed_strain())
+            strain_ = std::make_unique<StressByFunctions>(
+              [failures = failures_, strain](const std::vector<double> &points, const bool rate) {
+                return guarded(failures, *strain, " of its strain", points, rate);
+              });
+          asked = "report()";
+          std::ostringstream out;
+          stress_->report(out);
+          report_ = out.str();
+        });
+        const auto refuse = [&](const std::string &what) {
+          throw InputError(fmt::format("the plug-in \"{}\" {}", failures_->plugin, what), file_entry);
+        };
+        if (thrown)
+          refuse(fmt::format("threw an exception in {}: {}", asked, *thrown));
+        if (const auto gait = facts_.repetition)
+        {
+          if (!(gait->period > 0. && std::isfinite(gait->period)))
+            refuse(fmt::format("says that its period is {}; a positive number is expected", gait->period));
+          if (!(gait->from >= 0. && std::isfinite(gait->from)))
+            refuse(fmt::format("says that it repeats from {} on; a number of at least 0 is expected", gait->from));
+        }
+        const auto require_inside = [&](const std::vector<double> &breaks, const char *name, const double end) {
+          for (const double value : breaks)
+            if (!(value > 0. && value < end))
+              refuse(fmt::format("returned {} in {}; a number above 0 and below {:g} is expected", value, name, end));
+        };
+        require_inside(facts_.breaks_in_space, "breaks_in_space()", length);
+        require_inside(facts_.breaks_in_time, "breaks_in_time()", end_time);
+      }
+
+      std::string file_;
+      std::shared_ptr<LibraryFailures> failures_; ///< evaluators write here
+      std::unique_ptr<const ActiveStress> stress_;
+      // Answers of the plug-in to calls that are made once.
+      std::unique_ptr<const StretchFeedback> feedback_;
+      std::unique_ptr<const ActiveStress> strain_;
+      std::string report_;
+    };
   } // namespace
 
-  Library::Library(const LibraryParameters &parameters, const Body &body, const double end_time)
-    : file_(parameters.file)
-    , failures_(std::make_shared<LibraryFailures>())
+  std::unique_ptr<ActiveStress>
+  load_library(const LibraryParameters &parameters, const Body &body, const double end_time)
   {
-    const Plugin &plugin = load(file_);
-    failures_->plugin    = plugin.name;
-    const PluginInput input{body.length,
-                            body.elastic_modulus,
-                            body.friction_coefficient,
-                            body.anchoring_exponent,
-                            end_time,
-                            PluginParameters(parse_parameters(parameters.parameters))};
-    if (const auto thrown = thrown_by([&]() { stress_ = plugin.create(input); }))
-      throw InputError(fmt::format("the plug-in \"{}\" refuses the scene: {}", plugin.name, *thrown), parameters_entry);
-    if (!stress_)
-      throw InputError(fmt::format("the plug-in \"{}\" returned nothing; an active stress is expected", plugin.name),
-                       file_entry);
-    require_known(input.parameters, plugin.name);
-    ask(body.length, end_time);
-  }
-
-  /// Asks the plug-in once for its properties.
-  void
-  Library::ask(const double length, const double end_time)
-  {
-    const char *asked = "";
-    const auto thrown = thrown_by([&]() {
-      asked                  = "repetition()";
-      facts_.repetition      = stress_->repetition();
-      asked                  = "breaks_in_space()";
-      facts_.breaks_in_space = stress_->breaks_in_space();
-      asked                  = "breaks_in_time()";
-      facts_.breaks_in_time  = stress_->breaks_in_time();
-      asked                  = "rate_at()";
-      facts_.has_rate        = stress_->rate_at({0.}) != nullptr;
-      asked                  = "feedback()";
-      if (const StretchFeedback *feedback = stress_->feedback())
-        feedback_ = std::make_unique<KnownFeedback>(
-          KnownFeedback::Facts{
-            feedback->uses_rate(), feedback->distance(), feedback->delay(), feedback->sensor_length()},
-          [failures = failures_, feedback](const std::vector<double> &points) {
-            return guarded_feedback_at(failures, *feedback, points);
-          });
-      asked = "prescribed_strain()";
-      if (const StrainHistory *strain = stress_->prescribed_strain())
-        strain_ = guarded_strain(failures_, *strain);
-      asked = "report()";
-      std::ostringstream out;
-      stress_->report(out);
-      report_ = out.str();
-    });
-    const auto refuse = [&](const std::string &what) {
-      throw InputError(fmt::format("the plug-in \"{}\" {}", failures_->plugin, what), file_entry);
-    };
-    if (thrown)
-      refuse(fmt::format("threw an exception in {}: {}", asked, *thrown));
-    if (const auto gait = facts_.repetition)
-    {
-      if (!(gait->period > 0. && std::isfinite(gait->period)))
-        refuse(fmt::format("says that its period is {}; a positive number is expected", gait->period));
-      if (!(gait->from >= 0. && std::isfinite(gait->from)))
-        refuse(fmt::format("says that it repeats from {} on; a number of at least 0 is expected", gait->from));
-    }
-    const auto require_inside = [&](const std::vector<double> &breaks, const char *name, const double end) {
-      for (const double value : breaks)
-        if (!(value > 0. && value < end))
-          refuse(fmt::format("returned {} in {}; a number above 0 and below {:g} is expected", value, name, end));
-    };
-    require_inside(facts_.breaks_in_space, "breaks_in_space()", length);
-    require_inside(facts_.breaks_in_time, "breaks_in_time()", end_time);
-  }
-
-  std::unique_ptr<ActiveStressAtPoints>
-  Library::evaluator(const std::vector<double> &points, const bool rate) const
-  {
-    return Guarded<ActiveStressAtPoints>(
-             failures_,
-             [stress = stress_.get(), rate](const std::vector<double> &places) {
-               return rate ? stress->rate_at(places) : stress->at(places);
-             },
-             rate ? "rate_at()" : "at()",
-             points)
-      .evaluator(rate ? "values() of the rate" : "values()", &ActiveStressAtPoints::values);
-  }
-
-  void
-  Library::report(std::ostream &out) const
-  {
-    out << fmt::format("Plug-in \"{}\" from {}\n", failures_->plugin, file_) << report_;
-    if (!report_.empty() && report_.back() != '\n')
-      out << '\n';
+    return std::make_unique<Library>(parameters, body, end_time);
   }
 } // namespace crawler

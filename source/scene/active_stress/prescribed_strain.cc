@@ -2,13 +2,11 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/grid_interpolation.h>
 #include <crawler/base/grid_samples.h>
-#include <crawler/formula/formula_bound.h>
-#include <crawler/formula/formula_breaks.h>
-#include <crawler/formula/formula_gradient.h>
 #include <crawler/parameters/declarations.h>
-#include <crawler/scene/active_stress/formula_input.h>
+#include <crawler/scene/active_stress/expression.h>
 #include <crawler/scene/active_stress/prescribed_strain.h>
 #include <crawler/scene/breaks.h>
+#include <crawler/scene/fast_changes.h>
 #include <crawler/scene/given_motion.h>
 
 #include <fmt/format.h>
@@ -25,125 +23,87 @@ namespace crawler
   {
     const std::string prescribed_strain_section = "Active stress/Prescribed strain/";
 
-    using Strains = StrainByEvaluators::Evaluators;
-
-    std::unique_ptr<const StrainHistory>
-    formula_strain(const std::shared_ptr<const Formula> &formula)
-    {
-      return std::make_unique<StrainByEvaluators>(
-        [formula](const std::vector<double> &points) -> Strains {
-          return {stress_at_points(FormulaAtPoints(formula, points)),
-                  stress_at_points(FormulaRateAtPoints(formula, points))};
-        },
-        [bound = std::make_shared<FormulaBound>(formula)](const SpaceTimeBox &box) {
-          const Enclosure e = (*bound)({box.s_from, box.s_to}, {box.t_from, box.t_to});
-          return FieldBounds{norm(e.value), norm(e.rate)};
-        });
-    }
-
     /// e = mean + amplitude sin( q (s + c t) + phase )
-    std::unique_ptr<const StrainHistory>
+    std::unique_ptr<const ActiveStress>
     wave_strain(const PrescribedStrainParameters &wave, const double length)
     {
-      const double q = 2. * std::numbers::pi * wave.wave_number / length;
-      return std::make_unique<StrainByEvaluators>(
-        [wave, q](const std::vector<double> &points) -> Strains {
-          const auto phase = [wave, q](const double s, const double t) {
-            return q * (s + wave.wave_speed * t) + wave.phase;
-          };
-          return {stress_at_points([=](const double t, const std::span<double> e) {
-                    for (std::size_t i = 0; i < e.size(); ++i)
-                      e[i] = wave.mean_strain + wave.amplitude * std::sin(phase(points[i], t));
-                  }),
-                  stress_at_points([=](const double t, const std::span<double> e_t) {
-                    for (std::size_t i = 0; i < e_t.size(); ++i)
-                      e_t[i] = q * wave.wave_speed * wave.amplitude * std::cos(phase(points[i], t));
-                  })};
+      const double q = 2. * std::numbers::pi * wave.wave_number / length, rate_factor = q * wave.wave_speed;
+      return std::make_unique<StressByFunctions>(
+        [=](const std::vector<double> &points, const bool rate) {
+          return stress_at_points([=](const double t, const std::span<double> e) {
+            for (std::size_t i = 0; i < e.size(); ++i)
+            {
+              const double angle = q * (points[i] + wave.wave_speed * t) + wave.phase;
+              e[i]               = rate ? rate_factor * wave.amplitude * std::cos(angle)
+                                        : wave.mean_strain + wave.amplitude * std::sin(angle);
+            }
+          });
         },
-        [wave, q](const SpaceTimeBox &) {
-          return FieldBounds{std::abs(wave.mean_strain) + std::abs(wave.amplitude),
-                             std::abs(q * wave.wave_speed * wave.amplitude)};
+        [=](const ActiveStress::Box &) {
+          return ActiveStress::Bounds{std::abs(wave.mean_strain) + std::abs(wave.amplitude),
+                                      std::abs(rate_factor * wave.amplitude)};
         });
     }
 
     /// Active stress from the balance of forces, see the class.
     std::unique_ptr<ActiveStressAtPoints>
-    balancing_stress(const StrainHistory &history,
-                     const std::shared_ptr<const Scene> &scene,
+    balancing_stress(const ActiveStress &strain,
+                     const Scene &scene,
                      const std::vector<double> &panel_ends,
                      const std::vector<double> &points)
     {
       const auto panels   = std::make_shared<const GaussPanels>(panel_ends);
       const std::size_t n = panels->points().size();
-      const BodyAtPoints body(*scene, panels->points());
-      const std::vector<double> k = BodyAtPoints(*scene, points).elastic_modulus;
+      const BodyAtPoints body(scene, panels->points());
+      const std::vector<double> k = BodyAtPoints(scene, points).elastic_modulus;
       const GaussPanels::Places places(*panels, points);
-      GivenMotion motion(n);
+      GivenMotion motion;
       std::vector<double> e(n), e_t(n), elastic(points.size());
-      // A copy of the scene pointer is kept, since the body refers to its friction law.
-      return stress_at_points([=, inside = history.at(panels->points()), at_points = history.at(points)](
-                                const double t, const std::span<double> m) mutable {
-        inside->strain(t, e);
-        inside->rate(t, e_t);
+      return stress_at_points([          =,
+                               inside    = strain.at(panels->points()),
+                               rate      = strain.rate_at(panels->points()),
+                               at_points = strain.at(points)](const double t, const std::span<double> m) mutable {
+        inside->values(t, e);
+        rate->values(t, e_t);
         motion.find(*panels, e, e_t, body);
         places.running_integral(motion.gv, m);
-        at_points->strain(t, elastic);
+        at_points->values(t, elastic);
         for (std::size_t i = 0; i < m.size(); ++i)
           m[i] -= k[i] * elastic[i];
       });
     }
 
-    std::shared_ptr<const Scene>
-    without_stress(const Scene &scene)
+    std::unique_ptr<const ActiveStress>
+    create_strain(const PrescribedStrainParameters &parameters,
+                  const double length,
+                  const double end_time,
+                  std::unique_ptr<const ActiveStress> generator)
     {
-      return std::make_shared<const Scene>(
-        Scene{scene.body, scene.friction->scaled(1.), nullptr, scene.end_time, scene.profiles, scene.ground});
-    }
-
-    std::shared_ptr<const Formula>
-    strain_formula(const PrescribedStrainParameters &parameters, const double length, const double end_time)
-    {
-      return read_formula({"strain",
-                           parameters.strain,
-                           parameters.constants,
-                           prescribed_strain_section + "Strain",
-                           prescribed_strain_section + "Constants"},
-                          length,
-                          end_time);
-    }
-
-    std::unique_ptr<const StrainHistory>
-    create_history(const PrescribedStrainParameters &parameters,
-                   const double length,
-                   const double end_time,
-                   const ActiveStress *generator)
-    {
-      if (parameters.is_generated())
-      {
-        if (generator == nullptr)
-          throw std::logic_error("the generator of the strain is missing");
-        if (generator->feedback() != nullptr)
-          throw InputError(
-            fmt::format("Given by is {}, but there the active stress depends on the stretch; a generator that "
-                        "is a function of s and t is expected",
-                        parameters.given_by),
-            prescribed_strain_section + "Given by");
-        if (!generator->rate_at({0.}))
-          throw InputError(fmt::format("Given by is {}, whose rate of change is not known here; a strain that can be "
-                                       "differentiated in time is expected",
-                                       parameters.given_by),
-                           prescribed_strain_section + "Given by");
-        return std::make_unique<StrainByEvaluators>(
-          [generator](const std::vector<double> &points) -> Strains {
-            return {generator->at(points), generator->rate_at(points)};
-          },
-          [generator](const SpaceTimeBox &box) { return generator->bounds(box); });
-      }
       if (parameters.given_by == "wave")
         return wave_strain(parameters, length);
       if (parameters.given_by == "table")
         return read_strain_table(parameters.file, length, end_time, prescribed_strain_section + "File");
-      return formula_strain(strain_formula(parameters, length, end_time));
+      if (!parameters.is_generated())
+        return std::make_unique<Expression>(FormulaInput{"strain",
+                                                         parameters.strain,
+                                                         parameters.constants,
+                                                         prescribed_strain_section + "Strain",
+                                                         prescribed_strain_section + "Constants"},
+                                            length,
+                                            end_time);
+      if (generator == nullptr)
+        throw std::logic_error("the generator of the strain is missing");
+      if (generator->feedback() != nullptr)
+        throw InputError(fmt::format("Given by is {}, but there the active stress depends on the stretch; a generator "
+                                     "that is a function of s and t is expected",
+                                     parameters.given_by),
+                         prescribed_strain_section + "Given by");
+      if (!generator->rate_at({0.}))
+        throw InputError(fmt::format("Given by is {}, whose rate of change is not known here; a strain that can be "
+                                     "differentiated in time is expected",
+                                     parameters.given_by),
+                         prescribed_strain_section + "Given by");
+      return generator;
     }
   } // namespace
 
@@ -179,28 +139,19 @@ namespace crawler
   PrescribedStrain::PrescribedStrain(const PrescribedStrainParameters &parameters,
                                      const Scene &scene,
                                      std::unique_ptr<const ActiveStress> generator)
-    : scene_(without_stress(scene))
+    : scene_(scene)
     , given_by_(parameters.given_by)
-    , generator_(std::move(generator))
-    , history_(create_history(parameters, scene.body.length, scene.end_time, generator_.get()))
+    , is_generated_(parameters.is_generated())
+    , strain_(create_strain(parameters, scene.body.length, scene.end_time, std::move(generator)))
   {
     const double phase_rate = parameters.wave_number * parameters.wave_speed / scene.body.length;
     if (given_by_ == "wave" && parameters.amplitude != 0. && phase_rate != 0.)
       facts_.repetition = {1. / std::abs(phase_rate), 0.};
-    facts_.has_rate = false;
-    if (generator_)
-    {
-      facts_.breaks_in_space = generator_->breaks_in_space();
-      facts_.breaks_in_time  = generator_->breaks_in_time();
+    facts_.has_rate        = false;
+    facts_.breaks_in_space = strain_->breaks_in_space();
+    facts_.breaks_in_time  = strain_->breaks_in_time();
+    if (is_generated_)
       require_usable_generator(scene.end_time);
-    }
-    else if (given_by_ == "expression")
-    {
-      const double L             = scene.body.length;
-      const FormulaBreaks breaks = formula_breaks(strain_formula(parameters, L, scene.end_time), L, scene.end_time);
-      facts_.breaks_in_space     = breaks.in_space.value_or(std::vector<double>());
-      facts_.breaks_in_time      = breaks.in_time.value_or(std::vector<double>());
-    }
     require_admissible_strain(scene.end_time);
     choose_panels(scene.end_time);
   }
@@ -211,17 +162,7 @@ namespace crawler
   {
     constexpr unsigned int n = 33;
     constexpr double beside = 1e-9, jump = 1e-6;
-    const double L                  = scene_->body.length;
-    const std::vector<double> times = equal_parts(0., end_time, n - 1);
-    std::vector<double> e(n), after(n);
-    double size          = 0.;
-    const auto at_points = history_->at(equal_parts(0., L, n - 1));
-    for (const double t : times)
-    {
-      at_points->strain(t, e);
-      for (const double value : e)
-        size = std::max(size, std::abs(value));
-    }
+    const double L = scene_.body.length, size = sampled_bounds(*strain_, {0., L, 0., end_time}, n, n).value;
     const auto refuse = [&](const char *variable, const double place) {
       throw InputError(
         fmt::format("Given by is {}, whose values jump at {} = {:g}; a strain without jumps is expected (give "
@@ -231,21 +172,23 @@ namespace crawler
                     place),
         prescribed_strain_section + "Given by");
     };
+    const auto at_points = strain_->at(equal_parts(0., L, n - 1));
+    std::vector<double> e(n), after(n);
     for (const double t : facts_.breaks_in_time)
     {
-      at_points->strain(t - beside * end_time, e);
-      at_points->strain(t + beside * end_time, after);
+      at_points->values(t - beside * end_time, e);
+      at_points->values(t + beside * end_time, after);
       for (unsigned int i = 0; i < n; ++i)
         if (std::abs(after[i] - e[i]) > jump * size)
           refuse("t", t);
     }
     for (const double s : facts_.breaks_in_space)
     {
-      const auto sides = history_->at({s - beside * L, s + beside * L});
+      const auto sides = strain_->at({s - beside * L, s + beside * L});
       std::array<double, 2> values{};
-      for (const double t : times)
+      for (const double t : equal_parts(0., end_time, n - 1))
       {
-        sides->strain(t, values);
+        sides->values(t, values);
         if (std::abs(values[1] - values[0]) > jump * size)
           refuse("s", s);
       }
@@ -256,11 +199,11 @@ namespace crawler
   PrescribedStrain::require_admissible_strain(const double end_time)
   {
     constexpr unsigned int n = 161;
-    extremes_                = find_extremes(*history_, scene_->body.length, end_time, n, n);
+    extremes_                = find_extremes(*strain_, scene_.body.length, end_time, n, n);
     const auto &[e, s, t]    = extremes_.smallest;
     const std::string entry  = prescribed_strain_section + (given_by_ == "wave"    ? "Amplitude"
                                                             : given_by_ == "table" ? "File"
-                                                            : generator_           ? "Given by"
+                                                            : is_generated_        ? "Given by"
                                                                                    : "Strain");
     if (!std::isfinite(e))
       throw InputError(fmt::format("the strain is {} at s = {:.6g}, t = {:.6g}; a finite number is expected", e, s, t),
@@ -281,12 +224,12 @@ namespace crawler
                                    largest.s,
                                    largest.t),
                        entry);
-    if (const auto stretch = stretch_without_friction(*scene_->friction, 1. + e, 1. + largest.strain))
+    if (const auto stretch = stretch_without_friction(*scene_.friction, 1. + e, 1. + largest.strain))
       throw InputError(fmt::format("the friction law has no positive value at the stretch {:.6g}, which this strain "
                                    "reaches; smaller strains, or another law, are expected",
                                    *stretch),
                        entry);
-    if (const auto jump = find_jump(*history_, scene_->body.length, end_time))
+    if (const auto jump = find_jump(*strain_, scene_.body.length, end_time))
       throw InputError(
         fmt::format("the strain at s = {:.6g} changes by {:.6g} from t = {:.6g} to {:.6g}, but the integral "
                     "of its rate is {:.6g}; a strain without jumps in time is expected",
@@ -305,16 +248,16 @@ namespace crawler
   {
     constexpr unsigned int most      = 512;
     constexpr double tolerance       = 1e-13;
-    const std::vector<double> points = equal_parts(0., scene_->body.length, 16);
-    std::vector<double> coarse(points.size()), fine(points.size()), breaks = scene_->breaks_in_space();
+    const std::vector<double> points = equal_parts(0., scene_.body.length, 16);
+    std::vector<double> coarse(points.size()), fine(points.size()), breaks = scene_.breaks_in_space();
     breaks.insert(breaks.end(), facts_.breaks_in_space.begin(), facts_.breaks_in_space.end());
-    breaks = distinct_breaks_in_space(std::move(breaks), scene_->body.length);
+    breaks = distinct_breaks_in_space(std::move(breaks), scene_.body.length);
     for (unsigned int n = 2; n < most; n *= 2)
     {
-      panels_         = GaussPanels::ends_at(breaks, scene_->body.length, n);
-      const auto now  = balancing_stress(*history_, scene_, panels_, points),
-                 next = balancing_stress(
-                   *history_, scene_, GaussPanels::ends_at(breaks, scene_->body.length, 2 * n), points);
+      panels_        = GaussPanels::ends_at(breaks, scene_.body.length, n);
+      const auto now = balancing_stress(*strain_, scene_, panels_, points),
+                 next =
+                   balancing_stress(*strain_, scene_, GaussPanels::ends_at(breaks, scene_.body.length, 2 * n), points);
       double change = 0., largest = 0.;
       for (const double part : {0.03, 0.21, 0.47, 0.71, 0.95})
       {
@@ -334,7 +277,7 @@ namespace crawler
   std::unique_ptr<ActiveStressAtPoints>
   PrescribedStrain::evaluator(const std::vector<double> &points, bool) const
   {
-    return balancing_stress(*history_, scene_, panels_, points);
+    return balancing_stress(*strain_, scene_, panels_, points);
   }
 
   void
@@ -348,11 +291,10 @@ namespace crawler
                        extremes_.largest.strain,
                        extremes_.largest.s,
                        extremes_.largest.t);
-    if (generator_)
-      generator_->report(out);
+    strain_->report(out);
   }
 
-  std::unique_ptr<const StrainHistory>
+  std::unique_ptr<const ActiveStress>
   read_strain_table(const std::string &name, const double length, const double end_time, const std::string &entry)
   {
     GridTable grid = read_grid_table(name, "strain", 4, entry);
@@ -360,10 +302,10 @@ namespace crawler
     reach_ends(grid.t, end_time, "t", "duration", name, entry);
     const auto table = std::make_shared<const GridInterpolation>(
       std::move(grid), GridInterpolation::Method::cubic, GridInterpolation::Outside::go_on);
-    return std::make_unique<StrainByEvaluators>([table](const std::vector<double> &points) -> Strains {
-      const std::shared_ptr<GridInterpolation::AtPoints> at = table->at(points);
-      return {stress_at_points([at](const double t, const std::span<double> e) { at->values(t, e); }),
-              stress_at_points([at](const double t, const std::span<double> e_t) { at->rates(t, e_t); })};
+    return std::make_unique<StressByFunctions>([table](const std::vector<double> &points, const bool rate) {
+      return stress_at_points([at = table->at(points), rate](const double t, const std::span<double> e) {
+        rate ? at->rates(t, e) : at->values(t, e);
+      });
     });
   }
 } // namespace crawler

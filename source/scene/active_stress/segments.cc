@@ -24,6 +24,33 @@ namespace crawler
     {
       return x - std::floor(x);
     }
+
+    /// Throws InputError if smooth fronts are faster than the rate limit.
+    void
+    require_smooth_rate(const SegmentsParameters &p)
+    {
+      if (!p.rate_limit)
+        return;
+      double largest = 0.;
+      for (const double A : p.amplitude)
+      {
+        // Steepest place: the middle of the front, or the cut.
+        const double cut = std::abs(p.saturation.value_or(std::abs(A)) / A);
+        const double x   = cut < 0.5 ? smooth_step_inverse(cut) : 0.5;
+        largest          = std::max(largest, A == 0. ? 0. : std::abs(A) * smooth_step_rate(x));
+      }
+      largest *= p.frequency / p.front_width;
+      if (largest > *p.rate_limit * (1. + round_off))
+        throw InputError(
+          fmt::format("the smooth fronts change by up to {:.6g} per time, but at most {:g}, the rate limit, is "
+                      "expected; make \"{}Front width\" {:.6g} or more, or \"{}Switching\" square",
+                      largest,
+                      *p.rate_limit,
+                      segments_section,
+                      p.front_width * largest / *p.rate_limit,
+                      segments_section),
+          segments_section + "Rate limit");
+    }
   } // namespace
 
   void
@@ -75,7 +102,7 @@ namespace crawler
     if (p.switching == "smooth")
     {
       smooth_.emplace(p.duty_cycle, p.front_width, segments_section);
-      require_smooth_rate();
+      require_smooth_rate(p);
     }
 
     segments_         = create_segments();
@@ -182,60 +209,24 @@ namespace crawler
     return list;
   }
 
-  void
-  Segments::require_smooth_rate() const
-  {
-    if (!parameters_.rate_limit)
-      return;
-    double largest = 0.;
-    for (const double A : parameters_.amplitude)
-    {
-      // Steepest place: the middle of the front, or the cut.
-      const double cut = std::abs(parameters_.saturation.value_or(std::abs(A)) / A);
-      const double x   = cut < 0.5 ? smooth_step_inverse(cut) : 0.5;
-      largest          = std::max(largest, A == 0. ? 0. : std::abs(A) * smooth_step_rate(x));
-    }
-    largest *= parameters_.frequency / parameters_.front_width;
-    if (largest > *parameters_.rate_limit * (1. + round_off))
-      throw InputError(
-        fmt::format("the smooth fronts change by up to {:.6g} per time, but at most {:g}, the rate limit, is "
-                    "expected; make \"{}Front width\" {:.6g} or more, or \"{}Switching\" square",
-                    largest,
-                    *parameters_.rate_limit,
-                    segments_section,
-                    parameters_.front_width * largest / *parameters_.rate_limit,
-                    segments_section),
-        segments_section + "Rate limit");
-  }
-
   double
-  Segments::value(const Segment &segment, const double x) const
+  Segments::signal(const Segment &segment, const double x, const bool rate) const
   {
     if (smooth_)
     {
-      const double most = parameters_.saturation.value_or(std::abs(segment.amplitude));
-      return std::clamp(segment.amplitude * smooth_->value(x), -most, most);
+      const double most = parameters_.saturation.value_or(std::abs(segment.amplitude)),
+                   y    = segment.amplitude * smooth_->value(x);
+      if (rate)
+        return std::abs(y) > most ? 0. : segment.amplitude * smooth_->rate(x);
+      return std::clamp(y, -most, most);
     }
-    const double on = fraction(x), D = parameters_.duty_cycle, change = segment.high - segment.low;
-    if (on < D)
-      return on < segment.front ? segment.low + change * (on / segment.front) : segment.high;
-    const double off = on - D;
-    return off < segment.front ? segment.high - change * (off / segment.front) : segment.low;
-  }
-
-  double
-  Segments::rate(const Segment &segment, const double x) const
-  {
-    if (smooth_)
-    {
-      const bool is_cut =
-        parameters_.saturation && std::abs(segment.amplitude) * smooth_->value(x) > *parameters_.saturation;
-      return is_cut ? 0. : segment.amplitude * smooth_->rate(x);
-    }
-    const double on = fraction(x), D = parameters_.duty_cycle;
-    if ((on < D ? on : on - D) >= segment.front)
-      return 0.;
-    return (on < D ? 1. : -1.) * (segment.high - segment.low) / segment.front;
+    const double phase = fraction(x), D = parameters_.duty_cycle;
+    const bool is_on   = phase < D;
+    const double since = is_on ? phase : phase - D, start = is_on ? segment.low : segment.high,
+                 end = is_on ? segment.high : segment.low;
+    if (since >= segment.front)
+      return rate ? 0. : end;
+    return rate ? (end - start) / segment.front : start + (end - start) * (since / segment.front);
   }
 
   std::vector<double>
@@ -274,9 +265,9 @@ namespace crawler
       for (std::size_t i = 0; i < segments_.size(); ++i)
       {
         const double x = f * t + segments_[i].phase;
-        now[i]         = ramp * (rate ? f * this->rate(segments_[i], x) : value(segments_[i], x));
+        now[i]         = ramp * ((rate ? f : 1.) * signal(segments_[i], x, rate));
         if (rate && envelope_.ramp_end() > 0.)
-          now[i] += envelope_.ramp_rate(t) * value(segments_[i], x);
+          now[i] += envelope_.ramp_rate(t) * signal(segments_[i], x, /*rate=*/false);
       }
       for (std::size_t p = 0; p < segment.size(); ++p)
         m[p] = now[segment[p]];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/cubic_spline.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/scene/active_stress/shape_function.h>
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace crawler
 {
@@ -18,20 +20,6 @@ namespace crawler
     constexpr double tiny     = 1e-6;               ///< largest panel, likewise, that only a kink causes
     constexpr double accuracy = 1e-13, jump = 1e-3; ///< of the largest |V|
     constexpr std::size_t max_panels = 1000000;
-
-    /// sum c_k T_k(u)
-    double
-    series(const double *c, const unsigned int degree, const double u)
-    {
-      double b = 0., b_next = 0.;
-      for (unsigned int k = degree; k > 0; --k)
-      {
-        const double b_new = c[k] + 2. * u * b - b_next;
-        b_next             = b;
-        b                  = b_new;
-      }
-      return c[0] + u * b - b_next;
-    }
   } // namespace
 
   /// Chebyshev coefficients of the polynomial through the values at u_j = -cos( pi (j + 1/2)/n ), n = degree + 1.
@@ -58,15 +46,16 @@ namespace crawler
   {
     const unsigned int n = degree_ + 1;
     const double half    = 0.5 * (right - left_.back());
-    double start         = 0.; // integral up to this panel
-    if (!integral_.empty())
-      start = series(integral_.data() + integral_.size() - (n + 1), n, 1.);
     // Integrals: that of T_k is ( T_(k+1)/(k+1) - T_(k-1)/(k-1) )/2, that of T_0 is T_1, that of T_1 is T_2/4.
     std::vector<double> integral(n + 1, 0.);
     for (unsigned int k = 1; k <= n; ++k)
       integral[k] =
         half * (k == 1 ? c[0] - (n > 2 ? 0.5 * c[2] : 0.) : (c[k - 1] - (k + 1 < n ? c[k + 1] : 0.)) / (2. * k));
-    integral[0] = start - series(integral.data(), n, -1.);
+    // T_k is 1 at the right end of a panel, and (-1)^k at the left one.
+    if (!integral_.empty())
+      integral[0] = std::accumulate(integral_.end() - (n + 1), integral_.end(), 0.);
+    for (unsigned int k = 1; k <= n; ++k)
+      integral[0] += k % 2 == 1 ? integral[k] : -integral[k];
     left_.push_back(right);
     value_.insert(value_.end(), c.begin(), c.end());
     integral_.insert(integral_.end(), integral.begin(), integral.end());
@@ -80,16 +69,13 @@ namespace crawler
     const auto n_panels = static_cast<std::size_t>(std::ceil((to - from) / size * (1. - 1e-12)));
     if (n_panels > max_panels)
       throw std::logic_error("too many panels from the beginning");
-    const auto end_of = [&](const std::size_t i) {
-      return i == n_panels ? to : from + (to - from) * static_cast<double>(i) / static_cast<double>(n_panels);
-    };
+    const std::vector<double> ends = equal_parts(from, to, static_cast<unsigned int>(n_panels));
     // Largest |V|, and a check that it is finite.
     double largest = 0.;
-    std::vector<double> x(8), values(8);
+    std::vector<double> values(8);
     for (std::size_t i = 0; i < n_panels; ++i)
     {
-      for (unsigned int j = 0; j < 8; ++j)
-        x[j] = end_of(i) + (end_of(i + 1) - end_of(i)) * j / 7.;
+      const std::vector<double> x = equal_parts(ends[i], ends[i + 1], 7);
       function(x, values);
       for (unsigned int j = 0; j < 8; ++j)
       {
@@ -101,10 +87,8 @@ namespace crawler
         largest = std::max(largest, std::abs(values[j]));
       }
     }
-    double kink_panel = 0.;     // the smallest panel at the last kink
-    std::vector<double> rights; // right ends of pending panels, the leftmost last
-    for (std::size_t i = n_panels; i > 0; --i)
-      rights.push_back(end_of(i));
+    double kink_panel = 0.;                                     // the smallest panel at the last kink
+    std::vector<double> rights(ends.rbegin(), ends.rend() - 1); // right ends of pending panels, the leftmost last
     while (!rights.empty())
     {
       const double left = left_.back(), right = rights.back();
@@ -175,20 +159,6 @@ namespace crawler
         return panel;
     const auto above = std::upper_bound(left_.begin() + static_cast<std::ptrdiff_t>(panel), left_.end() - 1, x);
     return static_cast<std::size_t>(above - left_.begin()) - 1;
-  }
-
-  double
-  ShapeFunction::value(const double x, std::size_t &panel) const
-  {
-    panel = find(x, panel);
-    return series(value_.data() + panel * (degree_ + 1), degree_, local(x, panel));
-  }
-
-  double
-  ShapeFunction::integral(const double x, std::size_t &panel) const
-  {
-    panel = find(x, panel);
-    return series(integral_.data() + panel * (degree_ + 2), degree_ + 1, local(x, panel));
   }
 
   void

@@ -27,6 +27,14 @@ namespace crawler
     /// Largest number of strides for which the leading order is reported.
     constexpr double max_reported = 100.;
 
+    /// The points, then both ends of the body.
+    std::vector<double>
+    with_ends(std::vector<double> points, const double length)
+    {
+      points.insert(points.end(), {0., length});
+      return points;
+    }
+
     ShapeFunction
     shape_from_formula(const OptimalWaveParameters &parameters,
                        const double length,
@@ -133,22 +141,19 @@ namespace crawler
   {
     if (rate)
       return rate_evaluator(points);
-    std::vector<double> start;                          // V(s)
-    std::vector<double> x(points.size()), V = x, F = x; // at one time: x = s + ct, V(x) and its integral
-    std::size_t panel = 0;
-    for (const double s : points)
-      start.push_back(shape_.value(s, panel));
-    panel = 0;
-    return stress_at_points([=, this](const double t, const std::span<double> m) mutable {
+    std::vector<double> places = with_ends(points, body_.length), V(places.size()),
+                        F      = V; // V and its integral at one time
+    std::size_t panel          = 0;
+    shape_.values_and_integrals(places, panel, V, F);
+    return stress_at_points([=, this, start = V, x = places](const double t, const std::span<double> m) mutable {
       const double ct = speed_ * t, L = body_.length;
       const double friction = chi_ * body_.friction_coefficient, elastic = chi_ * body_.elastic_modulus / speed_;
-      const double tail = shape_.integral(ct, panel), head = shape_.integral(L + ct, panel);
-      const double mean = (head - tail) / L;
-      for (std::size_t i = 0; i < m.size(); ++i)
-        x[i] = points[i] + ct;
+      for (std::size_t i = 0; i < x.size(); ++i)
+        x[i] = places[i] + ct;
       shape_.values_and_integrals(x, panel, V, F);
+      const double tail = F[m.size()], mean = (F[m.size() + 1] - tail) / L;
       for (std::size_t i = 0; i < m.size(); ++i)
-        m[i] = friction * (F[i] - tail - points[i] * mean) - elastic * (V[i] - start[i]);
+        m[i] = friction * (F[i] - tail - places[i] * mean) - elastic * (V[i] - start[i]);
     });
   }
 
@@ -156,16 +161,17 @@ namespace crawler
   std::unique_ptr<ActiveStressAtPoints>
   ShapedWave::rate_evaluator(const std::vector<double> &points) const
   {
-    return stress_at_points([this, points, panel = std::size_t(0)](const double t, const std::span<double> m) mutable {
+    const std::vector<double> places = with_ends(points, body_.length);
+    return stress_at_points([=, this, x = places, V = places, F = places, panel = std::size_t(0)](
+                              const double t, const std::span<double> m) mutable {
       const double ct = speed_ * t, L = body_.length;
       const double friction = chi_ * body_.friction_coefficient * speed_, elastic = chi_ * body_.elastic_modulus;
-      const double tail = shape_.value(ct, panel), head = shape_.value(L + ct, panel);
+      for (std::size_t i = 0; i < x.size(); ++i)
+        x[i] = places[i] + ct;
+      shape_.values_and_integrals(x, panel, V, F);
+      const double tail = V[m.size()], head = V[m.size() + 1];
       for (std::size_t i = 0; i < m.size(); ++i)
-      {
-        const double x = points[i] + ct;
-        m[i]           = friction * (shape_.value(x, panel) - tail - points[i] / L * (head - tail)) -
-               elastic * shape_.derivative(x, panel);
-      }
+        m[i] = friction * (V[i] - tail - places[i] / L * (head - tail)) - elastic * shape_.derivative(x[i], panel);
     });
   }
 
@@ -183,18 +189,22 @@ namespace crawler
     const double strides = std::abs(c) * end_time_ / L;
     const GaussPanels in_s(0., L, 16),
       in_t(0., end_time_, static_cast<unsigned int>(std::ceil(16. * std::clamp(strides, 1., 1e6))));
-    std::vector<double> start;
+    const std::vector<double> places = with_ends(in_s.points(), L);
+    std::vector<double> start = places, x = places, values = places, integrals = places;
     std::size_t panel = 0;
-    for (const double s : in_s.points())
-      start.push_back(shape_.value(s, panel));
+    shape_.values_and_integrals(places, panel, start, integrals);
     LeadingOrder result{0., 0., 1., 1.};
     double e_e         = 0.; // int e'^2 ds
     const auto at_time = [&](const double t, double &e_v, double &v_v) {
-      const double mean = (shape_.integral(L + c * t, panel) - shape_.integral(c * t, panel)) / L;
+      for (std::size_t i = 0; i < x.size(); ++i)
+        x[i] = places[i] + c * t;
+      shape_.values_and_integrals(x, panel, values, integrals);
+      const std::size_t n = in_s.points().size();
+      const double mean   = (integrals[n + 1] - integrals[n]) / L;
       e_v = v_v = e_e = 0.;
-      for (std::size_t i = 0; i < start.size(); ++i)
+      for (std::size_t i = 0; i < n; ++i)
       {
-        const double V = shape_.value(in_s.points()[i] + c * t, panel), e = V - start[i], v = V - mean;
+        const double e = values[i] - start[i], v = values[i] - mean;
         e_v += in_s.weights()[i] * e * v;
         v_v += in_s.weights()[i] * v * v;
         e_e += in_s.weights()[i] * e * e;

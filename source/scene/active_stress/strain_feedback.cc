@@ -41,6 +41,28 @@ namespace crawler
         gradient.evaluate(arguments, m.m, derivatives);
       });
     }
+
+    /// Kinks of w_near: places from which it, or the sensor, reaches an end of the body, and places from which these
+    /// are seen in turn.
+    std::vector<double>
+    kinks_in_space(const double distance, const double sensor, const double length)
+    {
+      constexpr int most = 20; // more would not be worth their cells
+      std::vector<double> places;
+      if (sensor * most >= length)
+      {
+        // Kinks of the near stretch are where the sensor reaches an end of the body, and smoother ones where an end of
+        // the sensor reaches those.
+        for (const double kink : within({0.5 * sensor - distance, length - 0.5 * sensor - distance}, length))
+          places.insert(places.end(), {kink, kink - distance - 0.5 * sensor, kink - distance + 0.5 * sensor});
+        return within(std::move(places), length);
+      }
+      if (distance == 0. || std::abs(distance) * most < length)
+        return places;
+      for (int i = 1; std::abs(i * distance) < length; ++i)
+        places.push_back(distance > 0. ? length - i * distance : -i * distance);
+      return places;
+    }
   } // namespace
 
   void
@@ -103,7 +125,7 @@ namespace crawler
         return formula_feedback(formula, off_breaks_at_ends(points, ends, length));
       });
     facts_.has_rate        = false;
-    facts_.breaks_in_space = kinks_in_space(length);
+    facts_.breaks_in_space = kinks_in_space(facts.distance, facts.sensor_length, length);
     facts_.breaks_in_time  = breaks.in_time.value_or(std::vector<double>());
     if (breaks.in_space)
       facts_.breaks_in_space.insert(facts_.breaks_in_space.end(), breaks.in_space->begin(), breaks.in_space->end());
@@ -122,26 +144,5 @@ namespace crawler
     return stress_at_points([at = feedback_->at(points), one, zero](const double time, const std::span<double> m) {
       at->values(time, {one, zero, one, one}, {m, {}, {}, {}});
     });
-  }
-
-  std::vector<double>
-  StrainFeedback::kinks_in_space(const double length) const
-  {
-    constexpr int most    = 20; // more would not be worth their cells
-    const double distance = feedback_->distance(), sensor = feedback_->sensor_length();
-    std::vector<double> places;
-    if (sensor * most >= length)
-    {
-      // Kinks of the near stretch are where the sensor reaches an end of the body, and smoother ones where an end of
-      // the sensor reaches those.
-      for (const double kink : within({0.5 * sensor - distance, length - 0.5 * sensor - distance}, length))
-        places.insert(places.end(), {kink, kink - distance - 0.5 * sensor, kink - distance + 0.5 * sensor});
-      return within(std::move(places), length);
-    }
-    if (distance == 0. || std::abs(distance) * most < length)
-      return places;
-    for (int i = 1; std::abs(i * distance) < length; ++i)
-      places.push_back(distance > 0. ? length - i * distance : -i * distance);
-    return places;
   }
 } // namespace crawler

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
-#include <crawler/base/grid_samples.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/sum.h>
+#include <crawler/scene/fast_changes.h>
 #include <crawler/scene/period.h>
 
 #include <fmt/format.h>
@@ -251,6 +251,7 @@ namespace crawler
       add(facts_.breaks_in_space, term.in_s.breaks());
       add(facts_.breaks_in_time, term.stress->breaks_in_time());
       add(facts_.breaks_in_time, term.in_t.ends());
+      facts_.has_rate = facts_.has_rate && term.stress->rate_at({0.}) != nullptr;
     }
   }
 
@@ -259,15 +260,6 @@ namespace crawler
   {
     return std::make_unique<SumAtPoints>(
       terms_, points, rate ? SumAtPoints::Wanted::rates : SumAtPoints::Wanted::values);
-  }
-
-  std::unique_ptr<ActiveStressAtPoints>
-  Sum::rate_at(const std::vector<double> &points) const
-  {
-    for (const SumTerm &term : terms_)
-      if (!term.stress->rate_at({0.}))
-        return nullptr;
-    return evaluator(points, /*rate=*/true);
   }
 
   std::optional<ActiveStress::Repetition>
@@ -292,40 +284,6 @@ namespace crawler
     return Repetition{shortest_period(*this, length_, *common, from), from};
   }
 
-  namespace
-  {
-    ActiveStress::Bounds
-    sampled_bounds(const ActiveStress &stress, const ActiveStress::Box &box)
-    {
-      constexpr unsigned int n         = 2;
-      constexpr double margin          = 2.;
-      const std::vector<double> places = equal_parts(box.s_from, box.s_to, n);
-      std::vector<double> now(n + 1), before;
-      const auto at = stress.at(places), rate_at = stress.rate_at(places);
-      ActiveStress::Bounds largest{0., 0.};
-      const double step = (box.t_to - box.t_from) / n;
-      for (unsigned int j = 0; j <= n; ++j)
-      {
-        const double t = box.t_from + step * j;
-        before         = now;
-        at->values(t, now);
-        for (unsigned int i = 0; i <= n; ++i)
-        {
-          largest.value = std::max(largest.value, margin * std::abs(now[i]));
-          if (j > 0 && step > 0.)
-            largest.rate = std::max(largest.rate, margin * std::abs(now[i] - before[i]) / step);
-        }
-        if (!rate_at)
-          continue;
-        rate_at->values(t, now);
-        for (const double rate : now)
-          largest.rate = std::max(largest.rate, margin * std::abs(rate));
-        at->values(t, now);
-      }
-      return largest;
-    }
-  } // namespace
-
   std::optional<ActiveStress::Bounds>
   Sum::bounds(const Box &box) const
   {
@@ -336,7 +294,11 @@ namespace crawler
       auto own = term.stress->bounds(box);
       any      = any || own;
       if (!own)
-        own = sampled_bounds(*term.stress, box);
+      {
+        constexpr double margin = 2.;
+        const Bounds sampled    = sampled_bounds(*term.stress, box, 3, 3);
+        own                     = {margin * sampled.value, margin * sampled.rate};
+      }
       const auto [window, change] = term.in_t.largest(box.t_from, box.t_to);
       const double factor         = std::abs(term.factor) * term.in_s.largest(box.s_from, box.s_to).first;
       const auto times            = [](const double a, const double b) { return a == 0. || b == 0. ? 0. : a * b; };
@@ -359,8 +321,8 @@ namespace crawler
     std::vector<SumTerm> terms = terms_;
     bool any                   = false;
     for (SumTerm &term : terms)
-      if (const auto *const jumping = dynamic_cast<const MovingJumps *>(term.stress.get()))
-        if (std::shared_ptr<const ActiveStress> smooth = jumping->with_fronts(part))
+      if (const auto *const known = dynamic_cast<const KnownStress *>(term.stress.get()))
+        if (std::shared_ptr<const ActiveStress> smooth = known->with_fronts(part))
         {
           term.stress = std::move(smooth);
           any         = true;

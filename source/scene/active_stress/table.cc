@@ -97,6 +97,40 @@ namespace crawler
         return GridInterpolation::Outside::periodic;
       return p.outside == "hold" ? GridInterpolation::Outside::hold : GridInterpolation::Outside::go_on;
     }
+
+    /// Places of kinks: the samples in (0, L), at most 256 if linear and max_knots_of_splines if cubic; if there are
+    /// more, the places where a held table begins and ends.
+    std::vector<double>
+    kinks_in_space(const std::vector<double> &s, const bool linear, const double length)
+    {
+      constexpr std::size_t most = 256;
+      auto knots                 = within(s, length);
+      if (knots.size() <= (linear ? most : max_knots_of_splines))
+        return knots;
+      return within({s.front(), s.back()}, length); // ends of a held table
+    }
+
+    /// Times of kinks: for linear interpolation the samples, at most 4096; otherwise the times at which a table that is
+    /// not periodic begins and ends.
+    std::vector<double>
+    kinks_in_time(const std::vector<double> &t, const bool linear, const bool periodic, const double end_time)
+    {
+      constexpr std::size_t most = 4096;
+      if (linear && !periodic)
+        if (auto knots = within(t, end_time); knots.size() <= most)
+          return knots;
+      if (linear && periodic)
+      {
+        const double P = t.back() - t.front();
+        std::vector<double> knots;
+        for (double n = -std::ceil(t.back() / P); t.front() + n * P < end_time && knots.size() <= 2 * most; ++n)
+          for (std::size_t j = 0; j + 1 < t.size(); ++j)
+            knots.push_back(t[j] + n * P);
+        if (knots = within(knots, end_time); knots.size() <= most)
+          return knots;
+      }
+      return periodic ? std::vector<double>() : within({t.front(), t.back()}, end_time);
+    }
   } // namespace
 
   void
@@ -139,8 +173,9 @@ namespace crawler
         change = std::max(change, std::abs(grid.values[i + n_s] - grid.values[i]));
       changes_.push_back(change / (grid.t[j + 1] - grid.t[j]));
     }
-    facts_.breaks_in_space = kinks_in_space();
-    facts_.breaks_in_time  = kinks_in_time(end_time);
+    const bool linear      = parameters.interpolation == "linear";
+    facts_.breaks_in_space = kinks_in_space(grid.s, linear, length);
+    facts_.breaks_in_time  = kinks_in_time(grid.t, linear, parameters.outside == "periodic", end_time);
   }
 
   std::unique_ptr<ActiveStressAtPoints>
@@ -205,39 +240,6 @@ namespace crawler
       if (n % steps == 0 && repeats_after(steps))
         return Repetition{whole * static_cast<double>(steps) / static_cast<double>(n), 0.};
     return Repetition{whole, 0.};
-  }
-
-  std::vector<double>
-  ActiveStressTable::kinks_in_space() const
-  {
-    constexpr std::size_t most = 256;
-    const auto &s              = table_.grid().s;
-    auto knots                 = within(s, length_);
-    if (knots.size() <= (parameters_.interpolation == "linear" ? most : max_knots_of_splines))
-      return knots;
-    return within({s.front(), s.back()}, length_); // ends of a held table
-  }
-
-  std::vector<double>
-  ActiveStressTable::kinks_in_time(const double end_time) const
-  {
-    constexpr std::size_t most = 4096;
-    const auto &t              = table_.grid().t;
-    const bool linear = parameters_.interpolation == "linear", periodic = parameters_.outside == "periodic";
-    if (linear && !periodic)
-      if (auto knots = within(t, end_time); knots.size() <= most)
-        return knots;
-    if (linear && periodic)
-    {
-      const double P = t.back() - t.front();
-      std::vector<double> knots;
-      for (double n = -std::ceil(t.back() / P); t.front() + n * P < end_time && knots.size() <= 2 * most; ++n)
-        for (std::size_t j = 0; j + 1 < t.size(); ++j)
-          knots.push_back(t[j] + n * P);
-      if (knots = within(knots, end_time); knots.size() <= most)
-        return knots;
-    }
-    return periodic ? std::vector<double>() : within({t.front(), t.back()}, end_time);
   }
 
   void

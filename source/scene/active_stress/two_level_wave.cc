@@ -50,11 +50,7 @@ namespace crawler
                                      "the two strains; smaller strains, or another law, are expected",
                                      *stretch),
                          two_level_wave_section + "Largest strain");
-      const auto friction = [&](const double w) {
-        double g = 0.;
-        scene.friction->values({&w, 1}, {&g, 1});
-        return g / body.friction_coefficient;
-      };
+      const auto friction = [&](const double w) { return scene.friction->value(w) / body.friction_coefficient; };
       if (!(low < high))
         throw InputError(
           fmt::format("the largest strain is {:g}, but one above the smallest, {:g}, is expected", high, low),

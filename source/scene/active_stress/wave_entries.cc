@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -76,8 +77,9 @@ namespace crawler
   times_of_jumps(const WaveProfile &profile, const double frequency, const double start, const double end_time)
   {
     std::vector<double> times;
-    if (frequency > 0.)
-      for (const double x : profile.breaks(start, start + frequency * end_time))
+    const double end = start + frequency * end_time;
+    if (frequency != 0.)
+      for (const double x : profile.breaks(std::min(start, end), std::max(start, end)))
         times.push_back((x - start) / frequency);
     return within(std::move(times), end_time);
   }

@@ -41,26 +41,7 @@ namespace crawler
         sum += shape.power(n) * pi * n * std::sin(2. * pi * n * x);
       return sum;
     }
-  } // namespace
 
-  double
-  WaveShape::delta_2() const
-  {
-    double sum = 0.;
-    for (unsigned int n = 1; n <= a.size(); ++n)
-      sum += power(n);
-    return sum / 4.;
-  }
-
-  double
-  wave_energy(const Body &body, const WaveShape &shape, const double end_time, const double c)
-  {
-    return 2. * body.length * body.friction_coefficient * end_time * shape.delta_2() +
-           body.length * body.elastic_modulus / (c * c) * sine_sum(shape, c * end_time / body.length);
-  }
-
-  namespace
-  {
     /// g(y) = sum a_n sin q_n y + b_n cos q_n y at equidistant places.
     std::vector<double>
     strain_of_speed_1(const WaveShape &shape)
@@ -120,16 +101,7 @@ namespace crawler
       root.max_stretch    = 1. + std::max(factor * smallest, factor * largest);
       return root;
     }
-  } // namespace
 
-  WaveRoot
-  describe_wave(const Body &body, const WaveShape &shape, const double chi, const double end_time, const double c)
-  {
-    return describe(body, shape, strain_of_speed_1(shape), chi, end_time, c);
-  }
-
-  namespace
-  {
     /// Adds the roots x of f(x) = h x^2 - S(x) from 0 to @p last in their order, without x = 0; false if @p is_enough
     /// has ended that. At most one root lies between neighbouring critical points of f.
     bool
@@ -169,6 +141,28 @@ namespace crawler
       return true;
     }
   } // namespace
+
+  double
+  WaveShape::delta_2() const
+  {
+    double sum = 0.;
+    for (unsigned int n = 1; n <= a.size(); ++n)
+      sum += power(n);
+    return sum / 4.;
+  }
+
+  double
+  wave_energy(const Body &body, const WaveShape &shape, const double end_time, const double c)
+  {
+    return 2. * body.length * body.friction_coefficient * end_time * shape.delta_2() +
+           body.length * body.elastic_modulus / (c * c) * sine_sum(shape, c * end_time / body.length);
+  }
+
+  WaveRoot
+  describe_wave(const Body &body, const WaveShape &shape, const double chi, const double end_time, const double c)
+  {
+    return describe(body, shape, strain_of_speed_1(shape), chi, end_time, c);
+  }
 
   WaveRoots
   find_wave_roots(const Body &body,

@@ -2,7 +2,6 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/waves.h>
-#include <crawler/scene/breaks.h>
 
 #include <cmath>
 #include <numbers>
@@ -12,7 +11,8 @@ namespace crawler
 {
   namespace
   {
-    const std::string travelling_section = "Active stress/Travelling wave/";
+    const std::string travelling_section = "Active stress/Travelling wave/",
+                      standing_section   = "Active stress/Standing wave/";
     using std::numbers::pi;
 
     /// Frequency f [1/time].
@@ -71,7 +71,8 @@ namespace crawler
     if (phase_rate_ == 0.)
       for (const double s : times_of_jumps(profile_, wave_number_, start_, length))
         facts_.breaks_in_space.push_back(s);
-    facts_.breaks_in_time = times_of_own_jumps();
+    if (wave_number_ == 0.)
+      facts_.breaks_in_time = times_of_jumps(profile_, phase_rate_, start_, end_time);
   }
 
   /// Evaluates a sine with separate factors of s and t: p = sin x cos theta + cos x sin theta, theta = 2 pi phase_rate
@@ -128,21 +129,6 @@ namespace crawler
     });
   }
 
-  std::vector<double>
-  TravellingWave::times_of_own_jumps() const
-  {
-    if (wave_number_ > 0.)
-      return {};
-    if (phase_rate_ >= 0.)
-      return times_of_jumps(profile_, phase_rate_, start_, end_time_);
-    // Jumps are mirrored, since the phase runs backwards.
-    std::vector<double> times;
-    const double f = -phase_rate_;
-    for (const double x : profile_.breaks(start_ - f * end_time_, start_))
-      times.push_back((start_ - x) / f);
-    return within(std::move(times), end_time_);
-  }
-
   std::unique_ptr<const ActiveStress>
   TravellingWave::with_fronts(const double part) const
   {
@@ -161,11 +147,6 @@ namespace crawler
       out << "Travelling wave: the jumps of a square wave move through the cells of the mesh; its answer is that of "
              "waves with ever steeper fronts, which costs more than Profile = smoothed square\n";
   }
-
-  namespace
-  {
-    const std::string standing_section = "Active stress/Standing wave/";
-  } // namespace
 
   void
   StandingWaveParameters::add_parameters(Declarations &declarations)

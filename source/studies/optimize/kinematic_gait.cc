@@ -198,7 +198,7 @@ namespace crawler
         const auto at = state.reduced.strain()->at(equal_parts(0., 1., n_limited_s_));
         for (const double t : equal_parts(0., 1., n_limited_t_))
         {
-          at->strain(t, strain);
+          at->values(t, strain);
           samples.limited.insert(samples.limited.end(), strain.begin(), strain.end());
         }
         return samples;

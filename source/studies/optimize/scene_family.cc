@@ -2,7 +2,8 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/grid_samples.h>
 #include <crawler/parameters/declarations.h>
-#include <crawler/scene/strain_history.h>
+#include <crawler/scene/known_stress.h>
+#include <crawler/scene/strain_extremes.h>
 #include <crawler/studies/optimize/scene_family.h>
 
 #include <fmt/format.h>
@@ -50,25 +51,23 @@ namespace crawler
     }
 
     /// Active stress, or its rate; where this is unknown, differences of the stress.
-    FieldHistory
+    StressByFunctions
     stress_of(const Scene &scene, const bool rate)
     {
       const ActiveStress &stress = *scene.active_stress;
       const double T = scene.end_time, beside = 1e-5 * T;
-      return [=, &stress](const std::vector<double> &points) -> std::function<void(double, std::span<double>)> {
-        const auto own = std::shared_ptr(stress.at(points));
-        if (!rate)
-          return [own](const double t, const std::span<double> m) { own->values(t, m); };
-        if (const auto rates = std::shared_ptr(stress.rate_at(points)))
-          return [rates](const double t, const std::span<double> m) { rates->values(t, m); };
-        return [=, before = std::vector<double>(points.size())](const double t, const std::span<double> m) mutable {
+      return StressByFunctions([=, &stress](const std::vector<double> &points, bool) {
+        if (auto own = rate ? stress.rate_at(points) : stress.at(points))
+          return own;
+        return stress_at_points([=, at = stress.at(points), before = std::vector<double>(points.size())](
+                                  const double t, const std::span<double> m) mutable {
           const double from = std::max(t - beside, 0.), to = std::min(t + beside, T);
-          own->values(from, before);
-          own->values(to, m);
+          at->values(from, before);
+          at->values(to, m);
           for (std::size_t i = 0; i < before.size(); ++i)
             m[i] = (m[i] - before[i]) / (to - from);
-        };
-      };
+        });
+      });
     }
 
     std::vector<double>
@@ -77,9 +76,9 @@ namespace crawler
       constexpr unsigned int n_s = 33, n_t = 129;
       const Scene scene = parameters.create_scene();
       std::vector<double> m(1ul * n_s * n_t);
-      const auto at = stress_of(scene, rate)(equal_parts(0., scene.body.length, n_s - 1));
+      const auto at = stress_of(scene, rate).at(equal_parts(0., scene.body.length, n_s - 1));
       for (unsigned int j = 0; const double t : equal_parts(0., scene.end_time, n_t - 1))
-        at(t, std::span(m).subspan(1ul * j++ * n_s, n_s));
+        at->values(t, std::span(m).subspan(1ul * j++ * n_s, n_s));
       return m;
     }
 

@@ -15,7 +15,6 @@
 #include <crawler/run/self_check.h>
 #include <crawler/run/simulation.h>
 #include <crawler/run/summary.h>
-#include <crawler/scene/moving_jumps.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/log.h>
 #include <crawler/studies/core/progress.h>

@@ -8,7 +8,7 @@
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/petsc_object.h>
-#include <crawler/scene/evaluators.h>
+#include <crawler/scene/known_stress.h>
 #include <crawler/time/failure.h>
 
 using namespace crawler;

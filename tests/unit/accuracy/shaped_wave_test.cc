@@ -174,8 +174,6 @@ TEST(ShapedWave, PanelsAreRefinedWhereItIsNeeded)
   {
     EXPECT_NEAR(values[i], std::cos(x[i]) + peak(x[i]), 1e-13);
     EXPECT_NEAR(integrals[i], integral(x[i]), 1e-13);
-    EXPECT_NEAR(shape.value(x[i], panel), std::cos(x[i]) + peak(x[i]), 1e-13);
-    EXPECT_NEAR(shape.integral(x[i], panel), integral(x[i]), 1e-13);
     EXPECT_NEAR(shape.derivative(x[i], panel), -std::sin(x[i]) - 2. * (x[i] - 0.31) / 1e-4 * peak(x[i]), 1e-9);
   }
 }

@@ -57,8 +57,9 @@ TEST(FormulaBound, Encloses)
         const double at = t + random.uniform(0., size);
         std::vector<double> value(1), rate(1);
         const std::vector<double> place = {s + random.uniform(0., size)};
-        FormulaAtPoints(f.formula, place).values(at, value);
-        FormulaRateAtPoints(f.formula, place).values(at, rate);
+        FormulaGradient(f.formula).evaluate(std::array<std::span<const double>, 2>{{place, {&at, 1}}},
+                                            value,
+                                            std::array<std::span<double>, 2>{{{}, rate}});
         const double rounding = 1e-12 * (1. + std::abs(value[0]));
         EXPECT_GE(value[0], in.value.lower() - rounding) << text;
         EXPECT_LE(value[0], in.value.upper() + rounding) << text;

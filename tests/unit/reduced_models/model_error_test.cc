@@ -74,7 +74,7 @@ TEST(ModelError, RandomWaves)
     const Scene scene = test::parameters_with(wave.settings).create_scene();
     const ReducedScene levels(scene);
     const double of_truth = 2e-6 * std::abs(*truth);
-    const double series   = std::abs(Perturbation(*levels.wave()).displacement(1.) - *truth);
+    const double series   = std::abs(perturbation::displacement(*levels.wave(), 1.) - *truth);
     const double motion   = std::abs(kinematic(levels.scene(), *levels.strain(), 1e-8).displacement - *truth);
     EXPECT_LE(series, errors.perturbation + of_truth) << "a = " << wave.a << ", chi = " << wave.chi;
     EXPECT_LE(motion, errors.kinematic + of_truth) << "a = " << wave.a << ", chi = " << wave.chi;

@@ -51,9 +51,9 @@ TEST(TwoLevelWave, HasItsTwoStrains)
   const Scene scene     = test::parameters_with(two_level_wave(-1., own, {{"Body/Length", "2"}})).create_scene();
   std::vector<double> e(6);
   const auto strain = scene.active_stress->prescribed_strain()->at({0., 0.06, 0.54, 0.6, 0.66, 1.94});
-  strain->strain(/*t=*/0., e); // the fronts are about s = 0 and s = 0.3 L, 0.05 L wide
+  strain->values(/*t=*/0., e); // the fronts are about s = 0 and s = 0.3 L, 0.05 L wide
   test::expect_near(e, {0.15, 0.5, 0.5, 0.15, -0.2, -0.2}, 1e-14);
-  scene.active_stress->prescribed_strain()->at({1.})->strain(/*t=*/0.75, {e.data(), 1}); // from head to tail
+  scene.active_stress->prescribed_strain()->at({1.})->values(/*t=*/0.75, {e.data(), 1}); // from head to tail
   EXPECT_NEAR(e[0], 0.5, 1e-14);
   EXPECT_NEAR(scene.active_stress->period().value_or(0.), 1., 1e-14);
 }

@@ -169,7 +169,7 @@ TEST(TravellingWave, SaysThatJumpsMove)
 TEST(TravellingWave, HasFrontsInsteadOfMovingJumps)
 {
   const auto fronts = [](const ActiveStress &stress, const double part) {
-    return dynamic_cast<const MovingJumps &>(stress).with_fronts(part);
+    return dynamic_cast<const KnownStress &>(stress).with_fronts(part);
   };
   const auto square = stress_with(travelling("Profile = square; Duty cycle = 0.3"));
   const auto smooth = fronts(*square, 0.1);

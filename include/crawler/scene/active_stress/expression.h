@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/formula/formula_bound.h>
+#include <crawler/scene/active_stress/formula_input.h>
 #include <crawler/scene/known_stress.h>
 
 #include <optional>
@@ -28,10 +29,9 @@ namespace crawler
   class Expression : public KnownStress
   {
   public:
-    /**
-     * Throws InputError with the position if the formula or the list of constants has an error, or if the formula is
-     * not a finite number somewhere in 0 <= s <= length, 0 <= t <= end_time (checked on a grid).
-     */
+    /// Throws InputError with the position if the formula or the list of constants has an error, or if the formula is
+    /// not a finite number somewhere on a grid over the body and the duration.
+    Expression(const FormulaInput &input, double length, double end_time);
     Expression(const ExpressionParameters &parameters, double length, double end_time);
 
     std::optional<Bounds>

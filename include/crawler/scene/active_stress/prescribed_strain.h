@@ -2,16 +2,15 @@
 #pragma once
 
 #include <crawler/base/gauss_panels.h>
-#include <crawler/scene/body.h>
-#include <crawler/scene/evaluators.h>
 #include <crawler/scene/known_stress.h>
+#include <crawler/scene/scene.h>
+#include <crawler/scene/strain_extremes.h>
 
 #include <string>
 
 namespace crawler
 {
   class Declarations;
-  struct Scene;
 
   /// Section "Active stress/Prescribed strain".
   struct PrescribedStrainParameters
@@ -55,17 +54,16 @@ namespace crawler
                      const Scene &scene,
                      std::unique_ptr<const ActiveStress> generator = nullptr);
 
-    const StrainHistory *
+    const ActiveStress *
     prescribed_strain() const override
     {
-      return history_.get();
+      return strain_.get();
     }
 
-    /// Failures of the generator, if the strain is generated.
     const StressFailures *
     failures() const override
     {
-      return generator_ ? generator_->failures() : nullptr;
+      return strain_->failures();
     }
 
     void
@@ -77,7 +75,7 @@ namespace crawler
     std::optional<Repetition>
     search_repetition() const override
     {
-      return generator_ ? generator_->repetition() : facts_.repetition;
+      return is_generated_ ? strain_->repetition() : facts_.repetition;
     }
 
     void
@@ -87,10 +85,10 @@ namespace crawler
     void
     choose_panels(double end_time);
 
-    const std::shared_ptr<const Scene> scene_; ///< without active stress
+    const Scene scene_; ///< without active stress
     const std::string given_by_;
-    const std::unique_ptr<const ActiveStress> generator_; ///< of the strain, if it is generated
-    std::unique_ptr<const StrainHistory> history_;
+    const bool is_generated_;
+    const std::unique_ptr<const ActiveStress> strain_;
     StrainExtremes extremes_{};
     std::vector<double> panels_; ///< ends of the panels of the quadrature over the body
   };
@@ -101,6 +99,6 @@ namespace crawler
    * @p entry if that cannot be read, if there are fewer than four values of s or t, or if the grid does not reach from
    * 0 to @p length and from 0 to @p end_time.
    */
-  std::unique_ptr<const StrainHistory>
+  std::unique_ptr<const ActiveStress>
   read_strain_table(const std::string &name, double length, double end_time, const std::string &entry);
 } // namespace crawler

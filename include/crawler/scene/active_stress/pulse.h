@@ -38,8 +38,7 @@ namespace crawler
   class Pulse : public KnownStress
   {
   public:
-    /// Throws InputError if the window does not fit, if the pulses are closer than their width, or if the pulse does
-    /// not reach the body before the end time.
+    /// Throws InputError if window or pulses do not fit, or if no pulse reaches the body before the end time.
     Pulse(const PulseParameters &parameters, double length, double end_time);
 
     std::optional<Bounds>

@@ -93,17 +93,11 @@ namespace crawler
 
     /// Value of y_i(x), or its derivative [force/period].
     double
-    value(const Segment &segment, double x) const;
-    double
-    rate(const Segment &segment, double x) const;
+    signal(const Segment &segment, double x, bool rate) const;
 
     /// Places of a period at which y_i or its derivative jumps.
     std::vector<double>
     breaks(const Segment &segment) const;
-
-    /// Throws InputError, see the constructor.
-    void
-    require_smooth_rate() const;
 
     const SegmentsParameters parameters_;
     const double length_;

@@ -41,21 +41,17 @@ namespace crawler
       return left_.back();
     }
 
-    /// Value V(x); below, the integral from from() to x, and V'(x). @p panel is that of the last place (0 at first),
-    /// which is fast for places in order. Beyond the ends the outermost polynomials continue.
-    double
-    value(double x, std::size_t &panel) const;
-    double
-    integral(double x, std::size_t &panel) const;
-    double
-    derivative(double x, std::size_t &panel) const;
-
-    /// Writes V and its integral at many places, faster than one by one; all lists have one length.
+    /// Writes V and its integral from from() to x at places x; all lists have one length. @p panel is that of the last
+    /// place (0 at first), which is fast for places in order. Beyond the ends the outermost polynomials continue.
     void
     values_and_integrals(std::span<const double> x,
                          std::size_t &panel,
                          std::span<double> values,
                          std::span<double> integrals) const;
+
+    /// Derivative V'(x); the panel likewise.
+    double
+    derivative(double x, std::size_t &panel) const;
 
     /// Places where V' jumps.
     const std::vector<double> &

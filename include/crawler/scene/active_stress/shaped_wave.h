@@ -19,9 +19,8 @@ namespace crawler
   class ShapedWave : public KnownStress
   {
   public:
-    /// Makes the wave for Shape = expression or table. Throws InputError if the wave is to be chosen by its energy, if
-    /// the speed is 0 or so large that 1e4 body lengths of V are passed, if the formula or the file has an error, or if
-    /// V is not given or not continuous wherever the wave comes, min(0, cT) <= x <= L + max(0, cT).
+    /// Makes the wave for Shape = expression or table. Throws InputError if the wave is to be chosen by its energy, or
+    /// if V is not given or not continuous wherever the wave comes, min(0, cT) <= x <= L + max(0, cT).
     ShapedWave(const OptimalWaveParameters &parameters, const Body &body, double end_time);
 
     /// Reports the wave, with the numbers of its leading order.

@@ -46,11 +46,6 @@ namespace crawler
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
 
-    /// Kinks of w_near: places from which it, or the sensor, reaches an end of the body, and places from which these
-    /// are seen in turn.
-    std::vector<double>
-    kinks_in_space(double length) const;
-
     std::unique_ptr<const StretchFeedback> feedback_;
   };
 } // namespace crawler

@@ -3,7 +3,6 @@
 
 #include <crawler/scene/active_stress/envelope.h>
 #include <crawler/scene/known_stress.h>
-#include <crawler/scene/moving_jumps.h>
 
 #include <memory>
 #include <optional>
@@ -44,15 +43,11 @@ namespace crawler
    * evaluated where a window is closed. Rates and derivatives with respect to the stretch follow from the sum and
    * product rules.
    */
-  class Sum : public KnownStress, public MovingJumps
+  class Sum : public KnownStress
   {
   public:
     /// Throws InputError if no term adds, or if terms use the stretch at different distances or with different delays.
     Sum(std::vector<SumTerm> terms, double length, double end_time);
-
-    /// Makes an evaluator of the rate; null if a term has none.
-    std::unique_ptr<ActiveStressAtPoints>
-    rate_at(const std::vector<double> &points) const override;
 
     /// Bounds; terms that have none are sampled in the box, with a margin of 2. Nothing if no term has any.
     std::optional<Bounds>

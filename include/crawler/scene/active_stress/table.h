@@ -30,12 +30,8 @@ namespace crawler
   class ActiveStressTable : public KnownStress
   {
   public:
-    /**
-     * Reads the file (base/grid_table.h). Throws InputError if it cannot be read, if there are not enough values of s
-     * or t (cubic: 4, linear: 2), if the samples do not reach from 0 to @p length and from 0 to @p end_time and no
-     * continuation is declared, if they do not even overlap with that, or if they are declared periodic but differ
-     * between the first and the last time.
-     */
+    /// Reads the file (base/grid_table.h). Throws InputError if its samples do not fit the entries, the body or the
+    /// duration.
     ActiveStressTable(const TableParameters &parameters, double length, double end_time);
 
     std::optional<Bounds>
@@ -51,15 +47,6 @@ namespace crawler
     /// Finds the period of a periodic table, or a whole part of it after which equally spaced samples repeat.
     std::optional<Repetition>
     search_repetition() const override;
-
-    /// Places of kinks: the samples in (0, L), at most 256 if linear and max_knots_of_splines if cubic; if there are
-    /// more, the places where a held table begins and ends.
-    std::vector<double>
-    kinks_in_space() const;
-    /// Times of kinks: for linear interpolation the samples, at most 4096; otherwise the times at which a table that is
-    /// not periodic begins and ends.
-    std::vector<double>
-    kinks_in_time(double end_time) const;
 
     const TableParameters parameters_;
     const double length_;

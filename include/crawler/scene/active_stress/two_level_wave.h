@@ -38,8 +38,7 @@ namespace crawler
   class TwoLevelWave : public PrescribedStrain
   {
   public:
-    /// Throws InputError if the strains are not in order, if the fronts do not fit, if there are too many periods, or
-    /// if the work is given, but the wave number is not whole, there is a ramp, or the body varies.
+    /// Throws InputError if strains or fronts do not fit, or if the work of the wave depends on its phase but is given.
     TwoLevelWave(const TwoLevelWaveParameters &parameters, const Scene &scene);
 
     /// Reports the choices and the attainable displacement.

@@ -4,7 +4,6 @@
 #include <crawler/scene/active_stress/envelope.h>
 #include <crawler/scene/active_stress/wave_entries.h>
 #include <crawler/scene/known_stress.h>
-#include <crawler/scene/moving_jumps.h>
 
 #include <string>
 
@@ -38,7 +37,7 @@ namespace crawler
    * there is none. A square wave of frequency 0 jumps at fixed places, one of wave number 0 at fixed times; the jumps
    * of others move, so no list holds them. Square waves that change in time have no rate.
    */
-  class TravellingWave : public KnownStress, public MovingJumps
+  class TravellingWave : public KnownStress
   {
   public:
     /// Throws InputError if fronts or window do not fit, if a speed is given for wave number 0, or if there are more
@@ -63,10 +62,6 @@ namespace crawler
     evaluator(const std::vector<double> &points, bool rate) const override;
     std::unique_ptr<ActiveStressAtPoints>
     sine_at(const std::vector<double> &points, bool rate) const;
-
-    /// Times when a uniform square wave jumps.
-    std::vector<double>
-    times_of_own_jumps() const;
 
     const TravellingWaveParameters parameters_;
     const double length_, end_time_;

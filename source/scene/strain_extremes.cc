@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/gauss_panels.h>
 #include <crawler/base/grid_samples.h>
-#include <crawler/scene/strain_history.h>
+#include <crawler/scene/fast_changes.h>
+#include <crawler/scene/strain_extremes.h>
 
 #include <algorithm>
 #include <array>
@@ -17,7 +18,7 @@ namespace crawler
   {
     /// Moves to better neighbours on a grid of 3 x 3 points that shrinks when there are none.
     StrainExtreme
-    refined(const FieldHistory &history,
+    refined(const ActiveStress &strain,
             const double length,
             const double end_time,
             StrainExtreme best,
@@ -31,12 +32,12 @@ namespace crawler
       for (unsigned int move = 0; move < max_moves && ds > stop; ++move)
       {
         const std::vector<double> points = {std::max(0., best.s - ds), best.s, std::min(length, best.s + ds)};
-        const auto at                    = history(points);
+        const auto at                    = strain.at(points);
         const StrainExtreme centre       = best;
         std::array<double, 3> e{};
         for (const double t : {std::max(0., centre.t - dt), centre.t, std::min(end_time, centre.t + dt)})
         {
-          at(t, e);
+          at->values(t, e);
           for (unsigned int i = 0; i < 3; ++i)
             if (sign * e[i] < sign * best.strain)
               best = {e[i], points[i], t};
@@ -81,7 +82,7 @@ namespace crawler
   } // namespace
 
   StrainExtremes
-  find_extremes(const FieldHistory &history,
+  find_extremes(const ActiveStress &strain,
                 const double length,
                 const double end_time,
                 const unsigned int n_s,
@@ -89,11 +90,11 @@ namespace crawler
   {
     const std::vector<double> points = equal_parts(0., length, n_s - 1), times = equal_parts(0., end_time, n_t - 1);
     std::vector<double> e(1ul * n_s * n_t);
-    const auto at = history(points);
+    const auto at = strain.at(points);
     for (unsigned int j = 0; j < n_t; ++j)
     {
       const std::span row(e.data() + 1ul * j * n_s, n_s);
-      at(times[j], row);
+      at->values(times[j], row);
       for (unsigned int i = 0; i < n_s; ++i)
         if (const StrainExtreme here{row[i], points[i], times[j]}; !std::isfinite(row[i]))
           return {here, here};
@@ -105,7 +106,7 @@ namespace crawler
       for (const std::size_t k : peaks(e, n_s, sign))
       {
         const StrainExtreme one =
-          refined(history, length, end_time, {e[k], points[k % n_s], times[k / n_s]}, sign, ds, dt);
+          refined(strain, length, end_time, {e[k], points[k % n_s], times[k / n_s]}, sign, ds, dt);
         if (sign * one.strain < sign * best.strain)
           best = one;
       }
@@ -114,42 +115,22 @@ namespace crawler
     return {extreme(1.), extreme(-1.)};
   }
 
-  StrainExtremes
-  find_extremes(const StrainHistory &history,
-                const double length,
-                const double end_time,
-                const unsigned int n_s,
-                const unsigned int n_t)
-  {
-    const auto strain = [&](const std::vector<double> &points) {
-      return
-        [at = std::shared_ptr(history.at(points))](const double t, const std::span<double> e) { at->strain(t, e); };
-    };
-    return find_extremes(FieldHistory(strain), length, end_time, n_s, n_t);
-  }
-
   std::optional<StrainJump>
-  find_jump(const StrainHistory &history, const double length, const double end_time)
+  find_jump(const ActiveStress &strain, const double length, const double end_time)
   {
     constexpr unsigned int n_points = 11, n_intervals = 37, max_panels = 1024;
     constexpr double tolerance = 1e-6;
     std::vector<double> before(n_points), after(n_points), rate(n_points);
     const std::vector<double> points = equal_parts(0., length, n_points - 1),
                               times  = equal_parts(0., end_time, n_intervals);
-    const auto at                    = history.at(points);
-    double size                      = 0.;
-    for (const double t : times)
-    {
-      at->strain(t, after);
-      for (const double e : after)
-        size = std::max(size, std::abs(e));
-    }
-    at->strain(0., after);
+    const auto at = strain.at(points), rate_at = strain.rate_at(points);
+    const double size = sampled_bounds(strain, {0., length, 0., end_time}, n_points, n_intervals + 1).value;
+    at->values(0., after);
     for (unsigned int j = 0; j < n_intervals; ++j)
     {
       const double from = times[j], to = times[j + 1];
       before = after;
-      at->strain(to, after);
+      at->values(to, after);
       std::optional<StrainJump> jump;
       double envelope = 0.; // largest difference times number of panels
       bool grows      = true;
@@ -159,7 +140,7 @@ namespace crawler
         std::vector<double> integral(n_points, 0.);
         for (std::size_t k = 0; k < time.points().size(); ++k)
         {
-          at->rate(time.points()[k], rate);
+          rate_at->values(time.points()[k], rate);
           for (unsigned int i = 0; i < n_points; ++i)
             integral[i] += time.weights()[k] * rate[i];
         }
