@@ -25,9 +25,9 @@ namespace crawler
     , parameters(own_parameters)
     , scene(own_scene)
     , scales(stress_scales(scene))
-    , scale(scales.displacement > 0. ? std::max(scales.displacement, min_size()) : scene.body.length)
     , time(parameters.time)
     , cycles(cycle_wish(parameters, scene, /*has_pictures=*/false))
+    , scale(scales.displacement > 0. ? std::max(scales.displacement, min_size()) : scene.body.length)
     , tolerance(std::max(1e-3 * scale, negligible_displacement()))
   {
     time.step_control = StepControl::adaptive;

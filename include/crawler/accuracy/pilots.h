@@ -92,14 +92,14 @@ namespace crawler
     const RunParameters &parameters;
     const Scene &scene;
     const StressScales scales;
-    const double scale; ///< expected size of the displacement [length]
     TimeParameters time;
     std::optional<CycleWish> cycles;
-    double tolerance;              ///< of the next pilot in time [length]
-    SimulationResult last = {};    ///< last run that counts
-    double size           = 0.;    ///< size of its displacement; 0 if that is not known [length]
-    unsigned int n        = 0;     ///< number of runs
-    bool must_settle      = false; ///< pilots must end early, as their cycles repeat
-    bool inverts_at_end   = false; ///< an end inverts at the same time in the last two
+    SimulationResult last = {};  ///< last run that counts
+    const double scale;          ///< expected size of the displacement [length]
+    double tolerance;            ///< of the next pilot in time [length]
+    double size         = 0.;    ///< size of its displacement; 0 if that is not known [length]
+    unsigned int n      = 0;     ///< number of runs
+    bool must_settle    = false; ///< pilots must end early, as their cycles repeat
+    bool inverts_at_end = false; ///< an end inverts at the same time in the last two
   };
 } // namespace crawler
