@@ -64,7 +64,7 @@ SCRIPTS = {"run": "kymograph", "named": "kymograph", "no_stride": "kymograph", "
            "unreadable": "tradeoff", "optimum": "optimize", "scaling": "sweep", "calibration.csv": "calibration"}
 # Arguments of crawler plot, exit code, what the one sentence has.
 REFUSED = [
-    ([], 2, "the folder is missing"), (["nowhere"], 2, '"nowhere" is not a folder'),
+    ([], 2, "the folder is missing"), (["nowhere"], 2, '"nowhere" is not a folder'), (["--output", "picture", "run"], 2, '"--output" is before the folder'),
     (["empty"], 2, "has nothing to draw"), (["run", "--kind", "kymogaph"], 2, '"kymograph"'),
     (["run", "--", "-ts_monitor"], 2, "takes no PETSc options"), (["run", "--lastt-stride"], 2, "--lastt-stride"),
     (["many.csv"], 2, '"many.csv" has 4 columns, but s, t and m (or strain) are expected'),

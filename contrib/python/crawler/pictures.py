@@ -52,12 +52,15 @@ def main():
     parser = Parser(prog="crawler plot", allow_abbrev=False, add_help=False)
     parser.add_argument("folder", metavar="DIR", nargs="?")
     parser.add_argument("--kind", default="")
-    options, others = parser.parse_known_args(sys.argv[2:])
+    words = sys.argv[2:]
+    options, others = parser.parse_known_args(words)
     if options.folder is None and {"-h", "--help"} & set(others):
         print(f"usage: crawler plot DIR [--kind KIND] [options of its script]\n\nKIND: {', '.join(KINDS)} (default: whichever fits)")
         return
     if options.folder is None:
         raise InputError('the folder is missing; "crawler plot DIR" is expected')
+    if others and words.index(others[0]) < words.index(options.folder) and not os.path.exists(options.folder):
+        raise InputError(f'"{others[0]}" is before the folder; "crawler plot DIR {others[0]} ..." is expected')
     if options.kind and options.kind not in KINDS:
         raise InputError(f'"--kind" is "{options.kind}", but one of {", ".join(f"{kind!r}" for kind in KINDS)} is expected'.replace("'", '"'))
     kind = options.kind or kind_of(options.folder)
