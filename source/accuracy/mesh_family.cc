@@ -63,6 +63,7 @@ namespace crawler
         answer_.choice          = choice;
         options_.resolution     = ResolutionWish::size; // the size of the deformation
         options_.energy_balance = true;                 // works tell whether displacements agree by chance
+        options_.cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false); // these runs write none
         if (options_.cycles)
           options_.cycles->accuracy *= 0.1; // displacements are compared
       }

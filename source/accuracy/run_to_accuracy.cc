@@ -370,19 +370,17 @@ namespace crawler
                   const bool writes,
                   const KeepGoing &keep_going)
   {
-    Simulation::Options without_files = options;
-    without_files.cycles              = cycle_wish(parameters, scene, /*has_pictures=*/false);
     const auto in_files = [&](Answer answer) { return writes ? with_files(std::move(answer), simulate) : answer; };
     if (choice.has_fronts)
       return in_files(
         answer_of_fronts(parameters, scene, [&](const RunParameters &its_parameters, const Scene &its_scene) {
-          return answer_in_memory(its_parameters, its_scene, without_files, keep_going);
+          return answer_in_memory(its_parameters, its_scene, options, keep_going);
         }));
     if (choice.is_family)
-      return in_files(better_of_both_forms(parameters, scene, choice, without_files, keep_going));
+      return in_files(better_of_both_forms(parameters, scene, choice, options, keep_going));
     Answer answer = Tries(communicator, parameters, scene, choice, simulate, keep_going).answer();
     if (is_for_finer_numerics(answer.result.time) && !choice.is_users && size_of(communicator) == 1)
-      if (auto other = answer_of_stretch_form(parameters, scene, without_files, keep_going))
+      if (auto other = answer_of_stretch_form(parameters, scene, options, keep_going))
         return in_files(std::move(*other));
     return answer;
   }

@@ -126,7 +126,7 @@ def open_table(path, errors="strict"):
 
 
 def read_rows(path):
-    """Rows of a CSV file of the program, as dictionaries of texts."""
+    """Rows of a CSV file of the program, as dictionaries of texts. Raises what open_table() does."""
     with open_table(path) as file:
         return list(csv.DictReader(file))
 

@@ -177,7 +177,7 @@ def table_of(columns):
 
 def read_columns(path):
     """Reads a CSV file of the program: {heading: column}, arrays where all cells are numbers or empty (NaN), else lists
-    of texts. Incomplete rows, left by an interrupted run, are skipped."""
+    of texts. Incomplete rows, left by an interrupted run, are skipped. Raises what open_table() does."""
     with open_table(path, "replace") as file:
         names, *rows = list(csv.reader(line.replace("\0", "") for line in file)) or [[]]
     rows, columns = [row for row in rows if len(row) == len(names)], {}

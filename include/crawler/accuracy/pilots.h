@@ -95,7 +95,7 @@ namespace crawler
     TimeParameters time;
     std::optional<CycleWish> cycles;
     SimulationResult last = {};  ///< last run that counts
-    const double scale;          ///< expected size of the displacement [length]
+    const double scale;          ///< expected size of the displacement, from the members above [length]
     double tolerance;            ///< of the next pilot in time [length]
     double size         = 0.;    ///< size of its displacement; 0 if that is not known [length]
     unsigned int n      = 0;     ///< number of runs
