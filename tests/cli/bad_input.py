@@ -11,7 +11,7 @@ import shlex
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call  # noqa: E402
+from program import Checks, call, contents  # noqa: E402
 
 CRAWLER = pathlib.Path(sys.argv[1]).resolve()
 ROWS = pathlib.Path(__file__).with_suffix(".txt")
@@ -54,19 +54,14 @@ def fill(folder):
         (folder / name).write_text(text, encoding="utf-8")
 
 
-def state(folder):
-    """Contents of all files, and names of all folders."""
-    return {path: path.read_bytes() if path.is_file() else None for path in folder.rglob("*")}
-
-
 def expect_refusal(folder, arguments, code, parts, what):
-    before = state(folder)
+    before = contents(folder)
     done = call([CRAWLER, *arguments], folder, input="")
     words = done.stderr
     checks.expect(done.returncode == code and words.startswith("crawler: ") and words.count("\n") == 1 and words.endswith("\n")
                   and all(part in words for part in parts) and not any(dump in words for dump in DUMPS) and done.stdout == "",
                   f"{what}: {parts} expected, exit code {done.returncode}, {words!r}")
-    checks.expect(state(folder) == before, f"{what}: files were changed")
+    checks.expect(contents(folder) == before, f"{what}: files were changed")
 
 
 def rows():

@@ -18,7 +18,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, Paused, call, environment, on_ranks, prm, ranks_that_stop  # noqa: E402
+from program import Checks, Paused, call, contents, environment, on_ranks, prm, ranks_that_stop  # noqa: E402
 from tables import csv_rows, h5_columns, json_of, number, same_as_csv, same_columns  # noqa: E402
 
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
@@ -279,9 +279,9 @@ def test_killed_at_files(folder):
     (folder / "of_others").mkdir()
     (folder / "of_others" / "original.prm").write_text("mine", encoding="utf-8")
     for name in ("not_a_sweep", "of_others"):
-        before = {file: file.read_bytes() for file in (folder / name).rglob("*") if file.is_file()}
+        before = contents(folder / name)
         result = sweep(folder, name, "--resume")
-        after = {file: file.read_bytes() for file in (folder / name).rglob("*") if file.is_file()}
+        after = contents(folder / name)
         expect(result.returncode == 2 and before and before == after, f"--resume leaves {name} alone: {result.stderr}")
 
 

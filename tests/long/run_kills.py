@@ -14,7 +14,7 @@ import signal
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks  # noqa: E402
+from program import Checks, Places  # noqa: E402
 from run_scenes import SCENES, STATES, Scene  # noqa: E402
 
 FILES = ("restart.dat", "restart.dat.new", "000003.vtu", "line_000007.vtu", "grip_000005.vtu", "kymograph.vts",
@@ -22,27 +22,10 @@ FILES = ("restart.dat", "restart.dat.new", "000003.vtu", "line_000007.vtu", "gri
 checks = Checks()
 
 
-class Places:
-    """Random ones; those that a run did not come to are followed by earlier ones."""
-
-    def __init__(self, chance):
-        self.chance, self.most = chance, {"step": 1 << 14, "restart.dat": 64, "restart.dat.new": 64}
-
-    def next(self):
-        """PLACE:NUMBER, and what is to become less if the run does not come there."""
-        what = "step" if self.chance.random() < 0.6 else self.chance.choice(FILES)
-        number = int(self.most[what] ** self.chance.random()) if what in self.most else 1
-        return what, f"{what if what == 'step' else 'write:' + what}:{number}"
-
-    def too_late(self, what):
-        """A run did not come there."""
-        if what in self.most:
-            self.most[what] = max(1, self.most[what] * 2 // 3)
-
-
 def disturb(scene, n, chance, how="KILL"):
     """The run is stopped n times at random places, resumed each time, and then left alone. How often it went on."""
-    places, hits, resumed, folder = Places(chance), 0, 0, scene.place / "disturbed"
+    places = Places(chance, ("step", "step", "write"), FILES, {"step": 1 << 14, "restart.dat": 64, "restart.dat.new": 64})
+    hits, resumed, folder = 0, 0, scene.place / "disturbed"
     shutil.rmtree(folder, ignore_errors=True)
     ends = {"KILL": -signal.SIGKILL}.get(how, 5)
     for _ in range(20 * n):

@@ -19,7 +19,7 @@ import sys
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import PATIENCE, Checks, call, environment, on_ranks, prm  # noqa: E402
+from program import PATIENCE, Checks, Places, call, environment, on_ranks, prm  # noqa: E402
 from tables import csv_rows, h5_columns, json_of, same_columns  # noqa: E402
 
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
@@ -107,24 +107,6 @@ class OptimizeStudy(Study):
                 for row in csv_rows(output / "results.csv")]
 
 
-class Chance:
-    """Random places; numbers that are not reached are followed by smaller ones."""
-
-    def __init__(self, study):
-        self.random, self.study, self.most = random.Random(SEED), study, {"row": study.most_rows, "step": 4096}
-
-    def place(self):
-        what = self.random.choice(("row", "row", "step", "write") if self.study.most_rows else ("write",))
-        if what == "write":
-            return what, f"write:{self.random.choice(self.study.files)}"
-        return what, f"{what}:{int(self.most[what] ** self.random.random())}"
-
-    def too_late(self, what):
-        """The study did not come there."""
-        if what in self.most:
-            self.most[what] = max(1, self.most[what] * 2 // 3)
-
-
 def disturbed(study, output, victim, n, rank, place):
     """The study on n ranks, of which one comes to the place: its exit code when all of its processes have ended."""
     own = [PROGRAM, *study.command, "--output", output.name, "--resume"]
@@ -154,19 +136,21 @@ def kills(name, study, folder, n_kills):
     """The study is stopped so often, resumed each time; in the end it is what it would be without."""
     whole = study.start(folder / "whole")
     expect(whole.returncode == 0, f"{name}: an unbroken one {whole.stderr}")
-    reference, chance, hits, output, before = study.answers(folder / "whole"), Chance(study), 0, folder / "killed", {}
+    reference, hits, output, before = study.answers(folder / "whole"), 0, folder / "killed", {}
+    chance = random.Random(SEED)
+    places = Places(chance, ("row", "row", "step", "write"), study.files, {"row": study.most_rows, "step": 4096})
     for _ in range(20 * n_kills):
         if hits == n_kills:
             break
-        victim = chance.random.choice(("rank", "rank", "mpirun", "mpirun in order", "one signal"))
-        n = chance.random.choice((2, 2, 3, 4))
-        what, place = chance.place()
-        rank = 0 if what == "write" and study.most_rows else chance.random.randrange(n)
+        victim = chance.choice(("rank", "rank", "mpirun", "mpirun in order", "one signal"))
+        n = chance.choice((2, 2, 3, 4))
+        what, place = places.next()
+        rank = 0 if place.startswith("write") else chance.randrange(n)
         code = disturbed(study, output, victim, n, rank, place)
         where = f"{name}: {victim} at {place} of rank {rank} of {n}: exit code {code}, {len(before)} rows before"
         if code == 0:  # too late
             expect(study.answers(output) == reference, f"{where}: another table")
-            chance.too_late(what)
+            places.too_late(what)
             shutil.rmtree(output)
             before = {}
             continue

@@ -103,9 +103,35 @@ def prm(*settings):
     return "\n".join(lines) + "\n"
 
 
+def contents(folder):
+    """Contents of all files, and names of all folders, by their paths."""
+    return {path: path.read_bytes() if path.is_file() else None for path in folder.rglob("*")}
+
+
 def on_ranks(mpirun, n):
     """Words before a command that n ranks run; none for one rank."""
     return [mpirun, "--oversubscribe", "-n", n] if n > 1 else []
+
+
+class Places:
+    """Random places of the work: a kind (step, row), or a file that is written, and a number up to the most of these.
+    Those that a program did not come to are followed by earlier ones."""
+
+    def __init__(self, chance, kinds, files, most):
+        self.chance, self.kinds, self.files, self.most = chance, kinds, files, most
+
+    def next(self):
+        """Kind or file, and the place."""
+        what = self.chance.choice(self.kinds)
+        if what == "write":
+            what = self.chance.choice(self.files)
+        place = what if what in self.kinds else f"write:{what}"
+        return what, f"{place}:{int(self.most.get(what, 1) ** self.chance.random())}"
+
+    def too_late(self, what):
+        """A program did not come there."""
+        if what in self.most:
+            self.most[what] = max(1, self.most[what] * 2 // 3)
 
 
 def ranks_that_stop(mpirun, command, *places):
