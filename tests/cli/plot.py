@@ -11,17 +11,14 @@ matplotlib already.
 import os
 import pathlib
 import re
-import runpy
 import shutil
 import sys
 import tempfile
-import traceback
 
-import h5py  # noqa: F401
 import matplotlib.image
-import matplotlib.pyplot
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from pictures import draw, words  # noqa: E402
 from program import NO_PICTURES, Checks, call, prm  # noqa: E402
 from tables import csv_rows, json_of  # noqa: E402
 
@@ -87,39 +84,15 @@ def crawler(*arguments, **variables):
 
 
 def drawn(folder, *options):
-    """What crawler plot would start, in a fork: its exit code and what it printed."""
+    """What crawler plot would start: its exit code and what it printed."""
     options = list(options)
     kind = SCRIPTS[folder]
     if "--kind" in options:
         at = options.index("--kind")
         kind = options[at + 1]
         del options[at:at + 2]
-    script = ROOT / "contrib/python/crawler/plot" / f"{kind}.py"
-    child = os.fork()
-    if child == 0:
-        code = 1
-        try:
-            with open("printed.txt", "w", encoding="utf-8") as file:
-                os.dup2(file.fileno(), 1)
-                os.dup2(file.fileno(), 2)
-                sys.argv = [str(script), folder, *options]
-                sys.path.insert(0, str(script.parent))
-                runpy.run_path(str(script), run_name="__main__")
-                code = 0
-        except SystemExit as end:
-            code = end.code or 0
-        except BaseException:  # pylint: disable=broad-except
-            traceback.print_exc()
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(code)
-    code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-    return code, pathlib.Path("printed.txt").read_text(encoding="utf-8")
-
-
-def words(picture):
-    """The texts of a picture in SVG (matplotlib leaves them as comments)."""
-    return re.findall(r"<!-- (.*?) -->", pathlib.Path(picture).read_text(encoding="utf-8"), re.DOTALL)
+    end = draw(f"{kind}.py", folder, *options)
+    return end.returncode, end.stdout + end.stderr
 
 
 def make_folders():

@@ -4,28 +4,22 @@
 
     python3 sweep_plot.py PATH_TO_CRAWLER
 """
-import contextlib
-import io
 import json
 import os
 import pathlib
 import re
-import runpy
 import shutil
-import subprocess
 import sys
 
-os.environ["MPLBACKEND"] = "agg"
-import h5py  # noqa: E402
-import matplotlib.image  # noqa: E402
-import matplotlib.pyplot  # noqa: E402
-import numpy as np  # noqa: E402
+import h5py
+import matplotlib.image
+import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from pictures import SCRIPTS, draw, words  # noqa: E402
 from program import Checks, call, prm  # noqa: E402
 
-SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "contrib/python/crawler/plot" / "sweep.py"
-sys.path.insert(0, str(SCRIPT.parent))  # as if the script were started
+SCRIPT = SCRIPTS / "sweep.py"
 CHI, P, K = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent", "Body/Elastic modulus"
 BASE = prm("Accuracy={accuracy}", "Active stress/Optimal wave/Choose wave by=wave speed",
            "Sweep/Axes={axes}") + "subsection Sweep\n  {more}\nend\n"
@@ -48,35 +42,18 @@ checks = Checks()
 check = checks.expect
 
 
-def draw(folder, name, *arguments, alone=False):
-    """Calls the script as its users do (alone), or in this process, which saves the time of reading its libraries."""
+def drawn(folder, name, *arguments, alone=False):
+    """Calls the script as its users do (alone), or in a fork of this process, which saves the time of reading its libraries."""
     if alone:
         return call([sys.executable, SCRIPT, name, *arguments], folder)
-    out, errors, code, before = io.StringIO(), io.StringIO(), 0, (sys.argv, os.getcwd())
-    sys.argv = [str(SCRIPT), name, *arguments]
-    os.chdir(folder)
-    try:
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(errors):
-            runpy.run_path(str(SCRIPT), run_name="__main__")
-    except SystemExit as end:
-        code = end.code or 0
-    finally:
-        sys.argv = before[0]
-        os.chdir(before[1])
-        matplotlib.pyplot.close("all")
-    return subprocess.CompletedProcess([name, *arguments], code, out.getvalue(), errors.getvalue())
-
-
-def words(picture):
-    """The texts of a picture in SVG (matplotlib leaves them as comments)."""
-    return re.findall(r"<!-- (.*?) -->", picture.read_text(encoding="utf-8"), re.DOTALL)
+    return draw(SCRIPT.name, name, *arguments, folder=folder)
 
 
 def expect_picture(folder, name, wanted, *arguments, alone=False):
     """A picture in both formats, in which certain words stand."""
     for old in ("results.png", "results.svg"):
         (folder / name / old).unlink(missing_ok=True)
-    result = draw(folder, name, *arguments, alone=alone)
+    result = drawn(folder, name, *arguments, alone=alone)
     said = " ".join([name, *arguments])
     if result.returncode != 0:
         check(False, f"{said}: {result.returncode} {result.stderr.strip()}")
@@ -136,7 +113,7 @@ def test_titles(folder):
 
 def test_fit(folder):
     """The displacement of small waves grows as chi^2; one that is a power exactly comes out exactly."""
-    result = draw(folder, "log", "--fit", "--where", "modulus=1")
+    result = drawn(folder, "log", "--fit", "--where", "modulus=1")
     match = re.search(r"displacement = (\S+) \* \(.*\)\^(\S+)", result.stdout)
     check(match and abs(float(match[2]) - 2) < 0.01 and abs(float(match[1]) - 0.5) < 0.02,
           f"displacement = chi^2/2: {result.stdout.splitlines()[0]}")
@@ -144,16 +121,16 @@ def test_fit(folder):
     with h5py.File(folder / "power" / "results.h5", "r+") as file:
         group = file["results"]
         group["displacement"][:] = -3 * group[CHI.replace("/", ".")][:] ** -1.5
-    result = draw(folder, "power", "--fit", "--where", "modulus=4")
+    result = drawn(folder, "power", "--fit", "--where", "modulus=4")
     lines = result.stdout.splitlines()
     check("displacement = -3 * " in result.stdout and "^-1.500000" in result.stdout, f"-3 x^-1.5: {lines[0]}")
     texts = expect_picture(folder, "grid", ["Anchoring exponent = 0; -0.", "Anchoring exponent = 1; no power law",
                                             "Anchoring exponent = 2; 0."], "--fit", "--lines", "--value", "gait.speed")
-    lines = draw(folder, "grid", "--fit", "--lines", "--value", "gait.speed").stdout.splitlines()
+    lines = drawn(folder, "grid", "--fit", "--lines", "--value", "gait.speed").stdout.splitlines()
     check(texts and [line.rpartition(" at ")[2] for line in lines[:2]] == [f"{P} = 0", f"{P} = 2"] and
           lines[2].startswith("drawn without a fit") and lines[2].endswith(f": 1 of 3 lines ({P} = 1)"),
           f"p = 1 does not move: {lines[2]}")
-    lines = draw(folder, "three", "--fit").stdout.splitlines()
+    lines = drawn(folder, "three", "--fit").stdout.splitlines()
     check(lines[3].endswith(f" at {P} = 3, {K} = 4"), f"small pictures are named: {lines[3]}")
 
 
@@ -182,7 +159,7 @@ def test_bad_input(folder):
              (("grid", "--output", "picture.xyz"), "picture.xyz"), (("grid", "--output", "no/picture.png"), "no/picture.png"),
              (("line", "--value", "status"), "two axes")]
     for arguments, word in cases:
-        result = draw(folder, *arguments, alone=arguments[0] == "nowhere" or "no/picture.png" in arguments)
+        result = drawn(folder, *arguments, alone=arguments[0] == "nowhere" or "no/picture.png" in arguments)
         checks.refused(result, word, code=6 if "no/picture.png" in arguments else 2)
         check("wrote" not in result.stdout, f"{' '.join(arguments)}: {result.stdout}")
 
