@@ -66,7 +66,9 @@ def damaged_tables(place, scene):
             if "results" in file and "displacement" in file["results"] and not file["results"]["displacement"].attrs:
                 for key, value in attributes.items():
                     file["results"]["displacement"].attrs[key] = value
+        before = (folder / "results.h5").read_bytes()
         refused(crawler("sweep", scene, "--output", folder, "--resume"), 2, "results.h5", name)
+        expect((folder / "results.h5").read_bytes() == before, f"{name}: a refused table is another one")
         expect(not (folder / "study.lock").exists(), f"{name}: a refused study leaves its lock")
 
     # Flipped bits: the rows that they are in are computed anew, so the table is that of the first time.

@@ -541,23 +541,7 @@ def test_bad_input(folder):
         expect(result.stderr.strip().isprintable() and not (folder / "bad").exists(), f"\"{axes}\": {result.stderr!r}")
 
 
-def test_damaged_table(folder):
-    """--resume refuses what is no table of a sweep, and a part of one."""
-    write(folder, f"{P} : 2, 3")
-    sweep(folder, "damaged")
-    file = folder / "damaged" / "results.h5"
-    whole = file.read_bytes()
-    for content, word in ((whole[:len(whole) // 2], "cannot be read"), (b"garbage" * 1000, "not an HDF5"),
-                          (whole.replace(b"scene files", b"Scene files"), "no attribute")):
-        file.write_bytes(content)
-        refused(folder, "damaged", ("results.h5", word, "damaged"), f"a table of {len(content)} bytes")
-    file.unlink()
-    with h5py.File(file, "w") as other:
-        other["x"] = 1.
-    refused(folder, "damaged", ('no group "results"',), "another HDF5 file")
-
-
 if __name__ == "__main__":
-    checks.run((test_bad_input, test_damaged_table, test_places_of_files, test_rows_that_fail, test_time_limits,
+    checks.run((test_bad_input, test_places_of_files, test_rows_that_fail, test_time_limits,
                 test_changed_inputs, test_killed_at_files, test_two_at_once, test_crashes, test_full_disk, test_cross_check,
                 test_what_cannot_be_checked), (test_grid, test_designs, test_signals, test_kills))
