@@ -2,6 +2,7 @@
 //
 // What the parts of a run by PETSc cost.
 #include "../support/run_text.h"
+#include "../support/temporary_folder.h"
 #include "benchmarks.h"
 
 #include <crawler/equation/position_form.h>
@@ -11,10 +12,7 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
-#include <unistd.h>
 
 namespace crawler::test
 {
@@ -94,32 +92,25 @@ namespace crawler::test
     {
     public:
       TableFile(const unsigned int n_s, const unsigned int n_t)
-        : name_(
-            (std::filesystem::temp_directory_path() / fmt::format("crawler_{}_{}_{}.csv", getpid(), n_s, n_t)).string())
       {
-        std::ofstream out(name_);
-        out << "s,t,m\n";
+        std::string rows = "s,t,m\n";
         for (unsigned int j = 0; j < n_t; ++j)
           for (unsigned int i = 0; i < n_s; ++i)
           {
             const double s = i / (n_s - 1.), t = j / (n_t - 1.);
-            out << fmt::format("{},{},{}\n", s, t, 0.1 * std::sin(2. * std::numbers::pi * (s + t)));
+            rows += fmt::format("{},{},{}\n", s, t, 0.1 * std::sin(2. * std::numbers::pi * (s + t)));
           }
-      }
-      TableFile(const TableFile &) = delete;
-      ~TableFile()
-      {
-        std::filesystem::remove(name_);
+        write_file(folder_.path / "m.csv", rows);
       }
 
       ActiveStressTable
       read(const std::string &interpolation) const
       {
-        return {{.file = name_, .interpolation = interpolation}, 1., 1.};
+        return {{.file = folder_.path / "m.csv", .interpolation = interpolation}, 1., 1.};
       }
 
     private:
-      const std::string name_;
+      const TemporaryFolder folder_;
     };
 
     /// Rows of 1000 x 1000 samples in a second.

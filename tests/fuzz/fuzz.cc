@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../support/temporary_folder.h"
+
 #include <crawler/base/mpi_session.h>
 
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
-#include <unistd.h>
 
 #include "fuzz.h"
 
@@ -21,33 +21,6 @@ __lsan_default_suppressions()
 
 namespace crawler::fuzz
 {
-  namespace
-  {
-    class Folder
-    {
-    public:
-      Folder()
-      {
-        const std::filesystem::path memory = "/dev/shm";
-        std::error_code ignored;
-        std::string name =
-          ((std::filesystem::is_directory(memory, ignored) ? memory : std::filesystem::temp_directory_path()) /
-           "crawler_fuzz_XXXXXX")
-            .string();
-        require(mkdtemp(name.data()) != nullptr, "a folder for files can be made");
-        path = name;
-      }
-      Folder(const Folder &) = delete;
-      ~Folder()
-      {
-        std::error_code ignored;
-        std::filesystem::remove_all(path, ignored);
-      }
-
-      std::filesystem::path path;
-    };
-  } // namespace
-
   std::string
   damaged(std::string file, Bytes &bytes)
   {
@@ -94,7 +67,9 @@ namespace crawler::fuzz
   const std::filesystem::path &
   scratch()
   {
-    static const Folder folder;
+    static const std::filesystem::path memory = "/dev/shm";
+    static const test::TemporaryFolder folder(
+      std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path());
     return folder.path;
   }
 

@@ -129,7 +129,7 @@ TEST(Ladder, ScenesThatDoNotFitAreRefused)
     EXPECT_TRUE(complaint(with(scene, settings)).starts_with(words)) << complaint(with(scene, settings));
 }
 
-/// An error that is not known is not within Accuracy (one that is too large: cli/commands_test.cc).
+/// An error that is not known is not within Accuracy (one that is too large: cli/commands.py).
 TEST(Ladder, AccuracyThatIsNotMet)
 {
   const auto unknown = on_level(test::wave(-1., 0.6), Model::perturbation, 1e-4);

@@ -3,8 +3,8 @@
 // The generator "prescribed strain": its stress, its three sources of strain, and what it refuses; and the pieces that
 // it is made of (Gauss panels, splines, derivatives of formulas).
 #include "../../support/complaint.h"
-#include "../../support/program.h"
 #include "../../support/run_text.h"
+#include "../../support/temporary_folder.h"
 #include "../../support/test.h"
 
 #include <crawler/accuracy/model_choice.h>
@@ -141,11 +141,11 @@ TEST(StrainTable, MustCoverBodyAndDurationWithFourSamplesAtLeast)
 {
   const test::TemporaryFolder folder;
   const std::string name = (folder.path / "strain.csv").string();
-  test::write_text(name, grid(5, wave_of));
+  write_file(name, grid(5, wave_of));
   EXPECT_THROW(read_strain_table(name, 2., 1., ""), InputError);
   EXPECT_THROW(read_strain_table(name, 1., 1.5, ""), InputError);
   EXPECT_NO_THROW(read_strain_table(name, 1., 1., ""));
-  test::write_text(name, grid(3, wave_of)); // too few for a spline
+  write_file(name, grid(3, wave_of)); // too few for a spline
   EXPECT_THROW(read_strain_table(name, 1., 1., ""), InputError);
 }
 

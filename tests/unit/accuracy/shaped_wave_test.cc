@@ -3,8 +3,8 @@
 // The optimal wave with a shape of any kind: against the Fourier series, against integrals in closed form, its rate,
 // its leading order, and what it refuses.
 #include "../../support/expect_near.h"
-#include "../../support/program.h"
 #include "../../support/stress.h"
+#include "../../support/temporary_folder.h"
 #include "../../support/test.h"
 
 #include <crawler/accuracy/model_choice.h>
@@ -117,7 +117,7 @@ TEST(ShapedWave, TableIsASpline)
   std::string text       = "x,f\r\n";
   for (const double x : {-0.1, 0.3, 1., 1.1, 2.5, 4., 4.6})
     text += test::text(x) + ", " + test::text(cubic(x)) + "\r\n";
-  test::write_text(name, text);
+  write_file(name, text);
   const std::string from_table = "Shape = table; Shape file = " + name;
   const auto points            = test::places(2.);
   {
@@ -129,7 +129,7 @@ TEST(ShapedWave, TableIsASpline)
   }
   // Fourth order for others.
   const auto error = [&](const unsigned int n) {
-    test::write_text(name, table([](const double x) { return std::sin(3. * x); }, 0., 4.6, n));
+    write_file(name, table([](const double x) { return std::sin(3. * x); }, 0., 4.6, n));
     const auto by_table = stress_with(shaped(from_table, 1.3, 2.)),
                formula  = stress_with(by_formula("sin(3*x)", 1.3, 2.));
     return test::largest_difference(values(*by_table, points, 1.1), values(*formula, points, 1.1));
@@ -210,7 +210,7 @@ TEST(ShapedWave, RefusesWhatMakesNoSense)
     {"x,f\n-2,1\n-1,1\n0,2\n2,1\n", "x from -2 to 2, but the whole range from -3 to 2 is expected"}};
   for (const auto &[text, words] : tables)
   {
-    test::write_text(name, text);
+    write_file(name, text);
     expect_complaint(settings, {section + "Shape file: ", words});
   }
 }

@@ -4,7 +4,7 @@
 #include "../../support/complaint.h"
 #include "../../support/expect_near.h"
 #include "../../support/hdf5_file.h"
-#include "../../support/program.h"
+#include "../../support/temporary_folder.h"
 #include "../../support/test.h"
 
 #include <crawler/base/grid_interpolation.h>
@@ -70,7 +70,7 @@ namespace
   read(const std::string &content)
   {
     const test::TemporaryFolder folder;
-    test::write_text(folder.path / "m.csv", content);
+    write_file(folder.path / "m.csv", content);
     return read_grid_table((folder.path / "m.csv").string(), "m", 0, "entry");
   }
 
@@ -89,7 +89,7 @@ namespace
   complaint(const std::string &content)
   {
     const test::TemporaryFolder folder;
-    test::write_text(folder.path / "m.csv", content);
+    write_file(folder.path / "m.csv", content);
     return complaint_about(folder.path / "m.csv");
   }
 
@@ -196,7 +196,7 @@ TEST(GridTable, SaysWhatIsWrongInHdf5)
   EXPECT_EQ(complaint({s, {"t", {2}, {0., HUGE_VAL}}, m}), "t[1] in FILE is inf, but a finite number is expected");
   EXPECT_EQ(complaint({s, t, {"m", {2, 3}, {1., 2., 3., 4., std::nan(""), 6.}}}),
             "m[1,1] in FILE (s = 0.5, t = 1) is nan, but a finite number is expected");
-  test::write_text(file, test::read_text(file).substr(0, 300));
+  write_file(file, read_whole_file(file).substr(0, 300));
   EXPECT_EQ(complaint_about(file), "FILE begins like an HDF5 file, but HDF5 cannot open it");
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "../../support/program.h"
 #include "../../support/stress.h"
+#include "../../support/temporary_folder.h"
 #include "../../support/test.h"
 
 #include <crawler/output/active_stress_table.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/complaint.h"
-#include "../../support/program.h"
 #include "../../support/run_text.h"
+#include "../../support/temporary_folder.h"
 #include "../../support/test.h"
 
 #include <crawler/base/exceptions.h>
@@ -51,8 +51,8 @@ TEST(ParameterFile, WhatStandsBelowAnIncludeReplacesWhatItSets)
 {
   const test::TemporaryFolder folder;
   const std::string body = (folder.path / "body.prm").string(), soft = (folder.path / "soft.prm").string();
-  std::ofstream(body) << "set Accuracy = 1e-4\nsubsection Body\n set Length = 3\n set Elastic modulus = 2\nend\n";
-  std::ofstream(soft) << "include body.prm\nsubsection Body\n set Elastic modulus = 0.5\nend\n";
+  write_file(body, "set Accuracy = 1e-4\nsubsection Body\n set Length = 3\n set Elastic modulus = 2\nend\n");
+  write_file(soft, "include body.prm\nsubsection Body\n set Elastic modulus = 0.5\nend\n");
   const Parameters parameters = read("include " + soft + "\nsubsection Body\n set Length = 7\nend\n");
   EXPECT_EQ(parameters.accuracy, 1e-4);
   EXPECT_EQ(parameters.body.elastic_modulus, 0.5);

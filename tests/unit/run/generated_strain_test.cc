@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Prescribed strain by other generators, and the recovered active stress written as a table and read again.
-#include "../../support/program.h"
 #include "../../support/stress.h"
+#include "../../support/temporary_folder.h"
 #include "../../support/test.h"
 
 #include <crawler/output/active_stress_table.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/derivative.h"
 #include "../../support/expect_near.h"
-#include "../../support/program.h"
 #include "../../support/stress.h"
+#include "../../support/temporary_folder.h"
 #include "../../support/test.h"
 
 #include <crawler/base/exceptions.h>
@@ -26,7 +26,7 @@ namespace
     file(const std::string &content)
     {
       const auto path = folder.path / "profile.csv";
-      test::write_text(path, content);
+      write_file(path, content);
       return path.string();
     }
     std::shared_ptr<const Profile>

@@ -2,8 +2,8 @@
 //
 // The generator "table"; reading and interpolating are in base/grid_table_test.cc.
 #include "../../support/hdf5_file.h"
-#include "../../support/program.h"
 #include "../../support/stress.h"
+#include "../../support/temporary_folder.h"
 #include "../../support/test.h"
 
 #include <crawler/scene/active_stress/optimal_wave.h>
@@ -41,7 +41,7 @@ namespace
         }
       }
       csv = (folder_.path / "m.csv").string();
-      test::write_text(csv, text);
+      write_file(csv, text);
       hdf5 = (folder_.path / "m.h5").string();
       test::write_hdf5_file(hdf5, {{"s", {n_s}, s}, {"t", {n_t}, t}, {"m", {n_t, n_s}, m}});
     }

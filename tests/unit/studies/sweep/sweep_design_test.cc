@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../../support/complaint.h"
-#include "../../../support/program.h"
+#include "../../../support/temporary_folder.h"
 #include "../../../support/test.h"
 
 #include <crawler/studies/sweep/sweep_design.h>
@@ -126,7 +126,7 @@ namespace
   {
     const test::TemporaryFolder folder;
     const auto path = folder.path / "table.csv";
-    test::write_text(path, "\xef\xbb\xbf# a remark\r\np, \"a, b\"\r\n\r\n2,x\r\n#3,y\r\n2.0,\"y, \"\"z\"\"\"\r\n");
+    write_file(path, "\xef\xbb\xbf# a remark\r\np, \"a, b\"\r\n\r\n2,x\r\n#3,y\r\n2.0,\"y, \"\"z\"\"\"\r\n");
     const std::string p     = "A/x : column(" + path.string() + ", p)",
                       words = "; A/y : column(" + path.string() + ", \"a, b\")";
     const SweepDesign zip   = design("zip", p + words);
@@ -135,7 +135,7 @@ namespace
     EXPECT_EQ(zip.value(1, 1), "y, \"z\"");
     EXPECT_THROW(design("grid", p), InputError);
     EXPECT_EQ(design("grid", "A/x : 1, 2" + words).n_points(), 4u);
-    test::write_text(path, "p;q\n1,5;2\n");
+    write_file(path, "p;q\n1,5;2\n");
     test::expect_words(test::complaint_of([&]() { design("zip", p); }), {"has its columns between semicolons"});
   }
 

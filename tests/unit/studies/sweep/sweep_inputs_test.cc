@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "../../../support/program.h"
+#include "../../../support/temporary_folder.h"
 #include "../../../support/test.h"
 
 #include <crawler/base/exceptions.h>
-#include <crawler/base/files.h>
 #include <crawler/studies/sweep/sweep_inputs.h>
 
 namespace
