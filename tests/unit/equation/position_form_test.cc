@@ -107,45 +107,6 @@ namespace
       error = std::max(error, std::abs(x[i] - y[i]));
     EXPECT_LE(error, 1e-7 * largest(y)) << what;
   }
-
-  /// Solves J x = b by Gauss elimination, J column by column from products.
-  std::vector<double>
-  dense_solution(PositionForm &form, std::vector<double> b)
-  {
-    const std::size_t n = b.size();
-    std::vector<std::vector<double>> A(n, std::vector<double>(n));
-    for (std::size_t j = 0; j < n; ++j)
-    {
-      std::vector<double> x(n, 0.), column(n);
-      x[j] = 1.;
-      form.jacobian_vmult(x, column);
-      for (std::size_t i = 0; i < n; ++i)
-        A[i][j] = column[i];
-    }
-    for (std::size_t k = 0; k < n; ++k)
-    {
-      std::size_t pivot = k;
-      for (std::size_t i = k; i < n; ++i)
-        if (std::abs(A[i][k]) > std::abs(A[pivot][k]))
-          pivot = i;
-      std::swap(A[k], A[pivot]);
-      std::swap(b[k], b[pivot]);
-      for (std::size_t i = k + 1; i < n; ++i)
-      {
-        const double factor = A[i][k] / A[k][k];
-        for (std::size_t j = k; j < n; ++j)
-          A[i][j] -= factor * A[k][j];
-        b[i] -= factor * b[k];
-      }
-    }
-    for (std::size_t k = n; k-- > 0;)
-    {
-      for (std::size_t j = k + 1; j < n; ++j)
-        b[k] -= A[k][j] * b[j];
-      b[k] /= A[k][k];
-    }
-    return b;
-  }
 } // namespace
 
 TEST(PositionForm, ProductsMatchDifferences)
@@ -221,36 +182,6 @@ TEST(PositionForm, ComplexSolutionsInvertTheProduct)
     test.form->solve_with_complex_jacobian(0, b, x);
     for (std::size_t i = 0; i < n; ++i)
       ASSERT_LT(std::abs(x[i] - Complex(real[i], imaginary[i])), 1e-9) << feature.name << ", row " << i;
-  }
-}
-
-/// Newton's method with these Jacobians for one backward Euler step: each residual is about the square of the one
-/// before.
-TEST(PositionForm, NewtonConvergesQuadratically)
-{
-  constexpr double sigma = 20.;
-  for (const Feature &feature : features())
-  {
-    Case test(feature, 3);
-    std::vector<double> y = test.y, rate = test.y_dot, F(y.size()), norms;
-    for (int i = 0; i < 12 && (norms.empty() || norms.back() > 1e-12); ++i)
-    {
-      ASSERT_TRUE(test.form->residual(t, y, rate, F)) << feature.name;
-      norms.push_back(largest(F));
-      ASSERT_TRUE(test.form->setup_jacobian(t, y, rate, sigma));
-      const auto change = dense_solution(*test.form, F);
-      for (std::size_t k = 0; k < y.size(); ++k)
-      {
-        y[k] -= change[k];
-        rate[k] -= sigma * change[k];
-      }
-    }
-    ASSERT_LT(norms.back(), 1e-12) << feature.name;
-    for (std::size_t i = 1; i + 1 < norms.size(); ++i)
-    {
-      const bool is_near = norms[i] < 1e-2; // the root
-      EXPECT_TRUE(!is_near || norms[i + 1] < 50. * norms[i] * norms[i] + 1e-13) << feature.name << ", iteration " << i;
-    }
   }
 }
 
