@@ -36,6 +36,20 @@ namespace
     return test::parameters_with(changed).create_scene();
   }
 
+  /// Scenes whose entry is so many steps from the value.
+  std::vector<Scene>
+  scenes_near(const test::Settings &settings,
+              const std::string &entry,
+              const double value,
+              const double step,
+              const std::vector<int> &places = {-2, -1, 1, 2})
+  {
+    std::vector<Scene> scenes;
+    for (const int i : places)
+      scenes.push_back(scene_of(settings, entry, value + i * step));
+    return scenes;
+  }
+
   double
   fourth_order(const double a, const double b, const double c, const double d, const double step)
   {
@@ -85,14 +99,10 @@ namespace
     const auto numerics       = [&](const Scene &of) {
       return numerics_for(of, "radau 9", 10, precision.tolerance, precision.grading);
     };
-    std::vector<Scene> near;
+    const std::vector<Scene> near = scenes_near(settings, entry, value, step);
     std::array<double, all_quantities.size()> numbers[4];
-    for (const int i : {-2, -1, 1, 2})
-    {
-      near.push_back(scene_of(settings, entry, value + i * step));
-      if (!jumps || std::abs(i) == 1)
-        numbers[near.size() - 1] = numbers_of(near.back(), time, numerics(near.back()));
-    }
+    for (const std::size_t i : jumps ? std::vector<std::size_t>{1, 2} : std::vector<std::size_t>{0, 1, 2, 3})
+      numbers[i] = numbers_of(near[i], time, numerics(near[i]));
     EXPECT_TRUE(RecordedRun::is_possible(scene, time, numerics(scene)));
     const RecordedRun run(scene, time, numerics(scene), {});
     const Variation variation = {near, step};
@@ -214,10 +224,8 @@ TEST(RunGradient, OfJumpsAtTheEndThereIsNone)
 {
   const test::Settings robot =
     test::set("T = 1; segments; Number of segments = 4; Phase lag = 0.25; Ramp duration = 0.6");
-  const Scene scene = scene_of(robot, "Active stress/Segments/Frequency", 1.);
-  std::vector<Scene> near;
-  for (const int i : {-2, -1, 1, 2})
-    near.push_back(scene_of(robot, "Active stress/Segments/Frequency", 1. + i * 1e-3));
+  const Scene scene         = scene_of(robot, "Active stress/Segments/Frequency", 1.);
+  const auto near           = scenes_near(robot, "Active stress/Segments/Frequency", 1., 1e-3);
   const Variation variation = {near, 1e-3};
   const RecordedRun run(
     scene, test::parameters_with(robot).time, numerics_for(scene, "radau 9", 8, 1e-8, {2, 0.25}), {});
@@ -230,11 +238,8 @@ TEST(RunGradient, ToOneSide)
   const Scene scene         = test::parameters_with(wave).create_scene();
   const TimeParameters time = test::parameters_with(wave).time;
   const double step         = 1e-3;
-  std::vector<Scene> scenes, downwards;
-  for (const int i : {-2, -1, 1, 2, 3, 4})
-    scenes.push_back(scene_of(wave, "Body/Elastic modulus", 1. + i * step));
-  for (const int i : {-1, -2, -3, -4})
-    downwards.push_back(scene_of(wave, "Body/Elastic modulus", 1. + i * step));
+  const auto scenes         = scenes_near(wave, "Body/Elastic modulus", 1., step, {-2, -1, 1, 2, 3, 4}),
+             downwards      = scenes_near(wave, "Body/Elastic modulus", 1., step, {-1, -2, -3, -4});
   const std::span all(scenes);
   const Variation variations[] = {{all.first(4), step}, {all.subspan(2), step, true}, {downwards, -step, true}};
   const RecordedRun run(scene, time, numerics_for(scene, "radau 9", 6, 1e-8), {});
@@ -251,12 +256,10 @@ TEST(RunGradient, ToOneSide)
 /// accurate differences miss by as much as the displacement is off.
 TEST(RunGradient, ConvergesAsTheDisplacementDoes)
 {
-  const Scene scene         = test::parameters_with(wave).create_scene();
-  const TimeParameters time = test::parameters_with(wave).time;
-  const double step         = 1e-3;
-  std::vector<Scene> near;
-  for (const int i : {-2, -1, 1, 2})
-    near.push_back(scene_of(wave, "Body/Elastic modulus", 1. + i * step));
+  const Scene scene          = test::parameters_with(wave).create_scene();
+  const TimeParameters time  = test::parameters_with(wave).time;
+  const double step          = 1e-3;
+  const auto near            = scenes_near(wave, "Body/Elastic modulus", 1., step);
   const Variation variation  = {near, step};
   const auto derivative_with = [&](const char *integrator, const unsigned int n_cells, const double tolerance) {
     const RecordedRun run(scene, time, numerics_for(scene, integrator, n_cells, tolerance), {});
@@ -271,18 +274,13 @@ TEST(RunGradient, ConvergesAsTheDisplacementDoes)
 /// The whole body stiffer is each place stiffer.
 TEST(RunGradient, LocalSensitivitiesAddUp)
 {
-  const Scene scene         = test::parameters_with(wave).create_scene();
   const TimeParameters time = test::parameters_with(wave).time;
   const double step         = 1e-3;
-  std::vector<Scene> k, gamma;
   // In these the stress is a formula, so it does not change with the body.
-  const test::Settings fixed = test::set("expression; Active stress = 0.2*sin(2*pi*(s+t))*sin(2*pi*t)");
-  const Scene own            = test::parameters_with(fixed).create_scene();
-  for (const int i : {-2, -1, 1, 2})
-  {
-    k.push_back(scene_of(fixed, "Body/Elastic modulus", 1. + i * step));
-    gamma.push_back(scene_of(fixed, "Body/Friction coefficient", 1. + i * step));
-  }
+  const test::Settings fixed   = test::set("expression; Active stress = 0.2*sin(2*pi*(s+t))*sin(2*pi*t)");
+  const Scene own              = test::parameters_with(fixed).create_scene();
+  const auto k                 = scenes_near(fixed, "Body/Elastic modulus", 1., step),
+             gamma             = scenes_near(fixed, "Body/Friction coefficient", 1., step);
   const Variation variations[] = {{k, step}, {gamma, step}};
   const Numerics numerics      = numerics_for(own, "radau 9", 8, 1e-10);
   const RecordedRun run(own, time, numerics, {});
@@ -317,14 +315,13 @@ TEST(RunGradient, OfStretches)
     places.push_back({0.31, t, 1.});
     times.push_back(t);
   }
-  std::vector<Scene> near;
+  const auto near = scenes_near(settings, entry, value, step);
   std::vector<std::vector<double>> seen;
-  for (const int i : {-2, -1, 1, 2})
+  for (const Scene &one : near)
   {
-    near.push_back(scene_of(settings, entry, value + i * step));
     std::vector<std::unique_ptr<Observer>> observers;
     observers.push_back(std::make_unique<Kymograph>(std::vector<double>{0.31}));
-    Simulation(MPI_COMM_SELF, near.back(), time, numerics_for(near.back(), "radau 9", 10, 1e-12))
+    Simulation(MPI_COMM_SELF, one, time, numerics_for(one, "radau 9", 10, 1e-12))
       .run(PictureTimes({}, times, 1.), {}, observers);
     seen.push_back(static_cast<const Kymograph &>(*observers.front()).rows().stretch);
     ASSERT_EQ(seen.back().size(), times.size());
