@@ -98,7 +98,7 @@ CHECKS = (
     Check("kills_of_studies", 10, "{root}/tests/long/study_kills.py {crawler} mpirun 20 {seed}"),
     Check("optimize_long", 9, "{root}/tests/cli/optimize.py {crawler} {root}/prm/studies mpirun --long"),
     Check("nodes", 5, "{root}/tests/long/nodes.py {crawler} mpirun"),
-    Check("disk", 15, "{root}/tests/long/disk.py {crawler} {root}/prm 12 {seed}"),
+    Check("disk", 15, "{root}/tests/cli/disk.py {crawler} {root}/prm 12 {seed}"),
     Check("entries", 30, "{root}/tests/python/entry_effects.py {crawler} {build}/python {root} all"),
     Check("hostile_input", 3, "{root}/tests/cli/faults.py {crawler} {root}/prm"),
     Check("memory", 3, "{root}/tests/long/memory.py {crawler} 100000 0.2"),
