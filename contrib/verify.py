@@ -102,7 +102,6 @@ CHECKS = (
     Check("entries", 30, "{root}/tests/python/entry_effects.py {crawler} {build}/python {root} all"),
     Check("hostile_input", 3, "{root}/tests/cli/faults.py {crawler} {root}/prm"),
     Check("memory", 3, "{root}/tests/long/memory.py {crawler} 100000 0.2"),
-    Check("memory_of_python", 2, "{root}/tests/long/python_memory.py {build}/python"),
     Check("fuzz", 65, "{root}/contrib/fuzz.sh 600"),
     Check("sanitizers", 12, "{root}/contrib/check_sanitizers.sh"),
     Check("tidy", 15, "{root}/contrib/check_tidy.sh source tests"),

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The Python package as a guest in someone's process: the sentences of its errors, Ctrl-C, threads, memory that does
-not grow, nothing on the screen; and that it runs where it is installed. tests/long/python_memory.py has more runs.
+not grow, nothing on the screen; and that it runs where it is installed.
 
     python3 behaviour.py PATH_TO_CRAWLER FOLDER_OF_THE_PACKAGE CMAKE
 """
