@@ -4,6 +4,7 @@
 #include <crawler/accuracy/choose_numerics.h>
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/parameters/declarations.h>
+#include <crawler/run/reduced_model.h>
 #include <crawler/run/simulation.h>
 #include <crawler/studies/core/input.h>
 
@@ -160,6 +161,14 @@ namespace crawler::test
   run_with(const Settings &settings, const Simulation::Options &options = {.energy_balance = true})
   {
     return run_with(parameters_with(settings), options);
+  }
+
+  /// The answer of a level without a mesh.
+  inline SimulationResult
+  on_level(const Settings &settings, const Model model = Model::kinematic, const double accuracy = 1e-9)
+  {
+    const Scene scene = parameters_with(settings).create_scene();
+    return ReducedModel(scene, model).compute(accuracy, /*energy_balance=*/true);
   }
 
   /// Settings of the optimal wave with one harmonic a_1 = 1, L = gamma = 1.

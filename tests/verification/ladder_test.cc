@@ -7,21 +7,14 @@
 
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/base/exceptions.h>
-#include <crawler/run/reduced_model.h>
 #include <crawler/studies/core/compute.h>
 
 using namespace crawler;
+using test::on_level;
 using test::with;
 
 namespace
 {
-  SimulationResult
-  on_level(const test::Settings &settings, const Model model, const double accuracy)
-  {
-    const Scene scene = test::parameters_with(settings).create_scene();
-    return ReducedModel(scene, model).compute(accuracy, true);
-  }
-
   ModelChoice
   choice(const test::Settings &settings)
   {

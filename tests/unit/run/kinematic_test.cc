@@ -4,20 +4,11 @@
 #include "../../support/run_text.h"
 #include "../../support/test.h"
 
-#include <crawler/reduced_models/perturbation.h>
-#include <crawler/run/reduced_model.h>
-
 using namespace crawler;
+using test::on_level;
 
 namespace
 {
-  SimulationResult
-  compute(const test::Settings &settings, const Model model = Model::kinematic, const double accuracy = 1e-9)
-  {
-    const Scene scene = test::parameters_with(settings).create_scene();
-    return ReducedModel(scene, model).compute(accuracy, true);
-  }
-
   test::Settings
   strain(const double a, const std::string &formula)
   {
@@ -27,15 +18,15 @@ namespace
 
 TEST(Kinematic, StrainOfTheOptimalWave)
 {
-  EXPECT_NEAR(compute(test::wave(-1., 0.2)).displacement, 2.064390e-2, 1e-8);
-  EXPECT_NEAR(compute(test::wave(-1., 0.4)).displacement, 9.372520e-2, 1e-8);
+  EXPECT_NEAR(on_level(test::wave(-1., 0.2)).displacement, 2.064390e-2, 1e-8);
+  EXPECT_NEAR(on_level(test::wave(-1., 0.4)).displacement, 9.372520e-2, 1e-8);
 }
 
 /// For a = -1 and e = 0.3 sin 2 pi (s+t): D = Q = 1 - sqrt(1 - 0.09).
 TEST(Kinematic, SineWaveOfStrain)
 {
   const double exact = 1. - std::sqrt(1. - 0.09);
-  const auto result  = compute(strain(-1., "0.3*sin(2*pi*(s+t))"));
+  const auto result  = on_level(strain(-1., "0.3*sin(2*pi*(s+t))"));
   EXPECT_EQ(result.time.status, Status::finished);
   EXPECT_NEAR(result.displacement, exact, 1e-11);
   EXPECT_LE(std::abs(result.displacement - exact), result.error->total + 1e-15);
@@ -50,10 +41,10 @@ TEST(Kinematic, SineWaveOfStrain)
 
 TEST(Kinematic, OptimisedGaits)
 {
-  const auto retrograde = compute(strain(-1., "0.08814294 + 0.29676868*sin(2*pi*(s+t)) + 0.09132339*cos(4*pi*(s+t))"));
+  const auto retrograde = on_level(strain(-1., "0.08814294 + 0.29676868*sin(2*pi*(s+t)) + 0.09132339*cos(4*pi*(s+t))"));
   EXPECT_NEAR(retrograde.displacement, 0.051149479, 2e-9);
   EXPECT_NEAR(retrograde.energy_balance->dissipation, 0.051149479, 2e-9);
-  const auto prograde = compute(strain(2., "-0.0930008 + 0.29263653*sin(2*pi*(s-t)) - 0.10029035*cos(4*pi*(s-t))"));
+  const auto prograde = on_level(strain(2., "-0.0930008 + 0.29263653*sin(2*pi*(s-t)) - 0.10029035*cos(4*pi*(s-t))"));
   EXPECT_NEAR(prograde.displacement, 0.10710692, 1e-8);
   EXPECT_NEAR(prograde.energy_balance->dissipation, 0.045139762, 1e-9);
 }
@@ -62,7 +53,7 @@ TEST(Kinematic, OptimisedGaits)
 TEST(Kinematic, WorksWhereNothingMoves)
 {
   const auto two_levels = [](const double a) {
-    return compute(test::set("p = {}; two-level wave", 1. - a), Model::kinematic, 1e-6);
+    return on_level(test::set("p = {}; two-level wave", 1. - a), Model::kinematic, 1e-6);
   };
   const auto still = two_levels(0.), near = two_levels(1e-5);
   ASSERT_EQ(still.time.status, Status::finished);
@@ -74,7 +65,7 @@ TEST(Kinematic, WorksWhereNothingMoves)
 /// A standing wave of strain, which has no travelling part: the body ends where it started.
 TEST(Kinematic, ReciprocalMotionLeadsNowhere)
 {
-  const auto result = compute(strain(-2., "0.4*sin(2*pi*s + 1)*sin(pi*t)^2"));
+  const auto result = on_level(strain(-2., "0.4*sin(2*pi*s + 1)*sin(pi*t)^2"));
   EXPECT_NEAR(result.displacement, 0., 1e-12);
   EXPECT_GT(result.energy_balance->dissipation, 1e-3);
 }
@@ -87,8 +78,8 @@ TEST(Kinematic, KinksInTime)
                                        {"0.1*max(0,sin(40*t))*s", "0.1*sin(40)*t*s"},
                                        {"0.02*abs(sin(300*t))*s", "0.02*abs(sin(300))*t*s"}})
   {
-    const auto found = compute(strain(-1., kinked));
-    EXPECT_NEAR(found.displacement, compute(strain(-1., smooth)).displacement, 1e-15) << kinked;
+    const auto found = on_level(strain(-1., kinked));
+    EXPECT_NEAR(found.displacement, on_level(strain(-1., smooth)).displacement, 1e-15) << kinked;
     EXPECT_LT(found.error->total, 1e-13) << kinked;
   }
 }
@@ -97,7 +88,7 @@ TEST(Kinematic, KinksInTime)
 TEST(Kinematic, Units)
 {
   const double exact = 1. - std::sqrt(1. - 0.09);
-  const auto result  = compute(test::with(strain(-1., "0.3*sin(2*pi*(s/2+t/4))"), "L = 2; gamma = 3; k = 5; T = 4"));
+  const auto result  = on_level(test::with(strain(-1., "0.3*sin(2*pi*(s/2+t/4))"), "L = 2; gamma = 3; k = 5; T = 4"));
   EXPECT_NEAR(result.displacement, 2. * exact, 1e-10);
   EXPECT_NEAR(result.energy_balance->dissipation, 3. * 2. * 2. * 2. / 4. * exact, 1e-10); // gamma L^3/T
   EXPECT_NEAR(result.min_stretch.value, 0.7, 1e-8);
@@ -112,7 +103,7 @@ TEST(Kinematic, IsTheSeriesForAEqualToOne)
   {
     const auto settings = test::with(test::wave(1., 0.2, c, 0.9),
                                      "optimal wave; Sine coefficients = 1, 0.3; Cosine coefficients = 0.2, -0.1");
-    const auto series = compute(settings, Model::perturbation, 1e-1), motion = compute(settings);
+    const auto series = on_level(settings, Model::perturbation, 1e-1), motion = on_level(settings);
     EXPECT_NEAR(motion.displacement, series.displacement, 1e-12 + 1e-10 * std::abs(series.displacement));
   }
 }
@@ -122,7 +113,7 @@ TEST(Kinematic, TendsToTheSeries)
 {
   const auto gap = [](const double chi) {
     const auto settings = test::wave(-2.5, chi, 1.3, 0.8);
-    return std::abs(compute(settings).displacement / compute(settings, Model::perturbation).displacement - 1.);
+    return std::abs(on_level(settings).displacement / on_level(settings, Model::perturbation).displacement - 1.);
   };
   EXPECT_NEAR(std::log2(gap(0.04) / gap(0.02)), 2., 0.1);
 }
@@ -133,14 +124,14 @@ TEST(Kinematic, StiffBody)
   const auto gap = [](const std::string &k) {
     const test::Settings settings =
       test::set("k = {0}; Accuracy = 1e-7; expression; Active stress = {0}*0.2*(sin(2*pi*(s+t)) - sin(2*pi*s))", k);
-    return std::abs(compute(settings).displacement - test::run_with(settings).result.displacement);
+    return std::abs(on_level(settings).displacement - test::run_with(settings).result.displacement);
   };
   EXPECT_NEAR(gap("100") / gap("200"), 2., 0.2);
 }
 
 TEST(Kinematic, InvertedByTheStrainItAssumes)
 {
-  const auto result = compute(test::wave(-1., 0.6));
+  const auto result = on_level(test::wave(-1., 0.6));
   EXPECT_EQ(result.time.status, Status::inverted);
   ASSERT_TRUE(result.inversion);
   EXPECT_LE(result.inversion->value, 0.);
@@ -152,7 +143,8 @@ TEST(Kinematic, InvertedByTheStrainItAssumes)
 TEST(Kinematic, JumpsInSpace)
 {
   const auto at = [](const std::string &place) {
-    return compute(strain(-1., "0.3*(s > " + place + " ? 1 : 0)*sin(2*pi*t)*cos(2*pi*(s-t))"), Model::kinematic, 1e-10);
+    return on_level(
+      strain(-1., "0.3*(s > " + place + " ? 1 : 0)*sin(2*pi*t)*cos(2*pi*(s-t))"), Model::kinematic, 1e-10);
   };
   const SimulationResult here = at("1/pi");
   ASSERT_EQ(here.time.status, Status::finished) << here.time.message;
@@ -162,11 +154,11 @@ TEST(Kinematic, JumpsInSpace)
 
 TEST(Kinematic, AccuracyThatIsNotMetIsSaid)
 {
-  const auto result = compute(strain(-1., "0.3*abs(sin(2*pi*(s-t)))*cos(2*pi*(2*s+t))"), Model::kinematic, 1e-10);
+  const auto result = on_level(strain(-1., "0.3*abs(sin(2*pi*(s-t)))*cos(2*pi*(2*s+t))"), Model::kinematic, 1e-10);
   EXPECT_EQ(result.time.status, Status::failed);
   EXPECT_EQ(result.time.reason, "accuracy_not_met");
   EXPECT_GT(result.error->space, 0.);
-  const auto coarse = compute(strain(-1., "0.3*abs(sin(2*pi*(s-t)))*cos(2*pi*(2*s+t))"), Model::kinematic, 1e-3);
+  const auto coarse = on_level(strain(-1., "0.3*abs(sin(2*pi*(s-t)))*cos(2*pi*(2*s+t))"), Model::kinematic, 1e-3);
   EXPECT_EQ(coarse.time.status, Status::finished);
   EXPECT_LE(std::abs(coarse.displacement - result.displacement), coarse.error->total + result.error->total);
 }

@@ -6,8 +6,6 @@
 #include "../../support/stress.h"
 #include "../../support/test.h"
 
-#include <crawler/run/reduced_model.h>
-
 using namespace crawler;
 using test::Settings;
 
@@ -19,13 +17,6 @@ namespace
   two_level_wave(const double a, const std::string &own, const Settings &others = {})
   {
     return test::with(test::set("p = {}; two-level wave; {}", 1. - a, own), others);
-  }
-
-  SimulationResult
-  kinematic(const Settings &settings, const double accuracy = 1e-7)
-  {
-    const Scene scene = test::parameters_with(settings).create_scene();
-    return ReducedModel(scene, Model::kinematic).compute(accuracy, /*energy_balance=*/true);
   }
 
   TwoLevelWave::Numbers
@@ -81,7 +72,7 @@ TEST(TwoLevelWave, NearlyReachesTheBound)
   {
     const Settings settings = two_level_wave(
       a, fmt::format("Front width = {}; Direction = {}", front, to_head ? "from tail to head" : "from head to tail"));
-    const auto result = kinematic(settings);
+    const auto result = test::on_level(settings);
     const auto own    = numbers(settings);
     ASSERT_TRUE(result.gait_efficiency);
     EXPECT_GT(*result.gait_efficiency, front < 0.07 ? 0.97 : 0.95) << a << " " << front;
@@ -102,7 +93,7 @@ TEST(TwoLevelWave, OnOtherGrounds)
                           "Front width = 0.02; " + own,
                           test::set("gamma = 2; Ground/Friction law = expression; Ground/Expression = 0.7/(0.2+w^2)"));
   };
-  const auto result = kinematic(on_expression(""), 1e-6);
+  const auto result = test::on_level(on_expression(""));
   const auto own    = numbers(on_expression(""));
   EXPECT_GT(*result.gait_efficiency, 0.98);
   EXPECT_LT(*result.gait_efficiency, 1.);
@@ -116,7 +107,7 @@ TEST(TwoLevelWave, DoesTheWorkThatIsGiven)
   const Settings body = test::set("L = 3; gamma = 0.4; k = 7; T = 1.7");
   for (const auto &[n, phase] : {std::pair("1", "0.7"), {"2", "0"}})
   {
-    const auto result = kinematic(
+    const auto result = test::on_level(
       two_level_wave(-1., fmt::format("Given by = work; Work = 0.25; Wave number = {}; Phase = {}", n, phase), body));
     EXPECT_NEAR(result.energy_balance->stress_work, 0.25, 1e-6 * 0.25) << n;
   }
