@@ -15,6 +15,7 @@
 #include <crawler/accuracy/graded_choice.h>
 #include <crawler/accuracy/mesh_family.h>
 #include <crawler/accuracy/run_to_accuracy.h>
+#include <crawler/base/archive.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/mpi_session.h>
@@ -25,7 +26,6 @@
 #include <fstream>
 #include <limits>
 #include <map>
-#include <sstream>
 
 namespace
 {
@@ -188,6 +188,13 @@ namespace
     double accuracy, reference, reference_bar, value, reported, space, time, wanted, length;
     unsigned int cells, steps, refinements;
     double solve_seconds, estimate_seconds;
+
+    void
+    exchange(Archive &archive)
+    {
+      archive(scene, kind, status, accuracy, reference, reference_bar, value, reported, space, time, wanted, length);
+      archive(cells, steps, refinements, solve_seconds, estimate_seconds);
+    }
   };
 
   /// All rows of one scene; none if it inverts or has no reference.
@@ -277,15 +284,6 @@ namespace
                        r.estimate_seconds);
   }
 
-  double
-  median(std::vector<double> values)
-  {
-    if (values.empty())
-      return unknown;
-    std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-    return values[values.size() / 2];
-  }
-
   /// What the table counts, for one accuracy or all.
   struct Count
   {
@@ -319,10 +317,10 @@ namespace
                  judged,
                  100. * covered / judged,
                  100. * met / judged,
-                 median(ratios),
+                 test::quantile(ratios, 0.5),
                  refined,
                  failed,
-                 median(overheads));
+                 test::quantile(overheads, 0.5));
     }
   };
 } // namespace
@@ -349,11 +347,11 @@ main(int argc, char **argv)
     accuracies = {1e-3, 1e-5, 1e-8};
 
   WorkQueue queue(MPI_COMM_WORLD, n_scenes);
-  std::string rows;
+  std::vector<Row> rows;
   while (const auto number = queue.next())
     for (const Row &row : rows_of(static_cast<unsigned int>(first + *number), accuracies))
-      rows += line(row);
-  const auto all = gather(rows, MPI_COMM_WORLD);
+      rows.push_back(row);
+  const auto all = gather(archived(rows), MPI_COMM_WORLD);
   if (rank_of(MPI_COMM_WORLD) > 0)
     return 0;
 
@@ -361,36 +359,15 @@ main(int argc, char **argv)
   Count total;
   std::ofstream file(argv[2]);
   file << names << "\n";
-  for (const std::string &text : all)
+  for (const std::string &bytes : all)
   {
-    file << text;
-    std::istringstream lines(text);
-    for (std::string row; std::getline(lines, row);)
+    Archive archive(bytes);
+    archive(rows);
+    for (const Row &row : rows)
     {
-      std::vector<std::string> c;
-      std::istringstream cells(row);
-      for (std::string cell; std::getline(cells, cell, ',');)
-        c.push_back(cell);
-      const auto number = [&](const unsigned int i) { return std::stod(c.at(i)); };
-      const Row r{0,
-                  c[1],
-                  c[3],
-                  number(2),
-                  number(4),
-                  number(5),
-                  number(6),
-                  number(8),
-                  number(9),
-                  number(10),
-                  number(11),
-                  number(12),
-                  0,
-                  0,
-                  static_cast<unsigned int>(number(15)),
-                  number(16),
-                  number(17)};
-      counts[r.accuracy].add(r);
-      total.add(r);
+      file << line(row);
+      counts[row.accuracy].add(row);
+      total.add(row);
     }
   }
   file.close();
@@ -409,7 +386,7 @@ main(int argc, char **argv)
   // The median of few ratios says little.
   const double max_median = total.judged < 50 ? 20. : 10.;
   const bool kept         = total.judged - total.covered <= std::max(1., 0.01 * total.judged) &&
-                    median(total.ratios) <= max_median && least > 1. / 3.;
+                    test::quantile(total.ratios, 0.5) <= max_median && least > 1. / 3.;
   fmt::print("{}\n", kept ? "the promise is kept" : "THE PROMISE IS NOT KEPT");
   return kept ? 0 : 1;
 }

@@ -378,15 +378,6 @@ namespace
                command(r));
   }
 
-  double
-  quantile(std::vector<double> values, const double part)
-  {
-    if (values.empty())
-      return NAN;
-    std::sort(values.begin(), values.end());
-    return values[std::min(values.size() - 1, static_cast<std::size_t>(part * static_cast<double>(values.size())))];
-  }
-
   struct Count
   {
     unsigned int n = 0, finished = 0, inverted = 0, failed = 0, compared = 0, missed = 0, wrong = 0;
@@ -416,9 +407,9 @@ namespace
                  compared,
                  missed,
                  wrong,
-                 quantile(seconds, 0.5),
-                 quantile(seconds, usual_share),
-                 quantile(seconds, 1.));
+                 test::quantile(seconds, 0.5),
+                 test::quantile(seconds, usual_share),
+                 test::quantile(seconds, 1.));
     }
   };
 
@@ -480,9 +471,9 @@ namespace
     for (const Row &row : slow)
       print(row);
     const bool kept = all.wrong == 0 && all.missed <= std::max(1., largest_missed_share * all.n) &&
-                      (all.n < fewest ||
-                       (all.failed < largest_failed_share * all.n &&
-                        quantile(all.seconds, usual_share) < usual_seconds && quantile(all.seconds, 1.) < max_seconds));
+                      (all.n < fewest || (all.failed < largest_failed_share * all.n &&
+                                          test::quantile(all.seconds, usual_share) < usual_seconds &&
+                                          test::quantile(all.seconds, 1.) < max_seconds));
     const bool enough = !is_compared || all.compared >= min_compared_share * (all.finished + all.inverted);
     fmt::print("{} of {} answers compared: {}\n",
                all.compared,

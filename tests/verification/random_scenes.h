@@ -4,7 +4,9 @@
 #include "../support/run_text.h"
 #include "../support/with_breaks.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 
 namespace crawler::test
@@ -28,6 +30,15 @@ namespace crawler::test
       return scene;
     }
   };
+
+  /// This part of the values is below it; not a number if there are none.
+  inline double
+  quantile(std::vector<double> values, const double part)
+  {
+    std::sort(values.begin(), values.end());
+    const auto place = static_cast<std::size_t>(part * static_cast<double>(values.size()));
+    return values.empty() ? NAN : values[std::min(values.size() - 1, place)];
+  }
 
   /// Numbers that are the same everywhere (distributions of the standard library are not).
   class Random
@@ -147,6 +158,14 @@ namespace crawler::test
     }
     scene.settings = with(scene.settings, "expression; Active stress = {}; Constants = A={}, nu={}", formula, A, nu);
     return scene;
+  }
+
+  /// Displacement of the nonlinear model, to a relative 1e-6; nothing if the run does not finish.
+  inline std::optional<double>
+  true_displacement(const Settings &settings)
+  {
+    const SimulationResult result = run_with(with(settings, "Accuracy = 1e-6"), {}).result;
+    return result.time.status == Status::finished ? std::optional(result.displacement) : std::nullopt;
   }
 
   /// The scenes from this number on are jumping_scene()s.
