@@ -37,8 +37,8 @@ namespace crawler::test
   inline double
   largest_difference(const std::vector<double> &a, const std::vector<double> &b)
   {
-    double largest = 0.;
-    for (std::size_t i = 0; i < a.size(); ++i)
+    double largest = a.size() == b.size() ? 0. : HUGE_VAL;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
       largest = std::max(largest, std::abs(a[i] - b[i]));
     return largest;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Runs that end when their cycles repeat, against runs to the end time.
-#include "../support/run_text.h"
+#include "../support/answers.h"
 #include "../support/test.h"
 
 #include <crawler/base/exceptions.h>
@@ -44,20 +44,6 @@ namespace
     const Scene scene = parameters.create_scene();
     return test::run_with(parameters,
                           {.energy_balance = true, .cycles = cycle_wish(parameters, scene, /*has_pictures=*/false)})
-      .result;
-  }
-
-  /// The same with error bounds, and the gait.
-  SimulationResult
-  answer_to(const Parameters &parameters)
-  {
-    const Scene scene = parameters.create_scene();
-    return answer_in_memory(parameters,
-                            scene,
-                            {.energy_balance = true,
-                             .cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false),
-                             .gait           = Simulation::GaitWish::any},
-                            {})
       .result;
   }
 
@@ -275,9 +261,8 @@ TEST(CycleStop, TheLastComputedStrideHasABoundForTheStridesAfterIt)
 {
   for (const char *p : {"1.05", "2", "3"})
   {
-    const auto parameters = test::parameters_with(
+    const auto result = test::answer_to(
       test::set("Accuracy = 1e-3; gamma = 10; p = {}; T = 60; standing wave; Amplitude = 0.4; Wave number = 0.5", p));
-    const auto result = answer_to(parameters);
     ASSERT_TRUE(result.cycles && result.gait) << p;
     const double stride = std::abs(result.gait->displacement);
     EXPECT_LE(stride, error_bound(result, "gait.displacement").value()) << p;
@@ -290,9 +275,8 @@ TEST(CycleStop, TheLastComputedStrideHasABoundForTheStridesAfterIt)
 /// strides repeat all the same, whatever Accuracy is.
 TEST(CycleStop, BodiesThatGoNowhereRepeat)
 {
-  const auto parameters = test::parameters_with(
+  const auto result = test::answer_to(
     test::set("Accuracy = 1e-9; p = 4; k = 2; T = 500; travelling wave; Amplitude = 0.5; Wave number = 0"));
-  const auto result = answer_to(parameters);
   ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
   ASSERT_TRUE(result.cycles);
   EXPECT_LE(std::abs(result.displacement), result.error->total);

@@ -9,22 +9,17 @@
 #include <crawler/run/result_table.h>
 
 using namespace crawler;
+using test::answer_to;
 
 namespace
 {
   using std::numbers::pi;
 
-  Parameters
+  test::Settings
   linear(const std::string &formula, const double end_time = 1., const double k = 1., const test::Settings &more = {})
   {
-    return test::parameters_with(test::with(
-      test::set("Model = linear; p = 1; k = {}; T = {}; expression; Active stress = {}", k, end_time, formula), more));
-  }
-
-  SimulationResult
-  answer_of(const Parameters &parameters)
-  {
-    return test::computed(parameters).result;
+    return test::with(
+      test::set("Model = linear; p = 1; k = {}; T = {}; expression; Active stress = {}", k, end_time, formula), more);
   }
 
   /// U(t) for A(t) = amplitude sin(omega t).
@@ -44,7 +39,7 @@ TEST(LinearLevel, ClosedForm)
     for (const double accuracy : {1e-3, 1e-6, 1e-9})
     {
       const double amplitude = 0.3 * std::clamp(k, 0.3, 3.);
-      const auto result      = answer_of(
+      const auto result      = answer_to(
         linear(test::text(amplitude) + "*sin(7*t)*sin(2*pi*s)", 1.3, k, {{"Accuracy", test::text(accuracy)}}));
       ASSERT_EQ(result.time.status, Status::finished);
       const double U = driven(amplitude, 7., k, 1.3, 2), energy = 0.25 * k * 4. * pi * pi * U * U;
@@ -60,7 +55,7 @@ TEST(LinearLevel, ClosedForm)
 /// A stress that does not change in time, and starts suddenly: u goes to -int m/k, the stretch to 1 - m/k.
 TEST(LinearLevel, SteadyState)
 {
-  const auto result = answer_of(linear("0.3*sin(pi*s)+0.1", 40., 1., {{"Accuracy", "1e-9"}}));
+  const auto result = answer_to(linear("0.3*sin(pi*s)+0.1", 40., 1., {{"Accuracy", "1e-9"}}));
   EXPECT_NEAR(result.energy_balance->elastic_energy, 0.5 * (0.5 * 0.09 + 2. * 0.3 * 0.1 * 2. / pi + 0.01), 1e-10);
   EXPECT_NEAR(result.min_stretch.value, 0.6, 1e-6);
   EXPECT_LT(std::abs(result.displacement), 1e-13);
@@ -71,11 +66,11 @@ TEST(LinearLevel, SteadyState)
 /// Cycles are judged by the displacement: here all of them are computed.
 TEST(LinearLevel, ComputesAllCycles)
 {
-  const auto result = answer_of(linear("0.3*sin(2*pi*t)*sin(pi*s)", 30., 1., {{"Accuracy", "1e-7"}}));
+  const auto result = answer_to(linear("0.3*sin(2*pi*t)*sin(pi*s)", 30., 1., {{"Accuracy", "1e-7"}}));
   EXPECT_FALSE(result.cycles);
-  const auto finer = answer_of(linear("0.3*sin(2*pi*t)*sin(pi*s)", 30., 1., {{"Accuracy", "1e-9"}}));
+  const auto finer = answer_to(linear("0.3*sin(2*pi*t)*sin(pi*s)", 30., 1., {{"Accuracy", "1e-9"}}));
   for (const double EnergyBalance::*work : {&EnergyBalance::stress_work, &EnergyBalance::dissipation})
     EXPECT_NEAR(*result.energy_balance.*work, *finer.energy_balance.*work, *error_bound(result, "stress_power"));
   EXPECT_LT(*error_bound(result, "stress_power"), 1e-5 * finer.energy_balance->stress_work);
-  EXPECT_THROW(linear("0.3*sin(2*pi*t)*sin(pi*s)", 30., 1., {{"Time/Cycle stop", "on"}}).create_scene(), InputError);
+  EXPECT_THROW(answer_to(linear("0.3*sin(2*pi*t)*sin(pi*s)", 30., 1., {{"Time/Cycle stop", "on"}})), InputError);
 }

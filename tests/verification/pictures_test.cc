@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Pictures come from the dense output of the integrator (doc/numerics.md, "Pictures").
-#include "../support/run_text.h"
+#include "../support/stress.h"
 #include "../support/test.h"
 
 #include <crawler/output/field_sampler.h>
 
 using namespace crawler;
+using test::largest_difference;
 using test::Settings;
 
 namespace
@@ -77,15 +78,6 @@ namespace
                         {.energy_balance = true},
                         observers);
     return run;
-  }
-
-  double
-  largest_difference(const std::vector<double> &a, const std::vector<double> &b)
-  {
-    double largest = a.size() == b.size() ? 0. : HUGE_VAL;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-      largest = std::max(largest, std::abs(a[i] - b[i]));
-    return largest;
   }
 
   Settings

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Robots switch: square actuation by automatic numerics, with its error bounds.
+#include "../support/answers.h"
 #include "../support/lane_runs.h"
 #include "../support/test.h"
 
 #include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/graded_choice.h>
-#include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/accuracy/stress_scales.h>
 
 using namespace crawler;
+using test::computed;
 using test::Settings;
 
 namespace
@@ -38,14 +39,6 @@ namespace
   jumps_move(const Settings &settings)
   {
     return stress_scales(test::parameters_with(settings).create_scene()).jumps_move;
-  }
-
-  /// What `crawler run` computes, with its error bar, without files.
-  Answer
-  answer(const Settings &settings)
-  {
-    const Parameters parameters = test::parameters_with(settings);
-    return answer_in_memory(parameters, parameters.create_scene(), {.energy_balance = true}, {});
   }
 
   SimulationResult
@@ -105,12 +98,12 @@ TEST(SquareActuation, UnknownMovingJumpsHaveAnHonestBound)
 {
   const Settings settings = test::set("T = 0.5; expression; Active stress = mod(1.5*s+t,1) < 0.5 ? 0.3 : -0.3");
   const double limit      = 2. * with_jumps_through_cells(settings, 256) - with_jumps_through_cells(settings, 128);
-  const auto good         = answer(test::with(settings, {{"Accuracy", "1e-2"}}));
+  const auto good         = computed(test::with(settings, {{"Accuracy", "1e-2"}}));
   EXPECT_EQ(good.result.time.status, Status::finished) << good.result.time.message;
   EXPECT_LT(std::abs(good.result.displacement - limit), good.result.error->total);
   EXPECT_LT(good.result.error->total, 1e-2 * std::abs(limit));
 
-  const auto hopeless = answer(test::with(settings, {{"Accuracy", "1e-6"}}));
+  const auto hopeless = computed(test::with(settings, {{"Accuracy", "1e-6"}}));
   EXPECT_EQ(hopeless.result.time.reason, "accuracy_not_met");
   EXPECT_NE(hopeless.result.time.message.find("smoothed square"), std::string::npos) << hopeless.result.time.message;
   EXPECT_LT(std::abs(hopeless.result.displacement - limit), hopeless.result.error->total);
@@ -124,17 +117,17 @@ TEST(SquareActuation, MovingJumpsAreTheLimitOfFronts)
   const Settings settings = travelling_wave("square", 0.5);
   const double fine       = with_jumps_through_cells(settings, 256),
                limit      = 2. * fine - with_jumps_through_cells(settings, 128);
-  const auto accurate     = answer(test::with(settings, {{"Accuracy", "1e-5"}}));
+  const auto accurate     = computed(test::with(settings, {{"Accuracy", "1e-5"}}));
   const double D          = accurate.result.displacement;
   ASSERT_EQ(accurate.result.time.status, Status::finished) << accurate.result.time.message;
   EXPECT_LT(accurate.result.error->total, 1e-5 * std::abs(D));
   EXPECT_LT(std::abs(D - limit), std::abs(limit - fine));
   // The widths are chosen by errors, whether these are wanted or not.
-  EXPECT_EQ(answer(test::with(settings, {{"Accuracy", "1e-2"}, {"Error estimate", "false"}})).result.time.status,
+  EXPECT_EQ(computed(test::with(settings, {{"Accuracy", "1e-2"}, {"Error estimate", "false"}})).result.time.status,
             Status::finished);
   for (const char *const accuracy : {"1e-2", "1e-3", "1e-4"})
   {
-    const auto usual = answer(test::with(settings, {{"Accuracy", accuracy}}));
+    const auto usual = computed(test::with(settings, {{"Accuracy", accuracy}}));
     ASSERT_EQ(usual.result.time.status, Status::finished) << usual.result.time.message;
     EXPECT_LT(usual.result.error->total, std::stod(accuracy) * std::abs(D));
     EXPECT_LT(std::abs(usual.result.displacement - D), usual.result.error->total);
@@ -148,7 +141,7 @@ TEST(SquareActuation, SegmentsGetGradedMeshes)
   for (const auto &[n, gap, pieces] : {std::tuple(8u, "0", 8u), std::tuple(8u, "0.3", 15u), std::tuple(30u, "0", 30u)})
   {
     const auto settings = test::with(segments(n, gap, 0.3), {{"Accuracy", "1e-5"}});
-    const auto outcome  = answer(settings);
+    const auto outcome  = computed(settings);
     ASSERT_EQ(outcome.result.time.status, Status::finished) << outcome.result.time.message;
     EXPECT_GE(outcome.choice.numerics.grading.levels, 1u);
     EXPECT_GE(outcome.choice.numerics.n_cells, pieces);
@@ -161,7 +154,7 @@ TEST(SquareActuation, SegmentsGetGradedMeshes)
 /// Cells of 1e-6 of the length turn round-off into velocities: the energy balance takes those of the integrator.
 TEST(SquareActuation, LedgerClosesOnTinyCells)
 {
-  const auto outcome = answer(test::with(standing_wave(1.5), {{"Accuracy", "1e-8"}}));
+  const auto outcome = computed(test::with(standing_wave(1.5), {{"Accuracy", "1e-8"}}));
   EXPECT_EQ(outcome.result.time.status, Status::finished) << outcome.result.time.message;
   EXPECT_LT(outcome.result.energy_balance->residual(), 1e-7);
   EXPECT_LT(outcome.result.error->total, 1e-8 * std::abs(outcome.result.displacement));
