@@ -98,9 +98,9 @@ namespace crawler::test
     {
       static constexpr std::size_t size = 64;
       const auto scenes =
-        std::make_shared<const BatchScenes>(BatchScenes::similar(parameters_with(body.settings), size));
+        std::make_shared<const std::vector<Scene>>(similar_scenes(parameters_with(body.settings), size));
       return [&body, scenes](const Setting &setting) {
-        return [&body, scenes, setting]() { return error_of(scenes->run(setting)[0], body.displacement); };
+        return [&body, scenes, setting]() { return error_of(run_scenes(*scenes, setting)[0], body.displacement); };
       };
     }
 
@@ -165,10 +165,10 @@ namespace crawler::test
              const LaneEngine &engine)
     {
       const Setting &setting = cheapest(body, "batch", accuracy);
-      const auto scenes      = BatchScenes::similar(parameters_with(body.settings), body.batch_size);
-      BatchScenes::Results results;
+      const auto scenes      = similar_scenes(parameters_with(body.settings), body.batch_size);
+      BatchResults results;
       for (auto _ : state)
-        results = scenes.run(setting, options, engine);
+        results = run_scenes(scenes, setting, options, engine);
       state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(scenes.size()));
       if (std::count(results.begin(), results.end(), std::nullopt) > 0)
         state.SkipWithError("runs were given back");
@@ -270,11 +270,11 @@ namespace crawler::test
     run_general_batch(benchmark::State &state, const Settings &laws)
     {
       const Parameters parameters = parameters_with(with(wave(-1., 0.3), laws));
-      const auto scenes           = BatchScenes::similar(parameters, 256);
+      const auto scenes           = similar_scenes(parameters, 256);
       const Setting setting       = setting_of_general_bodies(parameters);
-      BatchScenes::Results results;
+      BatchResults results;
       for (auto _ : state)
-        results = scenes.run(setting, {}, batch_engine());
+        results = run_scenes(scenes, setting);
       state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(scenes.size()));
       if (std::count(results.begin(), results.end(), std::nullopt) > 0)
         state.SkipWithError("runs were given back");

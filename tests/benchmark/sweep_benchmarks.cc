@@ -27,10 +27,13 @@ namespace crawler::test
 
     /// A batch, and each of the runs that it gives back by a Simulation.
     Outcome
-    compute(const BatchScenes &scenes, const Setting &setting, const std::vector<std::size_t> &members)
+    compute(const std::vector<Scene> &scenes, const Setting &setting, const std::vector<std::size_t> &members)
     {
       Outcome outcome;
-      const auto results = scenes.run_some(setting, members);
+      std::vector<BatchRun> runs;
+      for (const std::size_t i : members)
+        runs.push_back({&scenes[i], &setting.time, &setting.numerics});
+      const auto results = run_batch(runs, {});
       for (std::size_t i = 0; i < members.size(); ++i)
       {
         if (results[i])
@@ -80,7 +83,7 @@ namespace crawler::test
     /// The 1000 scenes, and what is known of them from runs that are far more accurate.
     struct Sweep
     {
-      const BatchScenes scenes               = BatchScenes::grid(n_exponents, n_chi);
+      const std::vector<Scene> scenes        = grid_of_scenes(n_exponents, n_chi);
       const std::vector<std::size_t> members = numbers_below(scenes.size());
       const std::vector<double> exact        = compute(scenes, fine(8, 10, 1e-11), members).displacements;
       const double reference_error =
@@ -189,11 +192,12 @@ namespace crawler::test
     {
       static constexpr std::size_t chunk = 4096;
       const Setting setting              = fine(7, 4, 1e-5);
-      const auto scenes                  = BatchScenes::grid(static_cast<std::size_t>(state.range(0)) / n_chi, n_chi);
+      const auto scenes                  = grid_of_scenes(static_cast<std::size_t>(state.range(0)) / n_chi, n_chi);
       const double before                = peak_memory();
       for (auto _ : state)
         for (std::size_t begin = 0; begin < scenes.size(); begin += chunk)
-          benchmark::DoNotOptimize(scenes.run(setting, begin, std::min(begin + chunk, scenes.size())));
+          benchmark::DoNotOptimize(
+            run_scenes({scenes.data() + begin, std::min(chunk, scenes.size() - begin)}, setting));
       state.SetItemsProcessed(state.iterations() * state.range(0));
       state.counters["scenes"] = before;
       state.counters["growth"] = peak_memory() - before;
