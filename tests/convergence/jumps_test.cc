@@ -7,6 +7,7 @@
 #include "../support/with_breaks.h"
 
 #include <crawler/accuracy/pilots.h>
+#include <crawler/base/grid_samples.h>
 #include <crawler/time/integrators.h>
 
 using namespace crawler;
@@ -167,10 +168,8 @@ TEST(Jumps, AreTheSameForAllMethods)
 /// A thousand switchings: steps end at each of them, output times are output times and nothing else is.
 TEST(Jumps, ManyInTime)
 {
-  constexpr unsigned int n = 1000;
-  std::vector<double> switches;
-  for (unsigned int i = 0; i <= n; ++i) // 0 and the end time are admitted
-    switches.push_back(2. * i / n);
+  constexpr unsigned int n         = 1000;
+  const auto switches              = equal_parts(0., 2., n); // 0 and the end time are admitted
   const auto run                   = jumping(test::expression(-1., "0.1*s*(1-s)*(2-s)*(mod(500*t,2)<1 ? 1 : -1)", 2.),
                            "radau 5",
                            {.degree = 4, .n_cells = 6, .tolerance = 1e-6, .initial_step = 2e-5},
@@ -319,9 +318,7 @@ TEST(Pilots, ThatDoNotSettleAreGivenUp)
 /// A robot that repeats its cycle: the run ends early, at a break, and knows the displacement at the end.
 TEST(Jumps, MayEndWhenCyclesRepeat)
 {
-  std::vector<double> times;
-  for (unsigned int i = 0; i <= 160; ++i)
-    times.push_back(0.125 * i);
+  const auto times = equal_parts(0., 20., 160);
   const auto run   = jumping(test::expression(-1., robot, 20.),
                            "radau 9",
                            {.degree = 6, .n_cells = 5, .tolerance = 1e-7, .initial_step = 1e-8, .grading = {3, 0.25}},

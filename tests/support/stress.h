@@ -4,6 +4,8 @@
 #include "complaint.h"
 #include "run_text.h"
 
+#include <crawler/base/grid_samples.h>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,16 +45,6 @@ namespace crawler::test
     return largest;
   }
 
-  /// Places: n + 1 from 0 to @p length.
-  inline std::vector<double>
-  places(const double length, const unsigned int n = 40)
-  {
-    std::vector<double> points;
-    for (unsigned int i = 0; i <= n; ++i)
-      points.push_back(length * i / n);
-    return points;
-  }
-
   /// Expects the rate to equal differences of fourth order, at these @p times.
   inline void
   expect_rate(const ActiveStress &stress,
@@ -61,7 +53,7 @@ namespace crawler::test
               const double tolerance,
               const double h = 1e-4)
   {
-    const auto points = places(length);
+    const auto points = equal_parts(0., length, 40);
     for (const double t : times)
     {
       const auto m = [&](const double at) { return values(stress, points, at); };

@@ -3,6 +3,7 @@
 // The generator "prescribed strain": its stress, its three sources of strain, and what it refuses; and the pieces that
 // it is made of (Gauss panels, splines, derivatives of formulas).
 #include "../../support/complaint.h"
+#include "../../support/grid_text.h"
 #include "../../support/run_text.h"
 #include "../../support/temporary_folder.h"
 #include "../../support/test.h"
@@ -40,14 +41,8 @@ namespace
   std::string
   grid(const unsigned int n, double (*f)(double s, double t))
   {
-    std::string rows = "s,t,strain\n";
-    for (unsigned int j = 0; j < n; ++j)
-      for (unsigned int i = 0; i < n; ++i)
-      {
-        const double s = static_cast<double>(i) / (n - 1), t = static_cast<double>(j) / (n - 1);
-        rows += test::text(s) + "," + test::text(t) + "," + test::text(f(s, t)) + "\n";
-      }
-    return rows;
+    const auto places = equal_parts(0., 1., n - 1);
+    return test::joined(test::rows_of(test::samples(places, places, f)), "s,t,strain\n");
   }
 
   double
@@ -99,9 +94,7 @@ TEST(FormulaRate, IsTheDerivative)
                                  "(t > 0.9 || s < 0.1) && t < 2 ? t^2 : (t == 3 ? 1 : t*s)"})
   {
     const auto formula = std::make_shared<const Formula>(text, Formula::Constants{});
-    std::vector<double> points;
-    for (unsigned int i = 0; i < 100; ++i)
-      points.push_back(0.15 + 0.007 * i);
+    const auto points  = equal_parts(0.15, 0.85, 99);
     FormulaAtPoints values(formula, points);
     std::vector<double> before(points.size()), after(points.size()), derivative(points.size());
     const double t = 0.4123, h = 1e-5;

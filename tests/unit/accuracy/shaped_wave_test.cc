@@ -63,7 +63,7 @@ TEST(ShapedWave, SineIsTheFourierSeries)
       stress_with(shaped("Sine coefficients = 1, 0, -0.2; Cosine coefficients = 0.5, 0.1, 0", speed, 5.));
     const auto general =
       stress_with(by_formula("sin(pi*x) - 0.2*sin(3*pi*x) + 0.5*cos(pi*x) + 0.1*cos(2*pi*x)", speed));
-    const auto points = test::places(2., 64);
+    const auto points = equal_parts(0., 2., 64);
     for (const double t : {0., 0.2, 1.7, 5.})
       EXPECT_LT(test::largest_difference(values(*fourier, points, t), values(*general, points, t)), 1e-12) << t;
     EXPECT_NEAR(general->period().value(), 2. / std::abs(speed), 1e-9);
@@ -92,7 +92,7 @@ TEST(ShapedWave, GaussianHasItsIntegral)
   { return 0.5 * w * std::sqrt(pi) * (std::erf((to - x_0) / w) - std::erf((from - x_0) / w)); };
   const auto stress =
     stress_with(by_formula("exp(-((x + shift)/width)^2); Shape constants = shift=0.4, width=0.15", c, 3.));
-  const auto points = test::places(L, 64);
+  const auto points = equal_parts(0., L, 64);
   for (const double t : {0., 0.3, 0.9, 1.6, 3.})
   {
     const auto m = values(*stress, points, t);
@@ -119,7 +119,7 @@ TEST(ShapedWave, TableIsASpline)
     text += test::text(x) + ", " + test::text(cubic(x)) + "\r\n";
   write_file(name, text);
   const std::string from_table = "Shape = table; Shape file = " + name;
-  const auto points            = test::places(2.);
+  const auto points            = equal_parts(0., 2., 40);
   {
     const auto by_table = stress_with(shaped(from_table, 1.3, 2.)),
                formula  = stress_with(by_formula("0.1*x^3 - 0.5*x^2 + 0.2", 1.3, 2.));
@@ -146,7 +146,7 @@ TEST(ShapedWave, KinksAreFound)
   test::expect_near(stress->breaks_in_space(), {0.734, 1.234, 1.734}, 1e-9);
   const auto V = [](const double x) { return std::max(0., 1. - std::abs(x - 1.234) / 0.5); };
   // At t = 2 the triangle has left the body, so that only -(k/c) ( 0 - V(s) ) is left of the elastic part.
-  const auto points = test::places(2.);
+  const auto points = equal_parts(0., 2., 40);
   const auto m      = values(*stress, points, 2.);
   for (std::size_t i = 0; i < points.size(); ++i)
     EXPECT_NEAR(m[i], 0.3 * 3. * V(points[i]), 1e-12);

@@ -3,6 +3,7 @@
 // Reading samples on a grid (grid_table.h) and interpolating them (grid_interpolation.h, cubic_spline.h).
 #include "../../support/complaint.h"
 #include "../../support/expect_near.h"
+#include "../../support/grid_text.h"
 #include "../../support/hdf5_file.h"
 #include "../../support/temporary_folder.h"
 #include "../../support/test.h"
@@ -10,60 +11,18 @@
 #include <crawler/base/grid_interpolation.h>
 
 using namespace crawler;
+using test::joined;
+using test::rows_of;
+using test::samples;
 
 namespace
 {
-  std::string
-  to_text(const double value)
-  {
-    return fmt::format("{}", value);
-  }
-
   using std::numbers::pi;
 
   double
   wave_of(const double s, const double t)
   {
     return std::sin(2. * pi * (s + t)) * std::exp(-s);
-  }
-
-  std::vector<double>
-  equally_spaced(const std::size_t n)
-  {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < n; ++i)
-      values.push_back(static_cast<double>(i) / static_cast<double>(n - 1));
-    return values;
-  }
-
-  GridTable
-  samples(const std::vector<double> &s, const std::vector<double> &t, double (*f)(double, double))
-  {
-    GridTable grid{s, t, {}};
-    for (const double time : t)
-      for (const double place : s)
-        grid.values.push_back(f(place, time));
-    return grid;
-  }
-
-  std::vector<std::string>
-  rows_of(const GridTable &grid)
-  {
-    std::vector<std::string> rows;
-    for (std::size_t j = 0; j < grid.t.size(); ++j)
-      for (std::size_t i = 0; i < grid.s.size(); ++i)
-        rows.push_back(to_text(grid.s[i]) + "," + to_text(grid.t[j]) + "," +
-                       to_text(grid.values[j * grid.s.size() + i]));
-    return rows;
-  }
-
-  std::string
-  joined(const std::vector<std::string> &rows, const std::string &header = "s,t,m\n", const std::string &end = "\n")
-  {
-    std::string text = header;
-    for (const std::string &row : rows)
-      text += row + end;
-    return text;
   }
 
   GridTable
@@ -161,7 +120,7 @@ TEST(GridTable, SaysWhatIsWrongInCsv)
     "the first that are missing are s = 1, t = 0; s = 2, t = 0; s = 0, t = 1 (\"crawler table IN OUT\" fills gaps)");
   std::string scattered = "s,t,m\n";
   for (unsigned int i = 0; i < 200; ++i)
-    scattered += to_text(i) + "," + to_text(i) + ",0\n";
+    scattered += fmt::format("{0},{0},0\n", i);
   EXPECT_EQ(complaint(scattered),
             "FILE has 200 rows after the header with 200 different values of s and 200 of t, but a full grid, a row "
             "for each pair of these, is expected");
@@ -219,12 +178,10 @@ TEST(CubicSpline, Periodic)
 /// Doubling both grids divides the errors by 4 (linear) and 16 (cubic), those of the rate by 2 and 8.
 TEST(GridInterpolation, Orders)
 {
-  using Method = GridInterpolation::Method;
-  std::vector<double> points;
-  for (unsigned int i = 0; i <= 100; ++i)
-    points.push_back(i / 100.);
-  const auto errors = [&](const std::size_t n, const Method method, const GridInterpolation::Outside outside) {
-    const GridInterpolation table(samples(equally_spaced(n + 1), equally_spaced(n + 1), wave_of), method, outside);
+  using Method      = GridInterpolation::Method;
+  const auto points = equal_parts(0., 1., 100);
+  const auto errors = [&](const unsigned int n, const Method method, const GridInterpolation::Outside outside) {
+    const GridInterpolation table(samples(equal_parts(0., 1., n), equal_parts(0., 1., n), wave_of), method, outside);
     const auto at = table.at(points);
     std::vector<double> m(points.size()), m_t(points.size());
     double value = 0., rate = 0.;
@@ -258,9 +215,8 @@ TEST(GridInterpolation, FewAndManyPoints)
   for (const auto method : {GridInterpolation::Method::linear, GridInterpolation::Method::cubic})
   {
     const GridInterpolation table(samples(some_s, some_t, wave_of), method, GridInterpolation::Outside::hold);
-    std::vector<double> points, m(50), m_t(50), one(1);
-    for (unsigned int i = 0; i < 50; ++i)
-      points.push_back(-0.1 + 1.2 * i / 49.);
+    const auto points = equal_parts(-0.1, 1.1, 49);
+    std::vector<double> m(50), m_t(50), one(1);
     const auto many = table.at(points);
     for (const double t : {-2., -0.3, 0.25, 1., 3.})
     {

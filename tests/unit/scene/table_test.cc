@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // The generator "table"; reading and interpolating are in base/grid_table_test.cc.
+#include "../../support/grid_text.h"
 #include "../../support/hdf5_file.h"
 #include "../../support/stress.h"
 #include "../../support/temporary_folder.h"
@@ -20,30 +21,18 @@ namespace
   class Samples
   {
   public:
-    Samples(const std::size_t n_s,
-            const std::size_t n_t,
+    Samples(const unsigned int n_s,
+            const unsigned int n_t,
             const std::function<double(double, double)> &f,
             const double length = 1.,
             const double from   = 0.,
             const double to     = 1.)
     {
-      std::vector<double> s, t, m;
-      for (std::size_t i = 0; i < n_s; ++i)
-        s.push_back(length * static_cast<double>(i) / static_cast<double>(n_s - 1));
-      std::string text = "s,t,m\n";
-      for (std::size_t j = 0; j < n_t; ++j)
-      {
-        t.push_back(from + (to - from) * static_cast<double>(j) / static_cast<double>(n_t - 1));
-        for (const double place : s)
-        {
-          m.push_back(f(place, t.back()));
-          text += test::text(place) + "," + test::text(t.back()) + "," + test::text(m.back()) + "\n";
-        }
-      }
-      csv = (folder_.path / "m.csv").string();
-      write_file(csv, text);
+      const auto grid = test::samples(equal_parts(0., length, n_s - 1), equal_parts(from, to, n_t - 1), f);
+      csv             = (folder_.path / "m.csv").string();
+      write_file(csv, test::joined(test::rows_of(grid)));
       hdf5 = (folder_.path / "m.h5").string();
-      test::write_hdf5_file(hdf5, {{"s", {n_s}, s}, {"t", {n_t}, t}, {"m", {n_t, n_s}, m}});
+      test::write_hdf5_file(hdf5, {{"s", {n_s}, grid.s}, {"t", {n_t}, grid.t}, {"m", {n_t, n_s}, grid.values}});
     }
 
     std::string csv, hdf5;

@@ -42,7 +42,7 @@ namespace
   {
     const auto stress   = stress_with(settings);
     const auto expected = stress_with(test::with(settings, "expression; Active stress = {}", formula));
-    const auto points   = test::places(length, 53);
+    const auto points   = equal_parts(0., length, 53);
     for (const double t : {0., 0.013, 0.3, 0.71, 1.9, 4.77})
       EXPECT_LT(test::largest_difference(values(*stress, points, t), values(*expected, points, t)), 2e-14)
         << formula << " at t = " << t;
@@ -174,9 +174,7 @@ TEST(TravellingWave, HasFrontsInsteadOfMovingJumps)
   const auto square = stress_with(travelling("Profile = square; Duty cycle = 0.3"));
   const auto smooth = fronts(*square, 0.1);
   ASSERT_TRUE(smooth);
-  std::vector<double> places;
-  for (int i = 0; i <= 1000; ++i)
-    places.push_back(1e-3 * i);
+  const auto places  = equal_parts(0., 1., 1000);
   const auto jumping = values(*square, places, 0.37), with_fronts = values(*smooth, places, 0.37);
   std::size_t n_other = 0;
   for (std::size_t i = 0; i < places.size(); ++i)
@@ -235,7 +233,7 @@ TEST(Pulse, Repeats)
   const double P = 0.75, v = 0.8, w = 0.2;
   const auto stress = stress_with(pulse("Repetition period = " + test::text(P) + "; Speed = " + test::text(v) +
                                         "; Width = " + test::text(w) + "; Start position = 0.1"));
-  const auto points = test::places(1.);
+  const auto points = equal_parts(0., 1., 40);
   for (const double t : {0., 0.4, 0.75, 2.9})
   {
     std::vector<double> expected;
