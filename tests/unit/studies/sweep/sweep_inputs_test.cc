@@ -101,9 +101,11 @@ namespace
     EXPECT_EQ(before.files.at("ground.csv"), fingerprint("ground.csv"));
     EXPECT_NE(before.files.at("ground.csv"), before.files.at("other.csv"));
     write_file("other.csv", "x,value\n-9,1\n0,2\n2,1\n9,4\n");
-    const auto changed = changes(before, inputs(text));
+    const auto changed = changes(SweepInputs::from_attributes(before.attributes()), inputs(text));
     ASSERT_EQ(changed.size(), 1u);
     EXPECT_TRUE(changed[0].starts_with("the file \"other.csv\" was 25 bytes, CRC-32")) << changed[0];
+    const std::string one = "subsection Ground\n set Profile = ground.csv\nend\n";
+    EXPECT_EQ(inputs(one + "subsection Sweep\n set Axes = Body/Length : 1, 2\nend\n").files.size(), 1u);
   }
 
   TEST_F(Inputs, HowMuchIsComputedMayChange)
