@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -39,38 +40,28 @@ namespace crawler
   };
 
   /// An active stress m(s, t, w, w_t, w near, w delayed). Derivatives are exact.
-  class StretchFeedback
+  struct StretchFeedback
   {
-  public:
-    virtual ~StretchFeedback() = default;
-
-    virtual std::unique_ptr<FeedbackAtPoints>
-    at(const std::vector<double> &points) const = 0;
-
-    virtual bool
-    uses_rate() const = 0;
-
-    /// Offset of the near stretch [length], either sign; 0 if it is not used, or a sensor is at the place itself.
-    virtual double
-    distance() const = 0;
-
-    /// Delay [time], positive; 0 if no delayed stretch is used.
-    virtual double
-    delay() const = 0;
-
-    /// Sensor length b [length]; if positive, the near stretch is the mean over the piece of this length centred at s +
-    /// distance, moved inside where it would reach beyond the body: (zeta(right) - zeta(left))/b. 0: at the place.
-    virtual double
-    sensor_length() const
+    struct Facts
     {
-      return 0.;
-    }
+      bool uses_rate = false;
+      double distance =
+        0.;              ///< of the near stretch [length], either sign; 0 if it is not used, or a sensor is at s itself
+      double delay = 0.; ///< [time], positive; 0 if no delayed stretch is used
+      /// Sensor length b [length]; if positive, the near stretch is the mean over the piece of this length centred at s
+      /// + distance, moved inside where it would reach beyond the body: (zeta(right) - zeta(left))/b. 0: at the place.
+      double sensor_length = 0.;
 
-    /// True if the near stretch is used.
-    bool
-    sees_near() const
-    {
-      return distance() != 0. || sensor_length() != 0.;
-    }
+      /// True if the near stretch is used.
+      bool
+      sees_near() const
+      {
+        return distance != 0. || sensor_length != 0.;
+      }
+    };
+
+    Facts facts;
+    /// Makes an evaluator at points [length].
+    std::function<std::unique_ptr<FeedbackAtPoints>(const std::vector<double> &points)> at;
   };
 } // namespace crawler

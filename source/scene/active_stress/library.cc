@@ -308,16 +308,6 @@ namespace crawler
         ask(body.length, end_time);
       }
 
-      const StretchFeedback *
-      feedback() const override
-      {
-        return feedback_.get();
-      }
-      const ActiveStress *
-      prescribed_strain() const override
-      {
-        return strain_.get();
-      }
       const StressFailures *
       failures() const override
       {
@@ -354,15 +344,13 @@ namespace crawler
           facts_.has_rate        = stress_->rate_at({0.}) != nullptr;
           asked                  = "feedback()";
           if (const StretchFeedback *feedback = stress_->feedback())
-            feedback_ = std::make_unique<KnownFeedback>(
-              KnownFeedback::Facts{
-                feedback->uses_rate(), feedback->distance(), feedback->delay(), feedback->sensor_length()},
-              [failures = failures_, feedback](const std::vector<double> &points) {
-                return guarded_feedback_at(failures, *feedback, points);
-              });
+            facts_.feedback =
+              StretchFeedback{feedback->facts, [failures = failures_, feedback](const std::vector<double> &points) {
+                                return guarded_feedback_at(failures, *feedback, points);
+                              }};
           asked = "prescribed_strain()";
           if (const ActiveStress *strain = stress_->prescribed_strain())
-            strain_ = std::make_unique<StressByFunctions>(
+            facts_.prescribed_strain = std::make_shared<StressByFunctions>(
               [failures = failures_, strain](const std::vector<double> &points, const bool rate) {
                 return guarded(failures, *strain, " of its strain", points, rate);
               });
@@ -395,9 +383,6 @@ namespace crawler
       std::string file_;
       std::shared_ptr<LibraryFailures> failures_; ///< evaluators write here
       std::unique_ptr<const ActiveStress> stress_;
-      // Answers of the plug-in to calls that are made once.
-      std::unique_ptr<const StretchFeedback> feedback_;
-      std::unique_ptr<const ActiveStress> strain_;
       std::string report_;
     };
   } // namespace
