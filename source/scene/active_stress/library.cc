@@ -14,7 +14,6 @@
 #include <dlfcn.h>
 #include <filesystem>
 #include <functional>
-#include <limits>
 #include <ostream>
 #include <sstream>
 
@@ -24,7 +23,6 @@ namespace crawler
   {
     const std::string file_entry       = "Active stress/Library/File";
     const std::string parameters_entry = "Active stress/Library/Parameters";
-    constexpr double no_number         = std::numeric_limits<double>::quiet_NaN();
 
     /// Runs code of the user; returns what it threw, or nothing.
     template <typename Function>
@@ -90,7 +88,7 @@ namespace crawler
       values(const double t, const std::span<double> result)
       {
         if (!is_well(t, result))
-          std::fill(result.begin(), result.end(), no_number);
+          std::fill(result.begin(), result.end(), NAN);
       }
 
     private:
@@ -199,7 +197,7 @@ namespace crawler
           require_finite(*failures, m, points, seen, t);
         if (failures->count > n_before)
           for (const std::span<double> values : {m.m, m.m_w, m.m_rate, m.m_near})
-            std::fill(values.begin(), values.end(), no_number);
+            std::fill(values.begin(), values.end(), NAN);
       });
     }
 

@@ -54,19 +54,18 @@ namespace crawler
   bool
   RunMemory::begin(Log &log)
   {
-    Resumption resumption;
-    on_first_rank(communicator_, [&]() {
+    Archive known(on_first_rank(communicator_, [&]() {
       require_usable(folder_, options_.overwrite || options_.resume);
       checkpoint_ = checkpoint_of(input_, options_);
-      if (options_.resume)
-      {
-        lock_.emplace(folder_, log);
-        resumption = resumption_of(folder_, checkpoint_);
-      }
-    });
+      if (!options_.resume)
+        return std::string();
+      lock_.emplace(folder_, log);
+      Resumption found = resumption_of(folder_, checkpoint_);
+      return archived(found);
+    }));
     if (!options_.resume)
       return true;
-    Archive known(broadcast(archived(resumption), communicator_));
+    Resumption resumption;
     known(resumption);
     report(log, resumption, folder_);
     goes_on_ = resumption.kind == Resumption::goes_on;

@@ -18,7 +18,6 @@ namespace crawler
 {
   namespace
   {
-    constexpr double not_known        = std::numeric_limits<double>::quiet_NaN();
     constexpr unsigned int word_width = 24, reason_width = 32, message_width = 256;
 
     std::string
@@ -105,7 +104,7 @@ namespace crawler
         row.push_back(value_in_row(task, entry));
     const SimulationResult &result = task.computed.result;
     const auto add                 = [&](const std::optional<double> &value) {
-      row.emplace_back(std::in_place_type<double>, value.value_or(not_known));
+      row.emplace_back(std::in_place_type<double>, value.value_or(NAN));
     };
     for (const SensitivityEntry &entry : sensitivities)
       for (const auto &[number, of] : differentiated_numbers)

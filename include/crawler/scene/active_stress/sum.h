@@ -11,8 +11,6 @@
 
 namespace crawler
 {
-  class Declarations;
-
   /// Entries of a term of a sum besides those of its generator.
   struct SumTermParameters
   {
