@@ -3,7 +3,6 @@
 #include <crawler/app/commands.h>
 #include <crawler/app/completion.h>
 #include <crawler/app/help_texts.h>
-#include <crawler/app/manual.h>
 #include <crawler/app/parameter_listing.h>
 #include <crawler/app/templates.h>
 #include <crawler/app/usage_errors.h>

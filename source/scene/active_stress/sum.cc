@@ -171,17 +171,18 @@ namespace crawler
 
     const std::string sum_section = "Active stress/Sum/";
 
-    /// Facts of the feedbacks of all terms, which have one distance, delay and sensor.
-    StretchFeedback::Facts
+    /// Facts of the feedbacks of all terms, which have one distance, delay and sensor; nothing without feedback.
+    std::optional<StretchFeedback::Facts>
     common_facts(const std::vector<SumTerm> &terms)
     {
       StretchFeedback::Facts common;
-      bool sees_near = false;
+      bool has_feedback = false, sees_near = false;
       for (std::size_t i = 0; i < terms.size(); ++i)
       {
         const StretchFeedback *const feedback = terms[i].stress->feedback();
         if (feedback == nullptr)
           continue;
+        has_feedback    = true;
         const auto take = [i](const double value, double &known, const bool is_known, const char *name) {
           if (is_known && value != known)
             throw InputError(
@@ -206,7 +207,7 @@ namespace crawler
         if (own.delay != 0.)
           take(own.delay, common.delay, common.delay != 0., "delay");
       }
-      return common;
+      return has_feedback ? std::optional(common) : std::nullopt;
     }
   } // namespace
 
@@ -238,10 +239,9 @@ namespace crawler
     if (std::all_of(terms_.begin(), terms_.end(), [](const SumTerm &term) { return term.multiplies; }))
       throw InputError("all terms of the sum multiply; at least one that adds is expected",
                        sum_section + "Term 1/Combine");
-    if (std::any_of(
-          terms_.begin(), terms_.end(), [](const SumTerm &term) { return term.stress->feedback() != nullptr; }))
+    if (const auto facts = common_facts(terms_))
       facts_.feedback =
-        StretchFeedback{common_facts(terms_), [this](const std::vector<double> &points) {
+        StretchFeedback{*facts, [this](const std::vector<double> &points) {
                           return std::make_unique<SumAtPoints>(terms_, points, SumAtPoints::Wanted::feedback);
                         }};
     facts_.search  = [this]() { return search_repetition(); };

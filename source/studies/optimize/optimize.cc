@@ -77,7 +77,7 @@ namespace crawler
       const fs::path file = folder.path / ("optimum" + number + ".prm"), place = folder.path / ("best" + number);
       write_file(file,
                  "# The best gait: what differs from the file that was optimised.\ninclude parameters.prm\n" +
-                   changes(entries, ParameterFile::from_text(cases.effective(), "parameters.prm")));
+                   changes(entries, ParameterFile::from_text(cases.points().effective(), "parameters.prm")));
       entries.set("Sweep/Axes", parameters.sweep.axes);
       CommandOptions one = folder.options;
       one.file           = file.string();

@@ -17,20 +17,13 @@ namespace crawler
     {
       for (const std::string &note : resumption.notes)
         log.warn("warning: " + note);
-      switch (resumption.kind)
-      {
-        case Resumption::begins:
-          log.line(
-            fmt::format("There is no state in \"{}\" from which the run can resume: it starts from the beginning.",
-                        folder.string()));
-          break;
-        case Resumption::goes_on:
-          log.line("The run resumes from the state in restart.dat.");
-          break;
-        case Resumption::is_whole:
-          log.line(fmt::format("The run in \"{}\" is complete; nothing was computed.", folder.string()));
-          break;
-      }
+      log.line(
+        resumption.kind == Resumption::begins
+          ? fmt::format("There is no state in \"{}\" from which the run can resume: it starts from the beginning.",
+                        folder.string())
+        : resumption.kind == Resumption::goes_on
+          ? "The run resumes from the state in restart.dat."
+          : fmt::format("The run in \"{}\" is complete; nothing was computed.", folder.string()));
     }
   } // namespace
 
