@@ -144,8 +144,8 @@ TEST(StrainTable, MustCoverBodyAndDurationWithFourSamplesAtLeast)
   test::write_text(name, grid(5, wave_of));
   const test::Settings table = test::set("prescribed strain; Given by = table; File = {}", name);
   EXPECT_EQ(complaint(table), "nothing");
-  test::expect_words(complaint(test::with(table, "L = 2")), {"the body"});
-  test::expect_words(complaint(test::with(table, "T = 1.5")), {"the duration"});
+  test::expect_words(complaint(test::with(table, "L = 2")), {"the whole body"});
+  test::expect_words(complaint(test::with(table, "T = 1.5")), {"the whole duration"});
   test::write_text(name, grid(3, wave_of)); // too few for a spline
   test::expect_words(complaint(table), {"at least 4"});
 }
