@@ -11,7 +11,7 @@ namespace crawler
   RecordedRun::is_possible(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
   {
     const StretchFeedback *feedback = scene.active_stress->feedback();
-    const bool is_from_here         = feedback == nullptr || !(feedback->sees_near() || feedback->delay() > 0.);
+    const bool is_from_here = feedback == nullptr || !(feedback->facts.sees_near() || feedback->facts.delay > 0.);
     return numerics.formulation == Formulation::position && !numerics.jumps_move && !scene.profiles.initial_stretch &&
            is_from_here && batch_method(scene, time, numerics) &&
            (feedback == nullptr || TimeSegments(*scene.active_stress, scene.end_time).breaks().empty());

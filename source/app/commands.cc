@@ -3,7 +3,6 @@
 #include <crawler/app/commands.h>
 #include <crawler/app/completion.h>
 #include <crawler/app/help_texts.h>
-#include <crawler/app/manual.h>
 #include <crawler/app/parameter_listing.h>
 #include <crawler/app/templates.h>
 #include <crawler/app/usage_errors.h>
@@ -165,7 +164,7 @@ namespace crawler
 
     CLI::App *completion =
       app_.add_subcommand("completion", "Prints a script that lets a shell complete this command line");
-    completion->add_option("SHELL", name_, fmt::format("{}", fmt::join(completion_shells(), ", ")))->required();
+    completion->add_option("SHELL", name_, "bash")->required();
 
     app_.add_subcommand("man", "Prints the manual page: crawler man | man -l -");
   }

@@ -4,7 +4,6 @@
 #include <crawler/app/parameter_listing.h>
 #include <crawler/app/templates.h>
 #include <crawler/base/exceptions.h>
-#include <crawler/base/nearest_name.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -47,7 +46,7 @@ namespace crawler
       if (name == "TEMPLATE")
         return words_action(template_names());
       if (name == "SHELL")
-        return words_action(completion_shells());
+        return words_action({"bash"});
       if (name == "SECTION")
         return words_action(section_names());
       if (name == "format")
@@ -98,20 +97,13 @@ _crawler()
 )~~~~";
   } // namespace
 
-  std::vector<std::string>
-  completion_shells()
-  {
-    return {"bash"};
-  }
-
   void
   print_completion(const CLI::App &app, const std::string &shell)
   {
     if (shell != "bash")
-      throw InputError(fmt::format("unknown shell \"{}\"; {} is expected, whose script zsh reads, too, after "
+      throw InputError(fmt::format("unknown shell \"{}\"; \"bash\" is expected, whose script zsh reads, too, after "
                                    "\"autoload -U bashcompinit; bashcompinit\"",
-                                   shell,
-                                   quoted_list(completion_shells())));
+                                   shell));
     std::cout << bash_head;
     std::vector<std::string> names;
     for (const CLI::App *command : all_commands(app))

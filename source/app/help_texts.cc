@@ -1,17 +1,26 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/app/help_texts.h>
 #include <crawler/app/texts.h>
+#include <crawler/base/versions.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
+#include <iostream>
 #include <sstream>
 
 namespace crawler
 {
   namespace
   {
+    /// Command line with its purpose.
+    struct Example
+    {
+      std::string command, meaning;
+    };
+
     /// Examples for all commands: the command to which an example belongs is its second word or, behind mpirun -n N,
     /// its fifth.
     const std::vector<Example> all_examples = {
@@ -56,22 +65,44 @@ namespace crawler
         text += fmt::format("  {:{}}  {}\n", example.command, width, example.meaning);
       return text;
     }
-  } // namespace
 
-  std::vector<Example>
-  examples_of(const std::string &command)
-  {
-    const std::vector<std::string> first_steps = {"init", "check", "run", "sweep", "plot", "parameters"};
-    std::vector<Example> list;
-    for (const Example &example : all_examples)
+    /// Examples of a command; without a name, first steps.
+    std::vector<Example>
+    examples_of(const std::string &command = "")
     {
-      const std::string own = command_of(example);
-      const bool is_first = std::ranges::none_of(list, [&](const Example &other) { return command_of(other) == own; });
-      if (command.empty() ? is_first && std::ranges::find(first_steps, own) != first_steps.end() : own == command)
-        list.push_back(example);
+      const std::vector<std::string> first_steps = {"init", "check", "run", "sweep", "plot", "parameters"};
+      std::vector<Example> list;
+      for (const Example &example : all_examples)
+      {
+        const std::string own = command_of(example);
+        const bool is_first =
+          std::ranges::none_of(list, [&](const Example &other) { return command_of(other) == own; });
+        if (command.empty() ? is_first && std::ranges::find(first_steps, own) != first_steps.end() : own == command)
+          list.push_back(example);
+      }
+      return list;
     }
-    return list;
-  }
+
+    struct ExitCodeMeaning
+    {
+      std::string code, meaning;
+    };
+
+    /// Exit codes as in the table of the user guide.
+    std::vector<ExitCodeMeaning>
+    exit_code_meanings()
+    {
+      std::vector<ExitCodeMeaning> list;
+      std::istringstream lines{std::string(exit_codes_section)};
+      for (std::string line; std::getline(lines, line);)
+        if (line.size() > 6 && line.starts_with("| ") && std::isdigit(static_cast<unsigned char>(line[2])))
+        {
+          const std::size_t first = line.find(" | "), second = line.find(" | ", first + 3);
+          list.push_back({line.substr(2, first - 2), line.substr(first + 3, second - first - 3)});
+        }
+      return list;
+    }
+  } // namespace
 
   const std::vector<std::string> &
   plot_kinds()
@@ -79,20 +110,6 @@ namespace crawler
     static const std::vector<std::string> kinds = {
       "tradeoff", "optimize", "fit", "sweep", "calibration", "table", "kymograph", "sensitivity", "scaling"};
     return kinds;
-  }
-
-  std::vector<ExitCodeMeaning>
-  exit_code_meanings()
-  {
-    std::vector<ExitCodeMeaning> list;
-    std::istringstream lines{std::string(exit_codes_section)};
-    for (std::string line; std::getline(lines, line);)
-      if (line.size() > 6 && line.starts_with("| ") && std::isdigit(static_cast<unsigned char>(line[2])))
-      {
-        const std::size_t first = line.find(" | "), second = line.find(" | ", first + 3);
-        list.push_back({line.substr(2, first - 2), line.substr(first + 3, second - first - 3)});
-      }
-    return list;
   }
 
   std::vector<const CLI::App *>
@@ -127,5 +144,74 @@ namespace crawler
   {
     const auto examples = examples_of(command);
     return examples.empty() ? "" : in_columns(examples);
+  }
+
+  namespace
+  {
+    /// Text in roff: no escapes, no requests, hyphens that can be copied.
+    std::string
+    roff(const std::string &text)
+    {
+      std::string escaped = text.starts_with('.') || text.starts_with('\'') ? "\\&" : "";
+      for (const char c : text)
+        escaped += c == '\\' ? "\\e" : c == '-' ? "\\-" : std::string(1, c);
+      return escaped;
+    }
+
+    /// Prints a name in bold with its meaning.
+    void
+    print_item(const std::string &name, const std::string &meaning)
+    {
+      std::cout << ".TP\n\\fB" << roff(name) << "\\fR\n" << roff(meaning) << ".\n";
+    }
+
+    void
+    print_option(const CLI::Option &option)
+    {
+      const std::string name =
+        option.get_positional() ? option.get_name() : fmt::format("{}", fmt::join(typed_names(option), ", "));
+      const std::string &value = option.get_option_text();
+      print_item(value.empty() ? name : name + " " + value, option.get_description());
+    }
+
+    void
+    print_command(const CLI::App &command)
+    {
+      std::string usage = "crawler " + command.get_name();
+      for (const CLI::Option *option : command.get_options())
+        if (option->get_positional())
+          usage += option->get_required() ? " " + option->get_name() : " [" + option->get_name() + "]";
+      std::cout << ".SS \"" << roff(usage) << "\"\n" << roff(command.get_description()) << ".\n";
+      for (const CLI::Option *option : command.get_options())
+        if (typed_names(*option) != std::vector<std::string>{"--help", "-h"})
+          print_option(*option);
+      for (const Example &example : examples_of(command.get_name()))
+        std::cout << ".PP\n"
+                  << roff(example.meaning) << ":\n.PP\n.RS 4\n.nf\n"
+                  << roff(example.command) << "\n.fi\n.RE\n";
+    }
+  } // namespace
+
+  void
+  print_manual(const CLI::App &app)
+  {
+    std::cout
+      << ".\\\" Made by \"crawler man\".\n.TH CRAWLER 1 \"\" \"crawler " << roff(versions().at("crawler"))
+      << "\" \"User Commands\"\n.SH NAME\ncrawler \\- simulates limbless crawlers: earthworms, snails, soft "
+         "robots\n.SH SYNOPSIS\n.B crawler\n.I COMMAND\n[\\fIARGUMENT\\fR] [\\fIOPTION\\fR]... [-- "
+         "\\fIPETSC OPTION\\fR...]\n.br\n.B mpirun -n\n.I N\n.B crawler\n.I COMMAND\n\\&...\n"
+         ".SH DESCRIPTION\n"
+      << roff(app.get_description())
+      << "\nThe scene is described in a parameter file; its entries are listed by\n.BR \"crawler parameters\" .\n"
+         ".SH OPTIONS\n";
+    for (const CLI::Option *option : app.get_options())
+      print_option(*option);
+    print_item("-- PETSC OPTION...", "Everything after a lone \"--\" is passed to PETSc");
+    std::cout << ".SH COMMANDS\n";
+    for (const CLI::App *command : all_commands(app))
+      print_command(*command);
+    std::cout << ".SH EXIT STATUS\n";
+    for (const ExitCodeMeaning &one : exit_code_meanings())
+      print_item(one.code, one.meaning);
   }
 } // namespace crawler

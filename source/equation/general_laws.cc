@@ -76,9 +76,9 @@ namespace crawler
       return;
     }
     feedback_ = feedback->at(points);
-    if (feedback->uses_rate())
+    if (feedback->facts.uses_rate)
       by_rate.resize(points.size());
-    if (feedback->sees_near())
+    if (feedback->facts.sees_near())
       by_near.resize(points.size());
   }
 
@@ -111,18 +111,18 @@ namespace crawler
     const StretchFeedback *feedback = scene.active_stress->feedback();
     if (feedback == nullptr)
       return;
-    if (feedback->sees_near())
+    if (feedback->facts.sees_near())
     {
       std::vector<double> others = points;
       for (double &s : others)
-        s += feedback->distance();
-      if (feedback->sensor_length() > 0.)
-        sensors_.emplace(discretization.cells(), discretization.element(), others, feedback->sensor_length());
+        s += feedback->facts.distance;
+      if (feedback->facts.sensor_length > 0.)
+        sensors_.emplace(discretization.cells(), discretization.element(), others, feedback->facts.sensor_length);
       else
         near_places_.emplace(discretization.cells(), discretization.element(), others);
       near.resize(points.size());
     }
-    delay_ = feedback->delay();
+    delay_ = feedback->facts.delay;
     if (delay_ > 0.)
     {
       at_start_ = profile_at(scene.profiles.initial_stretch, points);

@@ -37,10 +37,10 @@ namespace crawler
     if (scene.ground.profile)
       return "the friction of the ground depends on the place of each cell, and thus on the stretches of all others";
     const StretchFeedback *feedback = scene.active_stress->feedback();
-    if (feedback != nullptr && feedback->uses_rate() && scene.ground.direction.is_uneven())
+    if (feedback != nullptr && feedback->facts.uses_rate && scene.ground.direction.is_uneven())
       return "the active stress depends on the rate of the stretch, and friction on the direction: the method for the "
              "equations of a step does not converge";
-    if (feedback != nullptr && (feedback->sees_near() || feedback->delay() > 0.))
+    if (feedback != nullptr && (feedback->facts.sees_near() || feedback->facts.delay > 0.))
       return "the active stress depends on the stretch at other places or times";
     return "";
   }
@@ -269,7 +269,7 @@ namespace crawler
     };
     std::fill(v.begin(), v.end(), 0.);
     const StretchFeedback *feedback = scene_.active_stress->feedback();
-    if (feedback == nullptr || !feedback->uses_rate()) // the residual of rest is minus the velocity
+    if (feedback == nullptr || !feedback->facts.uses_rate) // the residual of rest is minus the velocity
     {
       if (!residual(v, v))
         return false;

@@ -126,7 +126,7 @@ namespace crawler
     const std::size_t n = tables_->points.size();
     const long bad      = cell_laws_->evaluate(t, {w, n}, {rate, n}, m);
     // Power laws fail only where the stretch is lost.
-    if (bad >= 0 && w[bad] > 0. && !scene_.has_power_law())
+    if (bad >= 0 && w[bad] > 0. && !scene_.friction->is_power_law)
       bad_friction_ = {w[bad], cell_laws_->friction[static_cast<std::size_t>(bad)]};
     at_cells                = cell_laws_->at_cells();
     const bool may_be_empty = scene_.friction_exponent() < 0.;

@@ -100,7 +100,7 @@ namespace crawler
   fits_lanes(const Scene &scene)
   {
     const StretchFeedback *feedback = scene.active_stress->feedback();
-    return feedback == nullptr || (!feedback->sees_near() && feedback->delay() == 0.);
+    return feedback == nullptr || (!feedback->facts.sees_near() && feedback->facts.delay == 0.);
   }
 
   unsigned int
@@ -112,10 +112,10 @@ namespace crawler
     unsigned int bits               = LaneLaws::general;
     const auto add = [&bits](const bool has, const LaneLaws::Bits bit) { bits |= has ? bit : LaneLaws::plain; };
     add(scene.ground.direction.is_uneven(), LaneLaws::direction);
-    add(!scene.has_power_law(), LaneLaws::host_friction);
+    add(!scene.friction->is_power_law, LaneLaws::host_friction);
     add(scene.ground.profile != nullptr, LaneLaws::host_ground);
     add(feedback != nullptr, LaneLaws::feedback);
-    add(feedback != nullptr && feedback->uses_rate(), LaneLaws::rate);
+    add(feedback != nullptr && feedback->facts.uses_rate, LaneLaws::rate);
     return bits;
   }
 } // namespace crawler

@@ -92,7 +92,7 @@ namespace crawler
                                      features),
                          "Time/Cycle stop");
       const StretchFeedback *feedback = scene.active_stress->feedback();
-      const double delay              = feedback != nullptr ? feedback->delay() : 0.;
+      const double delay              = feedback != nullptr ? feedback->facts.delay : 0.;
       if (delay > 0. && p.time.step_control == StepControl::fixed && p.time.initial_step &&
           *p.time.initial_step > delay)
         throw InputError(fmt::format("Initial step is {} and Step control is fixed, but no more than the delay of the "

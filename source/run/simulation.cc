@@ -55,7 +55,7 @@ namespace crawler
   {
     time_.end_time = 1.;
     if (scene_.active_stress->feedback() != nullptr)
-      past_.delay = scene_.active_stress->feedback()->delay();
+      past_.delay = scene_.active_stress->feedback()->facts.delay;
     if (time_.integrator == "automatic")
       time_.integrator = numerics_.integrator.empty() ? "bdf" : numerics_.integrator;
     build_first();

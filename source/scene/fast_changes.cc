@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <utility>
 
 namespace crawler
 {
@@ -101,12 +102,8 @@ namespace crawler
       double
       rate_in(const ActiveStress::Box &box)
       {
-        struct Point
-        {
-          double x, y;
-        };
-        constexpr Point points[] = {{0.5, 0.5}, {0.21, 0.83}, {0.79, 0.17}};
-        double largest           = 0.;
+        constexpr std::pair<double, double> points[] = {{0.5, 0.5}, {0.21, 0.83}, {0.79, 0.17}};
+        double largest                               = 0.;
         for (const auto &[x, y] : points)
         {
           const double s = box.s_from + x * (box.s_to - box.s_from), t = box.t_from + y * (box.t_to - box.t_from);

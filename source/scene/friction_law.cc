@@ -45,8 +45,9 @@ namespace crawler
     return w_dg / g;
   }
 
-  PowerFriction::PowerFriction(const double gamma, const double a)
-    : gamma_(gamma)
+  PowerFriction::PowerFriction(const double gamma, const double a, const bool its_is_power_law)
+    : FrictionLaw(its_is_power_law)
+    , gamma_(gamma)
     , a_(a)
     , a_is_small_integer_(a == std::round(a) && std::abs(a) <= 64)
   {

@@ -15,28 +15,6 @@ namespace crawler
 {
   namespace
   {
-    /// A viscous film under the body, the simplest law: force per present length proportional to the velocity, g(w) =
-    /// gamma w.
-    class NewtonianFriction : public PowerFriction
-    {
-    public:
-      /// @param gamma friction coefficient [force time/length^2].
-      explicit NewtonianFriction(const double gamma)
-        : PowerFriction(gamma, /*a=*/1.)
-        , gamma_(gamma)
-      {
-      }
-
-      std::unique_ptr<FrictionLaw>
-      scaled(const double factor) const override
-      {
-        return std::make_unique<NewtonianFriction>(gamma_ * factor);
-      }
-
-    private:
-      const double gamma_;
-    };
-
     /// A formula f of the stretch: g(w) = gamma f(w).
     class ExpressionFriction : public FrictionLaw
     {
@@ -91,7 +69,7 @@ namespace crawler
         {"Newtonian",
          "a viscous film: gamma times stretch",
          [](const auto &, const Body &body, double) -> std::unique_ptr<const FrictionLaw> {
-           return std::make_unique<NewtonianFriction>(body.friction_coefficient);
+           return std::make_unique<PowerFriction>(body.friction_coefficient, /*a=*/1., /*its_is_power_law=*/false);
          }},
         {"expression",
          "gamma times a formula of the stretch w",

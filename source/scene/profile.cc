@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace crawler
 {
@@ -97,7 +96,7 @@ namespace crawler
         {
           const bool is_left = x < x_.front();
           if (!hold_ && !(std::abs(x - (is_left ? x_.front() : x_.back())) <= round_off))
-            return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+            return {NAN, NAN};
           return {is_left ? y_.front() : y_.back(), 0.};
         }
         if (spline_)

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <typeinfo>
 
 namespace crawler
 {
@@ -34,24 +33,24 @@ namespace crawler
         , pieces_(pieces)
       {
         if (stress.prescribed_strain() != nullptr)
-          strain_ = std::make_unique<ScaledActiveStress>(
+          facts_.prescribed_strain = std::make_shared<ScaledActiveStress>(
             *stress.prescribed_strain(), Units{units.length, units.time, /*force=*/1.}, nullptr);
         if (const StretchFeedback *feedback = stress.feedback())
-          feedback_.emplace(KnownFeedback::Facts{feedback->uses_rate(),
-                                                 feedback->distance() / units.length,
-                                                 feedback->delay() / units.time,
-                                                 feedback->sensor_length() / units.length},
-                            [this](const std::vector<double> &points) { return feedback_at(points); });
+          facts_.feedback = StretchFeedback{{feedback->facts.uses_rate,
+                                             feedback->facts.distance / units.length,
+                                             feedback->facts.delay / units.time,
+                                             feedback->facts.sensor_length / units.length},
+                                            [this](const std::vector<double> &points) { return feedback_at(points); }};
+        facts_.search = [&stress, T = units.time]() {
+          auto found = stress.repetition();
+          if (found)
+            found = {found->period / T, found->from / T};
+          return found;
+        };
         facts_.breaks_in_space = times(stress.breaks_in_space(), 1. / units.length);
         facts_.breaks_in_time  = times(stress.breaks_in_time(), 1. / units.time);
       }
-      ScaledActiveStress(const ScaledActiveStress &) = delete;
 
-      const ActiveStress *
-      prescribed_strain() const override
-      {
-        return strain_.get();
-      }
       const StressFailures *
       failures() const override
       {
@@ -61,11 +60,6 @@ namespace crawler
       report(std::ostream &out) const override
       {
         stress_.report(out);
-      }
-      const StretchFeedback *
-      feedback() const override
-      {
-        return feedback_ ? &*feedback_ : nullptr;
       }
       std::optional<Bounds>
       bounds(const Box &box) const override
@@ -117,19 +111,9 @@ namespace crawler
         return (pieces_ != nullptr ? pieces_->inside(t) : t) * units_.time;
       }
 
-      std::optional<Repetition>
-      search_repetition() const override
-      {
-        const auto physical = stress_.repetition();
-        return physical ? std::optional(Repetition{physical->period / units_.time, physical->from / units_.time})
-                        : std::nullopt;
-      }
-
       const ActiveStress &stress_;
       const Units units_;
       const TimeSegments *pieces_;
-      std::unique_ptr<const ActiveStress> strain_;
-      std::optional<KnownFeedback> feedback_;
     };
 
     void
@@ -179,20 +163,12 @@ namespace crawler
     }
   } // namespace
 
-  /// Compares types, which is faster than dynamic_cast: called in every residual.
-  bool
-  Scene::has_power_law() const
-  {
-    const FrictionLaw &law = *friction;
-    return typeid(law) == typeid(PowerFriction);
-  }
-
   std::string
   Scene::general_features() const
   {
     return listed({{profiles.elastic_modulus != nullptr, "Body/Elastic modulus profile"},
                    {profiles.friction != nullptr, "Body/Friction profile"},
-                   {!has_power_law(), "Ground/Friction law"},
+                   {!friction->is_power_law, "Ground/Friction law"},
                    {true, features_beyond_strain()}});
   }
 

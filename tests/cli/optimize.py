@@ -172,7 +172,7 @@ def test_cases(place):
     text = (place / "cases" / "optimum-3.prm").read_text(encoding="utf-8")
     expect("set Direction" in text and "8, 8" not in text, "an optimum has the axes of the study")
 
-    # Words and numbers that go together; a damaged row; a folder of an earlier version.
+    # Words and numbers that go together; a damaged row; a folder without them.
     settings = ("Sweep/Design=zip", f"Sweep/Axes={MODES}Harmonics : 1, 2; {MODES}"
                 'Coefficients : "0, 0.2, 0.001", "0, 0.2, 0.001, 0.01, 0.02"')
     pairs = run("optimize_harmonics", place / "pairs", *settings)
@@ -189,7 +189,7 @@ def test_cases(place):
                and rows(place / "pairs") == before, f"a damaged row of {name}: {damaged.returncode}, {damaged.stderr}")
     (place / "old" / "starts").mkdir(parents=True)
     (place / "old" / "starts" / "1-0.json").write_text("{}", encoding="utf-8")
-    checks.refused(run("optimize_harmonics", place / "old", options=["--resume"]), "made by an earlier version")
+    checks.refused(run("optimize_harmonics", place / "old", options=["--resume"]), "no optimization that can be resumed")
 
 
 def test_neighbours(place):

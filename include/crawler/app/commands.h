@@ -39,12 +39,6 @@ namespace crawler
     ExitCode
     run(MPI_Comm communicator) const;
 
-    const CLI::App &
-    app() const
-    {
-      return app_;
-    }
-
   private:
     void
     add_own_commands();

@@ -8,10 +8,6 @@
 
 namespace crawler
 {
-  /// Shells with completion: "bash", whose script zsh reads, too.
-  std::vector<std::string>
-  completion_shells();
-
   /// crawler completion: prints a script by which @p shell completes commands, options, files and the names of entries.
   /// Throws InputError for another shell.
   void

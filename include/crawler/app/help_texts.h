@@ -8,29 +8,9 @@
 
 namespace crawler
 {
-  /// Command line with its purpose.
-  struct Example
-  {
-    std::string command, meaning;
-  };
-
-  /// Examples of a command; without a name, first steps.
-  std::vector<Example>
-  examples_of(const std::string &command = "");
-
   /// Kinds of pictures of contrib/python/crawler/pictures.py.
   const std::vector<std::string> &
   plot_kinds();
-
-  /// Exit code with its meaning.
-  struct ExitCodeMeaning
-  {
-    std::string code, meaning;
-  };
-
-  /// Exit codes as in the table of the user guide.
-  std::vector<ExitCodeMeaning>
-  exit_code_meanings();
 
   /// Commands of the program, in the order of the help.
   std::vector<const CLI::App *>
@@ -47,4 +27,8 @@ namespace crawler
   /// Text at the end of crawler COMMAND --help.
   std::string
   help_footer(const std::string &command);
+
+  /// crawler man: prints the manual page, for man(1).
+  void
+  print_manual(const CLI::App &app);
 } // namespace crawler

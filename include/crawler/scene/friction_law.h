@@ -14,7 +14,13 @@ namespace crawler
   class FrictionLaw
   {
   public:
+    explicit FrictionLaw(const bool its_is_power_law = false)
+      : is_power_law(its_is_power_law)
+    {
+    }
     virtual ~FrictionLaw() = default;
+
+    const bool is_power_law; ///< with the exponent of the body: the only law of plain scenes (Scene::is_plain())
 
     /// Computes g [force time/length^2] at all stretches @p w and, unless @p w_dg is empty, its derivative with respect
     /// to the logarithm of the stretch, w dg/dw (spans of one length).
@@ -39,14 +45,14 @@ namespace crawler
   {
   public:
     /// @param gamma friction coefficient [force time/length^2]; @param a exponent [1].
-    PowerFriction(double gamma, double a);
+    PowerFriction(double gamma, double a, bool its_is_power_law = true);
 
     void
     values(std::span<const double> w, std::span<double> g, std::span<double> w_dg = {}) const override;
     std::unique_ptr<FrictionLaw>
     scaled(const double factor) const override
     {
-      return std::make_unique<PowerFriction>(gamma_ * factor, a_);
+      return std::make_unique<PowerFriction>(gamma_ * factor, a_, is_power_law);
     }
     double
     exponent(double) const override

@@ -53,55 +53,6 @@ namespace crawler
       std::move(function));
   }
 
-  /// A feedback whose properties are known at construction.
-  class KnownFeedback : public StretchFeedback
-  {
-  public:
-    /// Results of the member functions of the same names.
-    struct Facts
-    {
-      bool uses_rate  = false;
-      double distance = 0., delay = 0., sensor_length = 0.; ///< [length], [time], [length]
-    };
-    using Make = std::function<std::unique_ptr<FeedbackAtPoints>(const std::vector<double> &points)>;
-
-    KnownFeedback(const Facts &facts, Make make)
-      : facts_(facts)
-      , make_(std::move(make))
-    {
-    }
-
-    std::unique_ptr<FeedbackAtPoints>
-    at(const std::vector<double> &points) const override
-    {
-      return make_(points);
-    }
-    bool
-    uses_rate() const override
-    {
-      return facts_.uses_rate;
-    }
-    double
-    distance() const override
-    {
-      return facts_.distance;
-    }
-    double
-    delay() const override
-    {
-      return facts_.delay;
-    }
-    double
-    sensor_length() const override
-    {
-      return facts_.sensor_length;
-    }
-
-  private:
-    const Facts facts_;
-    const Make make_;
-  };
-
   /**
    * Common base of most generators: repetition and jumps are known at construction, and one evaluator gives values and
    * rates. The constructor fills `facts_`.
@@ -129,7 +80,7 @@ namespace crawler
     repetition() const override
     {
       if (!repetition_)
-        repetition_ = search_repetition();
+        repetition_ = facts_.search ? facts_.search() : facts_.repetition;
       return *repetition_;
     }
     std::vector<double>
@@ -141,6 +92,16 @@ namespace crawler
     breaks_in_time() const override
     {
       return facts_.breaks_in_time;
+    }
+    const StretchFeedback *
+    feedback() const override
+    {
+      return facts_.feedback ? &*facts_.feedback : nullptr;
+    }
+    const ActiveStress *
+    prescribed_strain() const override
+    {
+      return facts_.prescribed_strain.get();
     }
 
     /// The stress with smooth fronts in place of jumps that move along the body, @p part (above 0, at most 1) as wide
@@ -156,8 +117,11 @@ namespace crawler
     struct Facts
     {
       std::optional<Repetition> repetition;
+      std::function<std::optional<Repetition>()> search; ///< instead, if it takes long: called once, and only if needed
       std::vector<double> breaks_in_space, breaks_in_time; ///< [length], [time]
       bool has_rate = true;
+      std::optional<StretchFeedback> feedback;
+      std::shared_ptr<const ActiveStress> prescribed_strain;
     };
     Facts facts_;
 
@@ -165,13 +129,6 @@ namespace crawler
     /// Makes an evaluator of m, or of m_t if @p rate.
     virtual std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const = 0;
-
-    /// Searches a repetition that takes long to find (period.h): called once, and only if needed.
-    virtual std::optional<Repetition>
-    search_repetition() const
-    {
-      return facts_.repetition;
-    }
 
     mutable std::optional<std::optional<Repetition>> repetition_; ///< set by the first request
   };

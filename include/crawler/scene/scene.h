@@ -31,7 +31,7 @@ namespace crawler
     bool
     is_plain() const
     {
-      return profiles.is_plain() && ground.is_plain() && active_stress->feedback() == nullptr && has_power_law();
+      return profiles.is_plain() && ground.is_plain() && active_stress->feedback() == nullptr && friction->is_power_law;
     }
 
     /// True if the centre of mass stays in place, whatever the active stress: at a = 0, where friction does not depend
@@ -42,16 +42,12 @@ namespace crawler
       return is_plain() && body.friction_exponent() == 0.;
     }
 
-    /// True if the friction law is the power law.
-    bool
-    has_power_law() const;
-
     /// True if the motion of a body depends on its shape alone, not on its place or its past; then strides may repeat.
     bool
     is_alike_everywhere() const
     {
       const StretchFeedback *feedback = active_stress->feedback();
-      return !ground.profile && (feedback == nullptr || feedback->delay() == 0.);
+      return !ground.profile && (feedback == nullptr || feedback->facts.delay == 0.);
     }
 
     /// Features that is_plain() excludes, in words; empty if none.

@@ -91,7 +91,7 @@ namespace crawler
   };
 
   /// Interface version: grows by 1 whenever a header that a plug-in includes changes.
-  inline constexpr unsigned int plugin_interface = 5;
+  inline constexpr unsigned int plugin_interface = 6;
 
   /// Name of the function that CRAWLER_ACTIVE_STRESS_PLUGIN exports.
   inline constexpr const char *plugin_function = "crawler_active_stress_plugin";

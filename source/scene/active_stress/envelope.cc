@@ -2,7 +2,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/envelope.h>
-#include <crawler/scene/active_stress/profile.h>
+#include <crawler/scene/active_stress/wave_entries.h>
 #include <crawler/scene/breaks.h>
 
 #include <fmt/format.h>

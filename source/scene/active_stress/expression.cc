@@ -23,10 +23,10 @@ namespace crawler
 
   Expression::Expression(const FormulaInput &input, const double length, const double end_time)
     : length_(length)
-    , end_time_(end_time)
     , compiled_(read_formula(input, length, end_time))
     , bound_(compiled_)
   {
+    facts_.search              = [=, this]() { return find_repetition(*this, length, end_time); };
     const FormulaBreaks breaks = formula_breaks(compiled_, length, end_time);
     facts_.breaks_in_space     = breaks.in_space.value_or(std::vector<double>());
     facts_.breaks_in_time      = breaks.in_time.value_or(std::vector<double>());
@@ -57,12 +57,6 @@ namespace crawler
       gradient.evaluate(
         std::array<std::span<const double>, 2>{{points, {&t, 1}}}, m, std::array<std::span<double>, 2>{{{}, m_t}});
     });
-  }
-
-  std::optional<ActiveStress::Repetition>
-  Expression::search_repetition() const
-  {
-    return find_repetition(*this, length_, end_time_);
   }
 
   std::optional<ActiveStress::Bounds>

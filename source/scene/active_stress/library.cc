@@ -14,7 +14,6 @@
 #include <dlfcn.h>
 #include <filesystem>
 #include <functional>
-#include <limits>
 #include <ostream>
 #include <sstream>
 
@@ -24,7 +23,6 @@ namespace crawler
   {
     const std::string file_entry       = "Active stress/Library/File";
     const std::string parameters_entry = "Active stress/Library/Parameters";
-    constexpr double no_number         = std::numeric_limits<double>::quiet_NaN();
 
     /// Runs code of the user; returns what it threw, or nothing.
     template <typename Function>
@@ -90,7 +88,7 @@ namespace crawler
       values(const double t, const std::span<double> result)
       {
         if (!is_well(t, result))
-          std::fill(result.begin(), result.end(), no_number);
+          std::fill(result.begin(), result.end(), NAN);
       }
 
     private:
@@ -199,7 +197,7 @@ namespace crawler
           require_finite(*failures, m, points, seen, t);
         if (failures->count > n_before)
           for (const std::span<double> values : {m.m, m.m_w, m.m_rate, m.m_near})
-            std::fill(values.begin(), values.end(), no_number);
+            std::fill(values.begin(), values.end(), NAN);
       });
     }
 
@@ -308,16 +306,6 @@ namespace crawler
         ask(body.length, end_time);
       }
 
-      const StretchFeedback *
-      feedback() const override
-      {
-        return feedback_.get();
-      }
-      const ActiveStress *
-      prescribed_strain() const override
-      {
-        return strain_.get();
-      }
       const StressFailures *
       failures() const override
       {
@@ -354,15 +342,13 @@ namespace crawler
           facts_.has_rate        = stress_->rate_at({0.}) != nullptr;
           asked                  = "feedback()";
           if (const StretchFeedback *feedback = stress_->feedback())
-            feedback_ = std::make_unique<KnownFeedback>(
-              KnownFeedback::Facts{
-                feedback->uses_rate(), feedback->distance(), feedback->delay(), feedback->sensor_length()},
-              [failures = failures_, feedback](const std::vector<double> &points) {
-                return guarded_feedback_at(failures, *feedback, points);
-              });
+            facts_.feedback =
+              StretchFeedback{feedback->facts, [failures = failures_, feedback](const std::vector<double> &points) {
+                                return guarded_feedback_at(failures, *feedback, points);
+                              }};
           asked = "prescribed_strain()";
           if (const ActiveStress *strain = stress_->prescribed_strain())
-            strain_ = std::make_unique<StressByFunctions>(
+            facts_.prescribed_strain = std::make_shared<StressByFunctions>(
               [failures = failures_, strain](const std::vector<double> &points, const bool rate) {
                 return guarded(failures, *strain, " of its strain", points, rate);
               });
@@ -395,9 +381,6 @@ namespace crawler
       std::string file_;
       std::shared_ptr<LibraryFailures> failures_; ///< evaluators write here
       std::unique_ptr<const ActiveStress> stress_;
-      // Answers of the plug-in to calls that are made once.
-      std::unique_ptr<const StretchFeedback> feedback_;
-      std::unique_ptr<const ActiveStress> strain_;
       std::string report_;
     };
   } // namespace

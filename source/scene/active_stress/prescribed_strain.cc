@@ -73,6 +73,24 @@ namespace crawler
       });
     }
 
+    /// Reads a strain on a grid over s and t (base/grid_table.h), with cubic splines in both directions (tensor
+    /// product).
+    std::unique_ptr<const ActiveStress>
+    read_table(const std::string &name, const double length, const double end_time)
+    {
+      const std::string entry = prescribed_strain_section + "File";
+      GridTable grid          = read_grid_table(name, "strain", 4, entry);
+      reach_ends(grid.s, length, "s", "body", name, entry);
+      reach_ends(grid.t, end_time, "t", "duration", name, entry);
+      const auto table = std::make_shared<const GridInterpolation>(
+        std::move(grid), GridInterpolation::Method::cubic, GridInterpolation::Outside::go_on);
+      return std::make_unique<StressByFunctions>([table](const std::vector<double> &points, const bool rate) {
+        return stress_at_points([at = table->at(points), rate](const double t, const std::span<double> e) {
+          rate ? at->rates(t, e) : at->values(t, e);
+        });
+      });
+    }
+
     std::unique_ptr<const ActiveStress>
     create_strain(const PrescribedStrainParameters &parameters,
                   const double length,
@@ -82,7 +100,7 @@ namespace crawler
       if (parameters.given_by == "wave")
         return wave_strain(parameters, length);
       if (parameters.given_by == "table")
-        return read_strain_table(parameters.file, length, end_time, prescribed_strain_section + "File");
+        return read_table(parameters.file, length, end_time);
       if (!parameters.is_generated())
         return std::make_unique<Expression>(FormulaInput{"strain",
                                                          parameters.strain,
@@ -147,11 +165,15 @@ namespace crawler
     const double phase_rate = parameters.wave_number * parameters.wave_speed / scene.body.length;
     if (given_by_ == "wave" && parameters.amplitude != 0. && phase_rate != 0.)
       facts_.repetition = {1. / std::abs(phase_rate), 0.};
-    facts_.has_rate        = false;
-    facts_.breaks_in_space = strain_->breaks_in_space();
-    facts_.breaks_in_time  = strain_->breaks_in_time();
+    facts_.has_rate          = false;
+    facts_.breaks_in_space   = strain_->breaks_in_space();
+    facts_.breaks_in_time    = strain_->breaks_in_time();
+    facts_.prescribed_strain = strain_;
     if (is_generated_)
+    {
+      facts_.search = [this]() { return strain_->repetition(); };
       require_usable_generator(scene.end_time);
+    }
     require_admissible_strain(scene.end_time);
     choose_panels(scene.end_time);
   }
@@ -292,20 +314,5 @@ namespace crawler
                        extremes_.largest.s,
                        extremes_.largest.t);
     strain_->report(out);
-  }
-
-  std::unique_ptr<const ActiveStress>
-  read_strain_table(const std::string &name, const double length, const double end_time, const std::string &entry)
-  {
-    GridTable grid = read_grid_table(name, "strain", 4, entry);
-    reach_ends(grid.s, length, "s", "body", name, entry);
-    reach_ends(grid.t, end_time, "t", "duration", name, entry);
-    const auto table = std::make_shared<const GridInterpolation>(
-      std::move(grid), GridInterpolation::Method::cubic, GridInterpolation::Outside::go_on);
-    return std::make_unique<StressByFunctions>([table](const std::vector<double> &points, const bool rate) {
-      return stress_at_points([at = table->at(points), rate](const double t, const std::span<double> e) {
-        rate ? at->rates(t, e) : at->values(t, e);
-      });
-    });
   }
 } // namespace crawler

@@ -133,6 +133,7 @@ namespace crawler
     , speed_(parameters.wave_speed)
     , shape_(shape_of(parameters, body, end_time))
   {
+    facts_.search          = [=, this]() { return find_repetition(*this, body_.length, end_time); };
     facts_.breaks_in_space = within(shape_.kinks(), body.length); // kinks at the start, V(s)
   }
 
@@ -173,12 +174,6 @@ namespace crawler
       for (std::size_t i = 0; i < m.size(); ++i)
         m[i] = friction * (V[i] - tail - places[i] / L * (head - tail)) - elastic * shape_.derivative(x[i], panel);
     });
-  }
-
-  std::optional<ActiveStress::Repetition>
-  ShapedWave::search_repetition() const
-  {
-    return find_repetition(*this, body_.length, end_time_);
   }
 
   ShapedWave::LeadingOrder

@@ -114,16 +114,16 @@ namespace crawler
                     parameters.delay,
                     end_time),
         strain_feedback_section + "Delay");
-    const KnownFeedback::Facts facts = {.uses_rate     = formula->uses(w_t),
-                                        .distance      = formula->uses(w_near) ? parameters.distance : 0.,
-                                        .delay         = formula->uses(w_delayed) ? parameters.delay : 0.,
-                                        .sensor_length = formula->uses(w_near) ? sensor : 0.};
-    const FormulaBreaks breaks       = formula_breaks(formula, length, end_time);
-    feedback_                        = std::make_unique<KnownFeedback>(
+    const StretchFeedback::Facts facts = {.uses_rate     = formula->uses(w_t),
+                                          .distance      = formula->uses(w_near) ? parameters.distance : 0.,
+                                          .delay         = formula->uses(w_delayed) ? parameters.delay : 0.,
+                                          .sensor_length = formula->uses(w_near) ? sensor : 0.};
+    const FormulaBreaks breaks         = formula_breaks(formula, length, end_time);
+    facts_.feedback                    = StretchFeedback{
       facts,
       [formula, ends = breaks.in_space.value_or(std::vector<double>()), length](const std::vector<double> &points) {
         return formula_feedback(formula, off_breaks_at_ends(points, ends, length));
-      });
+      }};
     facts_.has_rate        = false;
     facts_.breaks_in_space = kinks_in_space(facts.distance, facts.sensor_length, length);
     facts_.breaks_in_time  = breaks.in_time.value_or(std::vector<double>());
@@ -141,8 +141,9 @@ namespace crawler
   StrainFeedback::evaluator(const std::vector<double> &points, bool) const
   {
     const std::vector<double> one(points.size(), 1.), zero(points.size(), 0.);
-    return stress_at_points([at = feedback_->at(points), one, zero](const double time, const std::span<double> m) {
-      at->values(time, {one, zero, one, one}, {m, {}, {}, {}});
-    });
+    return stress_at_points(
+      [at = facts_.feedback->at(points), one, zero](const double time, const std::span<double> m) {
+        at->values(time, {one, zero, one, one}, {m, {}, {}, {}});
+      });
   }
 } // namespace crawler

@@ -171,17 +171,18 @@ namespace crawler
 
     const std::string sum_section = "Active stress/Sum/";
 
-    /// Facts of the feedbacks of all terms, which have one distance, delay and sensor.
-    KnownFeedback::Facts
+    /// Facts of the feedbacks of all terms, which have one distance, delay and sensor; nothing without feedback.
+    std::optional<StretchFeedback::Facts>
     common_facts(const std::vector<SumTerm> &terms)
     {
-      KnownFeedback::Facts common;
-      bool sees_near = false;
+      StretchFeedback::Facts common;
+      bool has_feedback = false, sees_near = false;
       for (std::size_t i = 0; i < terms.size(); ++i)
       {
         const StretchFeedback *const feedback = terms[i].stress->feedback();
         if (feedback == nullptr)
           continue;
+        has_feedback    = true;
         const auto take = [i](const double value, double &known, const bool is_known, const char *name) {
           if (is_known && value != known)
             throw InputError(
@@ -195,17 +196,18 @@ namespace crawler
               fmt::format("{}Term {}/Generator", sum_section, i + 1));
           known = value;
         };
-        common.uses_rate = common.uses_rate || feedback->uses_rate();
-        if (feedback->sees_near())
+        const StretchFeedback::Facts &own = feedback->facts;
+        common.uses_rate                  = common.uses_rate || own.uses_rate;
+        if (own.sees_near())
         {
-          take(feedback->distance(), common.distance, sees_near, "distance");
-          take(feedback->sensor_length(), common.sensor_length, sees_near, "sensor length");
+          take(own.distance, common.distance, sees_near, "distance");
+          take(own.sensor_length, common.sensor_length, sees_near, "sensor length");
           sees_near = true;
         }
-        if (feedback->delay() != 0.)
-          take(feedback->delay(), common.delay, common.delay != 0., "delay");
+        if (own.delay != 0.)
+          take(own.delay, common.delay, common.delay != 0., "delay");
       }
-      return common;
+      return has_feedback ? std::optional(common) : std::nullopt;
     }
   } // namespace
 
@@ -237,11 +239,12 @@ namespace crawler
     if (std::all_of(terms_.begin(), terms_.end(), [](const SumTerm &term) { return term.multiplies; }))
       throw InputError("all terms of the sum multiply; at least one that adds is expected",
                        sum_section + "Term 1/Combine");
-    if (std::any_of(
-          terms_.begin(), terms_.end(), [](const SumTerm &term) { return term.stress->feedback() != nullptr; }))
-      feedback_ = std::make_unique<KnownFeedback>(common_facts(terms_), [this](const std::vector<double> &points) {
-        return std::make_unique<SumAtPoints>(terms_, points, SumAtPoints::Wanted::feedback);
-      });
+    if (const auto facts = common_facts(terms_))
+      facts_.feedback =
+        StretchFeedback{*facts, [this](const std::vector<double> &points) {
+                          return std::make_unique<SumAtPoints>(terms_, points, SumAtPoints::Wanted::feedback);
+                        }};
+    facts_.search  = [this]() { return search_repetition(); };
     const auto add = [](std::vector<double> &all, const std::vector<double> &list) {
       all.insert(all.end(), list.begin(), list.end());
     };

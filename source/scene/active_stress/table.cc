@@ -131,6 +131,29 @@ namespace crawler
       }
       return periodic ? std::vector<double>() : within({t.front(), t.back()}, end_time);
     }
+
+    /// Period of a periodic table, or a whole part of it after which equally spaced samples repeat.
+    ActiveStress::Repetition
+    repetition_of(const GridTable &grid)
+    {
+      const std::size_t n = grid.t.size() - 1, n_s = grid.s.size();
+      const double whole         = grid.t.back() - grid.t.front();
+      constexpr double same_step = 1e-9, same_value = 1e-10;
+      for (std::size_t j = 0; j < n; ++j)
+        if (std::abs(grid.t[j + 1] - grid.t[j] - whole / static_cast<double>(n)) > same_step * whole)
+          return {whole, 0.};
+      const double most        = same_value * largest(grid.values);
+      const auto repeats_after = [&](const std::size_t steps) {
+        for (std::size_t i = 0; i + steps * n_s < grid.values.size(); ++i)
+          if (std::abs(grid.values[i + steps * n_s] - grid.values[i]) > most)
+            return false;
+        return true;
+      };
+      for (std::size_t steps = 2; steps < n; ++steps) // one step would mean a steady m
+        if (n % steps == 0 && repeats_after(steps))
+          return {whole * static_cast<double>(steps) / static_cast<double>(n), 0.};
+      return {whole, 0.};
+    }
   } // namespace
 
   void
@@ -173,7 +196,9 @@ namespace crawler
         change = std::max(change, std::abs(grid.values[i + n_s] - grid.values[i]));
       changes_.push_back(change / (grid.t[j + 1] - grid.t[j]));
     }
-    const bool linear      = parameters.interpolation == "linear";
+    const bool linear = parameters.interpolation == "linear";
+    if (parameters.outside == "periodic")
+      facts_.search = [this]() { return repetition_of(table_.grid()); };
     facts_.breaks_in_space = kinks_in_space(grid.s, linear, length);
     facts_.breaks_in_time  = kinks_in_time(grid.t, linear, parameters.outside == "periodic", end_time);
   }
@@ -215,31 +240,6 @@ namespace crawler
       rate            = std::max(largest_change(from, to), largest_change(from - whole, to - whole));
     }
     return Bounds{more * largest_, more * rate};
-  }
-
-  std::optional<ActiveStress::Repetition>
-  ActiveStressTable::search_repetition() const
-  {
-    if (parameters_.outside != "periodic")
-      return std::nullopt;
-    const GridTable &grid = table_.grid();
-    const std::size_t n = grid.t.size() - 1, n_s = grid.s.size();
-    const double whole         = grid.t.back() - grid.t.front();
-    constexpr double same_step = 1e-9, same_value = 1e-10;
-    for (std::size_t j = 0; j < n; ++j)
-      if (std::abs(grid.t[j + 1] - grid.t[j] - whole / static_cast<double>(n)) > same_step * whole)
-        return Repetition{whole, 0.};
-    const double most        = same_value * largest(grid.values);
-    const auto repeats_after = [&](const std::size_t steps) {
-      for (std::size_t i = 0; i + steps * n_s < grid.values.size(); ++i)
-        if (std::abs(grid.values[i + steps * n_s] - grid.values[i]) > most)
-          return false;
-      return true;
-    };
-    for (std::size_t steps = 2; steps < n; ++steps) // one step would mean a steady m
-      if (n % steps == 0 && repeats_after(steps))
-        return Repetition{whole * static_cast<double>(steps) / static_cast<double>(n), 0.};
-    return Repetition{whole, 0.};
   }
 
   void

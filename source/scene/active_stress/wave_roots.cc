@@ -151,13 +151,6 @@ namespace crawler
     return sum / 4.;
   }
 
-  double
-  wave_energy(const Body &body, const WaveShape &shape, const double end_time, const double c)
-  {
-    return 2. * body.length * body.friction_coefficient * end_time * shape.delta_2() +
-           body.length * body.elastic_modulus / (c * c) * sine_sum(shape, c * end_time / body.length);
-  }
-
   WaveRoot
   describe_wave(const Body &body, const WaveShape &shape, const double chi, const double end_time, const double c)
   {

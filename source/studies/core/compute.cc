@@ -4,6 +4,7 @@
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/base/clock.h>
+#include <crawler/base/exceptions.h>
 #include <crawler/run/batch.h>
 #include <crawler/run/reduced_model.h>
 #include <crawler/run/self_check.h>
@@ -263,22 +264,35 @@ namespace crawler
     }
   } // namespace
 
-  std::string
-  problem_of(const Task &task)
+  PointStatus
+  status_of(const Task &task)
   {
     if (task.error)
       try
       {
         std::rethrow_exception(task.error);
       }
-      catch (const std::exception &error)
+      catch (const InputError &error)
       {
-        return error.what();
+        return {"failed", "refused", error.what()};
       }
-    const TimeOutcome &end = task.computed.result.time;
-    if (end.status == Status::finished)
-      return "";
-    return end.reason.empty() ? word_of(end.status) : end.reason + ": " + end.message;
+    if (task.is_out_of_time)
+      return {
+        "stopped",
+        time_limit_reason,
+        task.computed.result.time.status == Status::finished
+          ? "it took longer than Sweep/Time limit per point while its errors were measured; the run itself is complete"
+          : "it took longer than Sweep/Time limit per point"};
+    const TimeOutcome &time = task.computed.result.time;
+    return time.status == Status::finished ? PointStatus{word_of(time.status), "", ""}
+                                           : PointStatus{word_of(time.status), time.reason, time.message};
+  }
+
+  std::string
+  problem_of(const Task &task)
+  {
+    const auto &[status, reason, message] = status_of(task);
+    return status == "finished" ? "" : reason.empty() ? status : task.error ? message : reason + ": " + message;
   }
 
   void

@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
 namespace crawler
 {
@@ -67,9 +66,8 @@ namespace crawler
     Known
     known(const SimulationResult &result, const std::size_t number)
     {
-      constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-      const double error       = number == 0 ? (result.error ? result.error->total : unknown)
-                                             : error_bound(result, differentiated_numbers[number].key).value_or(unknown);
+      const double error = number == 0 ? (result.error ? result.error->total : NAN)
+                                       : error_bound(result, differentiated_numbers[number].key).value_or(NAN);
       return {differentiated_numbers[number].of(result), error};
     }
 

@@ -103,12 +103,6 @@ namespace crawler
     return !reason_.empty();
   }
 
-  bool
-  StudyClock::is_over_anywhere(MPI_Comm communicator)
-  {
-    return is_true_anywhere(is_over(), communicator);
-  }
-
   std::string
   StudyClock::in_words(const std::string &reason) const
   {

@@ -7,7 +7,6 @@
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/python.h>
 #include <crawler/studies/core/study.h>
-#include <crawler/studies/optimize/gradient_check.h>
 #include <crawler/studies/optimize/optimize.h>
 #include <crawler/studies/optimize/optimize_results.h>
 #include <crawler/studies/optimize/optimize_searches.h>
@@ -16,6 +15,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -43,23 +44,9 @@ namespace crawler
           runs.push_back(entry.path());
       }
       std::error_code error;
-      fs::remove_all(folder / "starts", error); // files of earlier versions
       for (const fs::path &file : files)
         fs::remove(file, error);
       std::ranges::for_each(runs, remove_run);
-    }
-
-    /// Throws InputError for a study of a version in which starts were files of their own, before the table of starts.
-    void
-    require_no_old_starts(const fs::path &folder)
-    {
-      std::error_code error;
-      if (!fs::exists(folder / OptimizeMemory::file, error) && fs::exists(folder / "starts" / "1-0.json", error))
-        throw InputError(fmt::format("the optimisation in \"{}\" was made by an earlier version of crawler, which kept "
-                                     "its starts as starts/*.json instead of {}, so it cannot be resumed; another "
-                                     "folder is expected for --output, or --overwrite",
-                                     folder.string(),
-                                     OptimizeMemory::file));
     }
 
     std::string
@@ -90,7 +77,7 @@ namespace crawler
       const fs::path file = folder.path / ("optimum" + number + ".prm"), place = folder.path / ("best" + number);
       write_file(file,
                  "# The best gait: what differs from the file that was optimised.\ninclude parameters.prm\n" +
-                   changes(entries, ParameterFile::from_text(cases.effective(), "parameters.prm")));
+                   changes(entries, ParameterFile::from_text(cases.points().effective(), "parameters.prm")));
       entries.set("Sweep/Axes", parameters.sweep.axes);
       CommandOptions one = folder.options;
       one.file           = file.string();
@@ -255,6 +242,132 @@ namespace crawler
         log.line(note);
     }
 
+    /// Number to check: its value, and its derivative by a variable.
+    struct Checked
+    {
+      std::string name;
+      std::function<double(const GaitValues &)> value;
+      std::function<double(const GaitValues &, std::size_t)> derivative;
+    };
+
+    void
+    add_extremes(const std::string &name,
+                 const GaitValues &here,
+                 LimitedValues GaitValues::*block,
+                 std::vector<Checked> &list)
+    {
+      const std::vector<double> &values = (here.*block).values;
+      const auto [least, most]          = std::ranges::minmax_element(values);
+      for (const auto place : {least, most})
+      {
+        const auto p = static_cast<std::size_t>(place - values.begin());
+        list.push_back({fmt::format("{} {}", place == least ? "smallest" : "largest", name),
+                        [=](const GaitValues &there) { return (there.*block).values[p]; },
+                        [=](const GaitValues &there, const std::size_t i) { return (there.*block).gradients[i][p]; }});
+      }
+    }
+
+    /// Numbers that the study wants or limits.
+    std::vector<Checked>
+    numbers_to_check(const GaitValues &here, const GaitWishes &wishes)
+    {
+      std::vector<Checked> list;
+      for (std::size_t k = 0; k < gait_numbers.size(); ++k)
+        if (wishes.numbers[k])
+          list.push_back({gait_numbers[k].words,
+                          [k](const GaitValues &there) { return there.numbers[k]; },
+                          [k](const GaitValues &there, const std::size_t i) { return there.gradients[k][i]; }});
+      if (wishes.strain && std::ranges::find(here.strain_by_differences, true) == here.strain_by_differences.end())
+        add_extremes("strain", here, &GaitValues::strain, list);
+      if (wishes.stress)
+        add_extremes("stress", here, &GaitValues::stress, list);
+      if (wishes.stress_rate)
+        add_extremes("stress rate", here, &GaitValues::stress_rate, list);
+      return list;
+    }
+
+    /// Largest deviation of a gradient from differences, relative to the number or to its largest derivative.
+    double
+    deviation_of(const Checked &number,
+                 const GaitValues &here,
+                 const std::vector<double> &differences,
+                 const std::vector<std::size_t> &variables,
+                 const std::function<double(std::size_t)> &scale)
+    {
+      double size = std::abs(number.value(here)), largest = 0.;
+      for (const std::size_t i : variables)
+      {
+        size    = std::max(size, std::abs(differences[i] * scale(i)));
+        largest = std::max(largest, std::abs((number.derivative(here, i) - differences[i]) * scale(i)));
+      }
+      return size > 0. ? largest / size : 0.;
+    }
+
+    /// Prints the derivatives of all requested numbers, and of the limited ones where they are most extreme, at @p x
+    /// beside differences of the model. Returns true if they agree to 1e-5 of the gradient's size, or, where gaits are
+    /// simulated, within their accuracy; nothing if all derivatives are differences themselves.
+    std::optional<bool>
+    check_gradient(GaitModel &model, const std::vector<double> &x, Log &log)
+    {
+      const double noise     = model.noise();
+      const double step      = noise > 0. ? 0.5 * std::cbrt(noise) : 1e-6,
+                   tolerance = noise > 0. ? 20. * noise / step : 1e-5;
+      const GaitValues here  = model.evaluate(x, /*with_gradients=*/true);
+      here.require_start();
+      const std::vector<Checked> list = numbers_to_check(here, model.wishes);
+      std::vector<std::size_t> checked;
+      for (std::size_t i = 0; i < x.size(); ++i)
+        if (here.by_differences.empty() || !here.by_differences[i])
+          checked.push_back(i);
+        else
+          log.line(
+            fmt::format("{}: its derivatives are differences of simulations, since the adjoint does not cover it; "
+                        "there is nothing to compare",
+                        model.family.variables[i].path));
+      if (checked.empty() || list.empty())
+        return std::nullopt;
+
+      // Values jump by their error where the integrator takes another step or the mesh another cell. Narrower
+      // differences avoid most of these places; a wrong derivative agrees with none.
+      std::vector<std::vector<double>> differences(list.size(), std::vector<double>(x.size()));
+      std::vector<double> deviations(list.size(), std::numeric_limits<double>::max());
+      for (double width = step; width >= step / 64. && std::ranges::max(deviations) > tolerance; width /= 8.)
+      {
+        std::vector<std::vector<double>> narrower(list.size(), std::vector<double>(x.size()));
+        for (const std::size_t i : checked)
+          for (const auto &point : model.family.stencil(x, i, width))
+          {
+            const GaitValues there = model.evaluate(point.x, /*with_gradients=*/false);
+            if (!there.problem.empty())
+              throw InputError("near the start: " + there.problem, "Optimize/Variables");
+            for (std::size_t c = 0; c < list.size(); ++c)
+              narrower[c][i] += point.weight * list[c].value(there);
+          }
+        for (std::size_t c = 0; c < list.size(); ++c)
+          if (const double deviation = deviation_of(
+                list[c], here, narrower[c], checked, [&](const std::size_t i) { return model.family.scale(x, i); });
+              deviation < deviations[c])
+          {
+            deviations[c]  = deviation;
+            differences[c] = narrower[c];
+          }
+      }
+      for (std::size_t c = 0; c < list.size(); ++c)
+      {
+        log.line(fmt::format("{}: gradient and differences differ by {:.1e} of its size; {:.1e} is {}",
+                             list[c].name,
+                             deviations[c],
+                             tolerance,
+                             deviations[c] <= tolerance ? "allowed" : "allowed: they do NOT agree"));
+        for (const std::size_t i : checked)
+          log.line(fmt::format("  {:<60} {:>17.10g} {:>17.10g}",
+                               model.family.variables[i].path,
+                               list[c].derivative(here, i),
+                               differences[c][i]));
+      }
+      return std::ranges::max(deviations) <= tolerance;
+    }
+
     /// --check-gradient: checks the gradients of each case at the start; where nothing can be compared at the start
     /// (e.g. a jump at the end of the run), beside it.
     ExitCode
@@ -306,8 +419,6 @@ namespace crawler
       {"optimization", OptimizeMemory::file, {"Optimize/Time limit", "Optimize/Starts"}}, options, log);
     std::unique_ptr<OptimizeMemory> memory;
     on_first_rank(communicator, [&]() {
-      if (options.resume)
-        require_no_old_starts(folder.path);
       memory = std::make_unique<OptimizeMemory>(cases, folder, file);
       if (memory->starts().empty())
         remove_optima(folder.path);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
-#include <crawler/parameters/axis.h>
 #include <crawler/studies/optimize/optimize_cases.h>
 
 #include <fmt/format.h>

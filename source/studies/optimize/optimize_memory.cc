@@ -222,7 +222,7 @@ namespace crawler
     : names_(cases.names())
     , folder_(folder)
     , table_(table_of_starts(names_))
-    , plan_{0, known_index(), cases.inputs(), cases.effective()}
+    , plan_{0, known_index(), sweep_inputs(cases.points()), cases.points().effective()}
     , start_rows_{file, group, table_.written_columns()}
     , evaluation_rows_{evaluations_file, evaluations_group, evaluation_columns(names_)}
   {

@@ -204,7 +204,7 @@ namespace crawler
             continue;
           StartResult leader = *own;
           std::optional<Part> found;
-          for (const unsigned long neighbour : cases_.neighbours(number))
+          for (const unsigned long neighbour : cases_.points().design().neighbours(number))
           {
             const StartResult *const other = best_of(neighbour);
             if (other == nullptr || cases_.names().cases[neighbour].paths != cases_.names().cases[number].paths)

@@ -49,11 +49,6 @@ namespace crawler
             "Optimize/Mean-square strain");
       }
 
-      bool
-      refine(const std::vector<double> &) override
-      {
-        return false;
-      }
       /// Steps see extremes at their stages only; a thousand pictures of each stride show those between.
       std::pair<double, double>
       extreme_strains(const std::vector<double> &x) override

@@ -127,7 +127,7 @@ namespace crawler
         if (has_mesh)
         {
           choose_mesh_and_steps();
-          if (clock_.is_over_anywhere(communicator_))
+          if (is_true_anywhere(clock_.is_over(), communicator_))
           {
             log_.warn(clock_.in_words(clock_.reason()) + " during the pilot runs; nothing was written");
             return ExitCode::stopped;
@@ -243,7 +243,7 @@ namespace crawler
             [&]() {
               if (other_runs_)
                 other_runs_->step();
-              return !clock_.is_over_anywhere(sharing_.ranks);
+              return !is_true_anywhere(clock_.is_over(), sharing_.ranks);
             },
             &memory_.journal());
           const Simulation::Options options = {.energy_balance = output.energy_balance,

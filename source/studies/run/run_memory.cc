@@ -17,20 +17,13 @@ namespace crawler
     {
       for (const std::string &note : resumption.notes)
         log.warn("warning: " + note);
-      switch (resumption.kind)
-      {
-        case Resumption::begins:
-          log.line(
-            fmt::format("There is no state in \"{}\" from which the run can resume: it starts from the beginning.",
-                        folder.string()));
-          break;
-        case Resumption::goes_on:
-          log.line("The run resumes from the state in restart.dat.");
-          break;
-        case Resumption::is_whole:
-          log.line(fmt::format("The run in \"{}\" is complete; nothing was computed.", folder.string()));
-          break;
-      }
+      log.line(
+        resumption.kind == Resumption::begins
+          ? fmt::format("There is no state in \"{}\" from which the run can resume: it starts from the beginning.",
+                        folder.string())
+        : resumption.kind == Resumption::goes_on
+          ? "The run resumes from the state in restart.dat."
+          : fmt::format("The run in \"{}\" is complete; nothing was computed.", folder.string()));
     }
   } // namespace
 
@@ -54,19 +47,18 @@ namespace crawler
   bool
   RunMemory::begin(Log &log)
   {
-    Resumption resumption;
-    on_first_rank(communicator_, [&]() {
+    Archive known(on_first_rank(communicator_, [&]() {
       require_usable(folder_, options_.overwrite || options_.resume);
       checkpoint_ = checkpoint_of(input_, options_);
-      if (options_.resume)
-      {
-        lock_.emplace(folder_, log);
-        resumption = resumption_of(folder_, checkpoint_);
-      }
-    });
+      if (!options_.resume)
+        return std::string();
+      lock_.emplace(folder_, log);
+      Resumption found = resumption_of(folder_, checkpoint_);
+      return archived(found);
+    }));
     if (!options_.resume)
       return true;
-    Archive known(broadcast(archived(resumption), communicator_));
+    Resumption resumption;
     known(resumption);
     report(log, resumption, folder_);
     goes_on_ = resumption.kind == Resumption::goes_on;

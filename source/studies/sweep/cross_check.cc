@@ -158,7 +158,6 @@ namespace crawler
       }
     };
 
-    constexpr double unknown                 = std::numeric_limits<double>::quiet_NaN();
     constexpr unsigned int explanation_width = 256;
     const char *const ratio_meaning =
       "difference between the displacement and that of the refined run, over the sum of both promised errors";
@@ -326,7 +325,7 @@ namespace crawler
                           verdict.in_words(),
                           shortened(verdict.explanation, explanation_width),
                           claim.promised_error,
-                          is_own_check ? unknown : ratio(claim)};
+                          is_own_check ? NAN : ratio(claim)};
       for (const auto run : {Checked::position, Checked::stretch, Checked::refined})
       {
         const Task *const task   = point.run(run);
@@ -334,8 +333,8 @@ namespace crawler
         const PointStatus status = task != nullptr ? status_of(*task) : PointStatus();
         row.insert(row.end(), {status.status, status.reason});
         for (const char *key : numbers_of_run)
-          row.push_back(task != nullptr ? value_in_row(*task, entry_of(key)) : unknown);
-        row.insert(row.end(), {its.promised_error, task != nullptr ? task->seconds : unknown});
+          row.push_back(task != nullptr ? value_in_row(*task, entry_of(key)) : NAN);
+        row.insert(row.end(), {its.promised_error, task != nullptr ? task->seconds : NAN});
         if (run != Checked::refined)
           row.push_back(ratio(its));
       }

@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <optional>
 
 namespace crawler
@@ -126,34 +125,10 @@ namespace crawler
     if (entry.is_word)
       return std::get<std::string>(value.index() == 0 ? ResultValue(std::string()) : value);
     if (const auto *number = std::get_if<double>(&value))
-      return std::isfinite(*number) ? *number : std::numeric_limits<double>::quiet_NaN();
+      return std::isfinite(*number) ? *number : NAN;
     if (const auto *count = std::get_if<unsigned long>(&value))
       return static_cast<double>(*count);
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-
-  PointStatus
-  status_of(const Task &task)
-  {
-    if (task.error)
-      try
-      {
-        std::rethrow_exception(task.error);
-      }
-      catch (const InputError &error)
-      {
-        return {"failed", "refused", error.what()};
-      }
-    if (task.is_out_of_time)
-      return {
-        "stopped",
-        time_limit_reason,
-        task.computed.result.time.status == Status::finished
-          ? "it took longer than Sweep/Time limit per point while its errors were measured; the run itself is complete"
-          : "it took longer than Sweep/Time limit per point"};
-    const TimeOutcome &time = task.computed.result.time;
-    return time.status == Status::finished ? PointStatus{word_of(time.status), "", ""}
-                                           : PointStatus{word_of(time.status), time.reason, time.message};
+    return NAN;
   }
 
   std::vector<RowFile::Column>

@@ -18,14 +18,7 @@ namespace crawler
 {
   namespace
   {
-    constexpr double not_known        = std::numeric_limits<double>::quiet_NaN();
     constexpr unsigned int word_width = 24, reason_width = 32, message_width = 256;
-
-    std::string
-    unit_of(const std::string &key)
-    {
-      return entry_of(key).unit;
-    }
 
     bool
     are_uncertain(const std::vector<SensitivityEntry> &entries)
@@ -76,14 +69,14 @@ namespace crawler
       {
         const std::string key = fmt::format(
           "sensitivities.{}.{}", entry.path, number == std::string("displacement") ? "" : std::string(number) + ".");
-        const std::string unit = unit_of(number) + " per unit of the entry";
+        const std::string unit = entry_of(number).unit + " per unit of the entry";
         columns.push_back({key + "value", unit, fmt::format("d({})/d({})", number, entry.path), 0});
         columns.push_back({key + "error", unit, "bound of the error of this derivative", 0});
       }
     if (are_uncertain(points.sensitivities()))
       for (const auto &[number, of] : differentiated_numbers)
         columns.push_back({std::string("uncertainty.") + number,
-                           unit_of(number),
+                           entry_of(number).unit,
                            std::string("standard deviation of ") + number + " from that of the uncertain entries",
                            0});
     if (points.sweep().cross_check)
@@ -105,7 +98,7 @@ namespace crawler
         row.push_back(value_in_row(task, entry));
     const SimulationResult &result = task.computed.result;
     const auto add                 = [&](const std::optional<double> &value) {
-      row.emplace_back(std::in_place_type<double>, value.value_or(not_known));
+      row.emplace_back(std::in_place_type<double>, value.value_or(NAN));
     };
     for (const SensitivityEntry &entry : sensitivities)
       for (const auto &[number, of] : differentiated_numbers)

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/studies/core/compute.h>
-#include <crawler/studies/sweep/sweep_rows.h>
 #include <crawler/studies/tradeoff/tradeoff_reference.h>
 
 #include <fmt/format.h>

@@ -135,11 +135,12 @@ TEST(StrainTable, MustCoverBodyAndDurationWithFourSamplesAtLeast)
   const test::TemporaryFolder folder;
   const std::string name = (folder.path / "strain.csv").string();
   write_file(name, grid(5, wave_of));
-  EXPECT_THROW(read_strain_table(name, 2., 1., ""), InputError);
-  EXPECT_THROW(read_strain_table(name, 1., 1.5, ""), InputError);
-  EXPECT_NO_THROW(read_strain_table(name, 1., 1., ""));
+  const test::Settings table = test::set("prescribed strain; Given by = table; File = {}", name);
+  EXPECT_EQ(complaint(table), "nothing");
+  test::expect_words(complaint(test::with(table, "L = 2")), {"the whole body"});
+  test::expect_words(complaint(test::with(table, "T = 1.5")), {"the whole duration"});
   write_file(name, grid(3, wave_of)); // too few for a spline
-  EXPECT_THROW(read_strain_table(name, 1., 1., ""), InputError);
+  test::expect_words(complaint(table), {"at least 4"});
 }
 
 TEST(PrescribedStrain, SaysWhatIsWrong)

@@ -6,6 +6,7 @@
 #include "../../support/stress.h"
 #include "../../support/temporary_folder.h"
 #include "../../support/test.h"
+#include "../../support/wave_energy.h"
 
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/base/gauss_panels.h>
@@ -79,7 +80,7 @@ TEST(ShapedWave, SineIsTheFourierSeries)
     body.length               = 2.;
     body.elastic_modulus      = 3.;
     body.friction_coefficient = 0.7;
-    EXPECT_NEAR(order.energy, 0.09 * wave_energy(body, shape, 5., speed), 1e-11);
+    EXPECT_NEAR(order.energy, 0.09 * test::wave_energy(body, shape, 5., speed), 1e-11);
   }
 }
 

@@ -4,6 +4,7 @@
 // integrals of its own fields.
 #include "../../support/run_text.h"
 #include "../../support/test.h"
+#include "../../support/wave_energy.h"
 
 #include <crawler/reduced_models/perturbation.h>
 #include <crawler/reduced_models/reduced_scene.h>
@@ -28,7 +29,7 @@ TEST(PerturbationSeries, IsTheTheorem)
   const auto &wave          = dynamic_cast<const OptimalWave &>(*scene.active_stress);
   const NaturalWave &series = *levels.wave();
   EXPECT_NEAR(perturbation::displacement(series, 1.) * scene.body.length, wave.wave().displacement, 1e-14);
-  const double H = wave_energy(scene.body, wave.shape(), scene.end_time, 0.8), chi = 0.1;
+  const double H = test::wave_energy(scene.body, wave.shape(), scene.end_time, 0.8), chi = 0.1;
   EXPECT_NEAR(perturbation::energies(series, 1.).stress_work * levels.units().energy(), chi * chi * H, 1e-14);
   const auto extremes = perturbation::extremes(series);
   EXPECT_NEAR(1. + extremes.smallest.strain, wave.wave().min_stretch, 1e-3); // which looks at 256 points

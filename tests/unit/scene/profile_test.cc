@@ -4,7 +4,7 @@
 #include "../../support/derivative.h"
 #include "../../support/test.h"
 
-#include <crawler/scene/active_stress/profile.h>
+#include <crawler/scene/active_stress/wave_entries.h>
 
 using namespace crawler;
 

@@ -181,9 +181,9 @@ TEST(Sum, CombinesFeedback)
                          term(seen_by(0.1, 0.), true, 0.5),
                          term(expression("1+s*t"), true));
   ASSERT_NE(all.feedback(), nullptr);
-  EXPECT_TRUE(all.feedback()->uses_rate());
-  EXPECT_EQ(all.feedback()->distance(), 0.1);
-  EXPECT_EQ(all.feedback()->delay(), 0.2);
+  EXPECT_TRUE(all.feedback()->facts.uses_rate);
+  EXPECT_EQ(all.feedback()->facts.distance, 0.1);
+  EXPECT_EQ(all.feedback()->facts.delay, 0.2);
 
   const std::size_t n = points.size();
   const double t      = 0.7;
@@ -226,7 +226,7 @@ TEST(Sum, CombinesFeedback)
   // A sensor and a point, or two lengths of sensors, have no common near stretch.
   EXPECT_THROW(sum_of(term(seen_by(0.1, 0.)), term(seen_by(0.1, 0., 0.2))), InputError);
   EXPECT_THROW(sum_of(term(seen_by(0., 0., 0.3)), term(seen_by(0.1, 0., 0.3))), InputError);
-  EXPECT_EQ(sum_of(term(seen_by(0., 0., 0.3)), term(seen_by(0., 1.))).feedback()->sensor_length(), 0.3);
+  EXPECT_EQ(sum_of(term(seen_by(0., 0., 0.3)), term(seen_by(0., 1.))).feedback()->facts.sensor_length, 0.3);
 }
 
 /// Through the parameter file: as many terms as it has, and the values of the formula.

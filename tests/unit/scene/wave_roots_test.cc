@@ -2,6 +2,7 @@
 //
 // Numbers of doc/theory.md, section "The optimal wave" (gamma = k = L = 1, a = -1, a_1 = 1 unless stated).
 #include "../../support/test.h"
+#include "../../support/wave_energy.h"
 
 #include <crawler/base/exceptions.h>
 #include <crawler/scene/active_stress/optimal_wave.h>
@@ -53,7 +54,7 @@ TEST(WaveRoots, EveryRootSpendsTheEnergy)
   EXPECT_GT(found.roots.size(), 5u);
   for (const WaveRoot &root : found.roots)
   {
-    EXPECT_NEAR(wave_energy(body, shape, T, root.speed) / (1.2 * smallest), 1., 1e-12);
+    EXPECT_NEAR(test::wave_energy(body, shape, T, root.speed) / (1.2 * smallest), 1., 1e-12);
     // c = a/(L gamma alpha)
     EXPECT_NEAR(
       root.speed * body.length * body.friction_coefficient * root.multiplier, body.friction_exponent(), 1e-12);

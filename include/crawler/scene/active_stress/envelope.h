@@ -26,8 +26,8 @@ namespace crawler
 
   /**
    * A factor window(s) ramp(t) of an active stress. The window is 1 from its start to its end and 0 outside; its edges
-   * are smooth steps (profile.h) of a given width inside it, or jumps if the width is 0; a start or end that is not
-   * given has no edge. The ramp is a smooth step from 0 at t = 0 to 1 at the ramp's duration.
+   * are smooth steps (wave_entries.h) of a given width inside it, or jumps if the width is 0; a start or end that is
+   * not given has no edge. The ramp is a smooth step from 0 at t = 0 to 1 at the ramp's duration.
    */
   class Envelope
   {
@@ -74,9 +74,9 @@ namespace crawler
   };
 
   /**
-   * The factor W(x), 1 in the window [from, to] and 0 outside, with smooth steps S (profile.h) of the edge width inside
-   * both ends, W(x) = S((x - from)/width) S((to - x)/width), or jumps if the width is 0. A window that begins before 0
-   * by the edge width, or ends as much after the end of the range, has no edge there.
+   * The factor W(x), 1 in the window [from, to] and 0 outside, with smooth steps S (wave_entries.h) of the edge width
+   * inside both ends, W(x) = S((x - from)/width) S((to - x)/width), or jumps if the width is 0. A window that begins
+   * before 0 by the edge width, or ends as much after the end of the range, has no edge there.
    */
   class Window
   {

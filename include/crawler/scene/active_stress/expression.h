@@ -40,10 +40,8 @@ namespace crawler
   private:
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
-    std::optional<Repetition>
-    search_repetition() const override;
 
-    const double length_, end_time_;
+    const double length_;
     const std::shared_ptr<const Formula> compiled_;
     mutable FormulaBound bound_;
   };

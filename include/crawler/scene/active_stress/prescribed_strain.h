@@ -54,11 +54,6 @@ namespace crawler
                      const Scene &scene,
                      std::unique_ptr<const ActiveStress> generator = nullptr);
 
-    const ActiveStress *
-    prescribed_strain() const override
-    {
-      return strain_.get();
-    }
 
     const StressFailures *
     failures() const override
@@ -72,11 +67,6 @@ namespace crawler
   private:
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
-    std::optional<Repetition>
-    search_repetition() const override
-    {
-      return is_generated_ ? strain_->repetition() : facts_.repetition;
-    }
 
     void
     require_usable_generator(double end_time) const;
@@ -88,17 +78,8 @@ namespace crawler
     const Scene scene_; ///< without active stress
     const std::string given_by_;
     const bool is_generated_;
-    const std::unique_ptr<const ActiveStress> strain_;
+    const std::shared_ptr<const ActiveStress> strain_;
     StrainExtremes extremes_{};
     std::vector<double> panels_; ///< ends of the panels of the quadrature over the body
   };
-
-  /**
-   * Reads a strain on a grid over s and t, with cubic splines in both directions (tensor product), from the file @p
-   * name, CSV with the header s,t,strain or HDF5 with the dataset strain (base/grid_table.h). Throws InputError for
-   * @p entry if that cannot be read, if there are fewer than four values of s or t, or if the grid does not reach from
-   * 0 to @p length and from 0 to @p end_time.
-   */
-  std::unique_ptr<const ActiveStress>
-  read_strain_table(const std::string &name, double length, double end_time, const std::string &entry);
 } // namespace crawler

@@ -8,8 +8,6 @@
 
 namespace crawler
 {
-  class Declarations;
-
   /// Section "Active stress/Pulse".
   struct PulseParameters
   {

@@ -2,15 +2,13 @@
 #pragma once
 
 #include <crawler/scene/active_stress/envelope.h>
-#include <crawler/scene/active_stress/profile.h>
+#include <crawler/scene/active_stress/wave_entries.h>
 #include <crawler/scene/known_stress.h>
 
 #include <string>
 
 namespace crawler
 {
-  class Declarations;
-
   /// Section "Active stress/Segments".
   struct SegmentsParameters
   {
@@ -40,7 +38,7 @@ namespace crawler
    * where n_i counts the segments before it in the running direction, and y_i has the period 1, mean A_i D, and is
    *  - square: A_i for the fraction D of the period, then 0, where A_i is cut to the saturation. With a rate limit it
    *    is the periodic response of an actuator that follows the square signal at the rate r: a trapezoid;
-   *  - smooth: A_i times a Switching with smooth fronts (profile.h), cut to the saturation.
+   *  - smooth: A_i times a Switching with smooth fronts (wave_entries.h), cut to the saturation.
    */
   class Segments : public KnownStress
   {

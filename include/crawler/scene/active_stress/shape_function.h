@@ -30,19 +30,9 @@ namespace crawler
     /// Interpolates values @p f at increasing @p x, four at least, by a cubic spline (base/cubic_spline.h).
     ShapeFunction(const std::vector<double> &x, const std::vector<double> &f);
 
-    double
-    from() const
-    {
-      return left_.front();
-    }
-    double
-    to() const
-    {
-      return left_.back();
-    }
-
-    /// Writes V and its integral from from() to x at places x; all lists have one length. @p panel is that of the last
-    /// place (0 at first), which is fast for places in order. Beyond the ends the outermost polynomials continue.
+    /// Writes V and its integral from the first panel to x at places x; all lists have one length. @p panel is that of
+    /// the last place (0 at first), which is fast for places in order. Beyond the ends the outermost polynomials
+    /// continue.
     void
     values_and_integrals(std::span<const double> x,
                          std::size_t &panel,

@@ -43,8 +43,6 @@ namespace crawler
     evaluator(const std::vector<double> &points, bool rate) const override;
     std::unique_ptr<ActiveStressAtPoints>
     rate_evaluator(const std::vector<double> &points) const;
-    std::optional<Repetition>
-    search_repetition() const override;
 
     const double end_time_;
     const std::string shape_name_;

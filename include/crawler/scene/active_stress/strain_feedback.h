@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/formula/formula.h>
 #include <crawler/scene/known_stress.h>
 
 #include <string>
@@ -35,17 +34,9 @@ namespace crawler
     /// Throws InputError if the formula, the constants, the distance, the delay or the sensor do not make sense.
     StrainFeedback(const StrainFeedbackParameters &parameters, double length, double end_time);
 
-    const StretchFeedback *
-    feedback() const override
-    {
-      return feedback_.get();
-    }
-
   private:
     /// Makes an evaluator for a body with the stretch 1 at rest.
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
-
-    std::unique_ptr<const StretchFeedback> feedback_;
   };
 } // namespace crawler

@@ -11,8 +11,6 @@
 
 namespace crawler
 {
-  class Declarations;
-
   /// Entries of a term of a sum besides those of its generator.
   struct SumTermParameters
   {
@@ -56,11 +54,6 @@ namespace crawler
     std::unique_ptr<const ActiveStress>
     with_fronts(double part) const override;
 
-    const StretchFeedback *
-    feedback() const override
-    {
-      return feedback_.get();
-    }
     void
     report(std::ostream &out) const override;
     const StressFailures *
@@ -73,11 +66,10 @@ namespace crawler
     /// Finds a common period of all terms (period.h), or a whole part of it after which the sum repeats, from the time
     /// on at which no window in time changes any more; if a term's is unknown, searches that of the sum.
     std::optional<Repetition>
-    search_repetition() const override;
+    search_repetition() const;
 
     const std::vector<SumTerm> terms_;
     const double length_, end_time_;
-    std::unique_ptr<const StretchFeedback> feedback_;
     mutable StressFailures failures_; ///< of all terms
   };
 } // namespace crawler

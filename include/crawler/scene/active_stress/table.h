@@ -44,10 +44,6 @@ namespace crawler
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
 
-    /// Finds the period of a periodic table, or a whole part of it after which equally spaced samples repeat.
-    std::optional<Repetition>
-    search_repetition() const override;
-
     const TableParameters parameters_;
     const double length_;
     const GridInterpolation table_;

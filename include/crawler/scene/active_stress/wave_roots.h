@@ -49,20 +49,15 @@ namespace crawler
     double largest_energy  = 0;  ///< waves exist below this energy only
   };
 
-  /// Energy H of the wave with speed @p c: theory.md section 3, H = 2 L gamma T Delta_2 + (L k/c^2) sum P_n sin^2(pi n
-  /// c T/L).
-  double
-  wave_energy(const Body &body, const WaveShape &shape, double end_time, double c);
-
   /// Properties of the wave with speed @p c (any sign).
   WaveRoot
   describe_wave(const Body &body, const WaveShape &shape, double chi, double end_time, double c);
 
   /**
-   * Waves of the given shape whose energy is @p energy: the roots c of wave_energy(c) = H, with the sign of c that
-   * moves the body to +s (the mirrored wave -c spends the same energy). The list ends when there are at least @p
-   * at_least roots and ten admissible ones if there are infinitely or very many. It is empty if H is not between
-   * smallest_energy and largest_energy.
+   * Waves of the given shape whose energy H is @p energy: the roots c of H = 2 L gamma T Delta_2 + (L k/c^2) sum P_n
+   * sin^2(pi n c T/L) (theory.md, section 3), with the sign of c that moves the body to +s (the mirrored wave -c spends
+   * the same energy). The list ends when there are at least @p at_least roots and ten admissible ones if there are
+   * infinitely or very many. It is empty if H is not between smallest_energy and largest_energy.
    *
    * With x = c T/L and h = (H - 2 L gamma T Delta_2) L/(k T^2) the equation is h x^2 = sum P_n sin^2(pi n x). At
    * h = 0 (to 1e-12 of H) every root is a double one, where all sines vanish: no sign changes there.

@@ -9,8 +9,6 @@
 
 namespace crawler
 {
-  class Declarations;
-
   /// Section "Active stress/Travelling wave".
   struct TravellingWaveParameters
   {

@@ -30,7 +30,19 @@ namespace crawler
     bool has_answer     = false; ///< the answer was found in the lanes, and is as accurate as requested
   };
 
-  /// Reason in words why a task has no answer; empty if it has one.
+  /// Reason of a point that took longer than the time limit.
+  inline const std::string time_limit_reason = "time_limit";
+
+  /// Outcome of a task, in a word, and why.
+  struct PointStatus
+  {
+    std::string status, reason, message;
+  };
+  /// Throws FileError, which ends a study.
+  PointStatus
+  status_of(const Task &task);
+
+  /// Reason in words why a task has no answer; empty if it has one. Throws FileError.
   std::string
   problem_of(const Task &task);
 

@@ -61,11 +61,9 @@ namespace crawler
       stop_file_ = std::move(file);
     }
 
-    /// Returns true, from then on, once there is a cause on this rank, or on any rank (collective).
+    /// Returns true, from then on, once there is a cause on this rank.
     bool
     is_over();
-    bool
-    is_over_anywhere(MPI_Comm communicator);
 
     bool
     has_signal() const

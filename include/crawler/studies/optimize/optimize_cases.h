@@ -58,13 +58,6 @@ namespace crawler
       return !names_.axes.empty();
     }
 
-    /// Cases next to a case (SweepDesign::neighbours()).
-    std::vector<unsigned long>
-    neighbours(unsigned long number) const
-    {
-      return points_.design().neighbours(number);
-    }
-
     /// Values of a case, "Section/Entry = value, ...", with the last names only; empty if there are no axes.
     std::string
     in_words(unsigned long number) const;
@@ -79,18 +72,11 @@ namespace crawler
     std::vector<std::string>
     notes(const ParameterFile &file);
 
-    /// Inputs on which the gaits depend (one process: reads files). Throws FileError.
-    SweepInputs
-    inputs() const
+    /// The cases as points of a design.
+    const SweepPoints &
+    points() const
     {
-      return sweep_inputs(points_);
-    }
-
-    /// Entries as used, except for the axes, as a .prm file.
-    const std::string &
-    effective() const
-    {
-      return points_.effective();
+      return points_;
     }
 
   private:

@@ -3,8 +3,8 @@
 
 #include <crawler/studies/optimize/gait_problem.h>
 
+#include <cmath>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -62,7 +62,7 @@ namespace crawler
   struct SearchState
   {
     std::size_t evaluations = 0;
-    double best             = std::numeric_limits<double>::quiet_NaN(); ///< best objective so far
+    double best             = NAN; ///< best objective so far
   };
 
   /**

@@ -106,10 +106,13 @@ namespace crawler
     GaitValues
     evaluate(const std::vector<double> &x, bool with_gradients, const std::vector<std::size_t> &places = {});
 
-    /// Checks a result more closely and refines the grid if it was too coarse. Returns true if it did: then the optimum
-    /// is to be searched once more.
+    /// Checks a result more closely and refines the grid, if there is one, where it was too coarse. Returns true if it
+    /// did: then the optimum is to be searched once more.
     virtual bool
-    refine(const std::vector<double> &x) = 0;
+    refine([[maybe_unused]] const std::vector<double> &x)
+    {
+      return false;
+    }
 
     /// Smallest and largest strain over body and duration, also between the places where they are limited.
     virtual std::pair<double, double>

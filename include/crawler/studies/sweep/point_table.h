@@ -37,22 +37,11 @@ namespace crawler
     written_columns() const;
   };
 
-  /// Reason of a point that took longer than the time limit.
-  inline const std::string time_limit_reason = "time_limit";
-
   /// Number or word of a run under this key, and its value in a row; not a number or empty where it is unknown.
   const ResultEntry &
   entry_of(const std::string &key);
   RowFile::Value
   value_in_row(const Task &task, const ResultEntry &entry);
-
-  /// Outcome of a point, in a word, and why.
-  struct PointStatus
-  {
-    std::string status, reason, message;
-  };
-  PointStatus
-  status_of(const Task &task);
 
   /// Columns of index and axes.
   std::vector<RowFile::Column>

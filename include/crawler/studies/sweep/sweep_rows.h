@@ -7,8 +7,8 @@
 
 #include <mpi.h>
 
+#include <cmath>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -37,7 +37,7 @@ namespace crawler
       reasons, verdicts;
     unsigned long n_points = 0;
     std::map<unsigned long, std::string> wrong_answers; ///< the first few by point, each in a sentence
-    double largest_error_ratio = std::numeric_limits<double>::quiet_NaN();
+    double largest_error_ratio = NAN;
 
     unsigned long
     number_of(Verdict::Kind kind) const;
