@@ -27,6 +27,9 @@ namespace crawler
     constexpr double largest_tolerance = 1e-3, same_size = 0.1;
     /// Ratio of two successive changes by more cells above which they show errors of the time steps, not of the mesh.
     constexpr double falling = 0.35;
+    /// Cycles of each run where the stiffness of a cycle is at least this: starts from rest are forgotten in one.
+    constexpr unsigned int first_cycles   = 2;
+    constexpr double forgetting_stiffness = 0.3;
     /// Limits at which the search is given up.
     constexpr unsigned int max_runs = 40, max_cells = 96, max_cells_of_piece = 12;
     /// Factor on max_cells while cells times steps stay below max_work; the last change by more cells may then be
@@ -286,7 +289,11 @@ namespace crawler
     start.tolerance   = pilots.parameters.time.tolerance.value_or(0.);
     const auto cycles = pilots.cycles;
     if (pilots.cycles)
+    {
       pilots.cycles->accuracy = accuracy; // the displacements are compared here
+      if (pilots.stiffness() * pilots.cycles->period / pilots.scene.end_time > forgetting_stiffness)
+        pilots.cycles->computed = first_cycles;
+    }
     const auto space_over_time = Search(pilots, start).find(choice);
     pilots.cycles              = cycles;
     if (!space_over_time)

@@ -117,6 +117,8 @@ namespace crawler
     ends_.push_back({displacement, energy_balance ? *energy_balance : EnergyBalance()});
     if (ends_.size() >= 3)
       judge(decay);
+    if (wish_.computed > 0)
+      repeats_ = ends_.size() > wish_.computed;
     return repeats_;
   }
 

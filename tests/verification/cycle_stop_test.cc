@@ -98,6 +98,20 @@ TEST(CycleStop, LedgerIsThatOfTheWholeRun)
 }
 
 /// A duration that is not a whole number of periods: the run begins with the part of one.
+/// Searches compare runs of two cycles, as the start is forgotten in one, and go on from there.
+TEST(CycleStop, EndsAfterTwoCyclesIfAsked)
+{
+  const auto parameters = test::parameters_with(test::wave(-1., 0.4, 1., 20.));
+  auto wish             = cycle_wish(parameters, parameters.create_scene(), /*has_pictures=*/false);
+  ASSERT_TRUE(wish);
+  wish->accuracy    = 1e-9; // needs three
+  wish->computed    = 2;
+  const auto result = test::run_with(parameters, {.cycles = wish}).result;
+  EXPECT_EQ(result.cycles->computed, 2u);
+  EXPECT_EQ(result.cycles->extrapolated, 18u);
+  EXPECT_NEAR(result.displacement, 1.801968240, 1e-4);
+}
+
 TEST(CycleStop, PartOfACycle)
 {
   const Pair pair = run_both(accurate(test::wave(2., 0.2, 1., 7.37, 0.5)), 1e-7);

@@ -26,15 +26,16 @@ namespace crawler
   /// Request to end a run when its cycles repeat.
   struct CycleWish
   {
-    double period;    ///< period of the active stress [time]
-    double accuracy;  ///< relative accuracy of the displacement; the bound takes a fifth of it at most
-    double from = 0.; ///< time at which the active stress begins to repeat [time]
+    double period;              ///< period of the active stress [time]
+    double accuracy;            ///< relative accuracy of the displacement; the bound takes a fifth of it at most
+    double from           = 0.; ///< time at which the active stress begins to repeat [time]
+    unsigned int computed = 0;  ///< cycles after which the run ends, whether they repeat or not; 0: as they repeat
 
     /// Returns the request with times in this unit.
     CycleWish
     in_units(const double time) const
     {
-      return {period / time, accuracy, from / time};
+      return {period / time, accuracy, from / time, computed};
     }
   };
 
