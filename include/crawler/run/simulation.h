@@ -65,10 +65,6 @@ namespace crawler
     void
     choose_stepper();
     void
-    go_on_with_petsc(const TimeOutcome &outcome);
-    void
-    count_part(const TimeOutcome &outcome);
-    void
     begin_segment();
     void
     change();
@@ -78,8 +74,6 @@ namespace crawler
     stress_failed();
     Ending
     see(const Step &step, std::span<const double> y);
-    Ending
-    ending_after(const Step &step, std::span<const double> y);
     Ending
     examine(const Step &step, std::span<const double> y);
     bool
@@ -134,18 +128,12 @@ namespace crawler
     inverted_at_end(double s, double t, const std::string &reason);
     void
     inverted_inside(double value, double s, double t);
-    void
-    under_resolved(double value, double s, double t);
     TimeOutcome
     integrate();
     Ending
     integrate_part();
     Ending
     look_at(const Step &part, const Step &step);
-    Step
-    with_counts_before(Step step) const;
-    TimeOutcome
-    outcome_of_parts() const;
     bool
     goes_on_after(Ending ending, TimeOutcome &outcome);
     TimeOutcome
