@@ -23,41 +23,48 @@ namespace crawler
     }
   } // namespace
 
-  FieldSampler::FieldSampler(const Assembler &assembler, const Units &units, std::vector<CellPlace> points)
-    : assembler_(assembler)
-    , units_(units)
-    , points_(std::move(points))
-    , values_(interpolation_matrix(assembler.discretization().element().nodes, in_cells(points_)))
-    , stretch_(assembler.discretization().element(), in_cells(points_))
+  FieldSampler::FieldSampler(Places places)
+    : places_(std::move(places))
   {
-    coordinates_ = assembler.discretization().points_of(points_);
+  }
+
+  void
+  FieldSampler::begin_mesh(const Snapshot &snapshot)
+  {
+    const Assembler &assembler      = snapshot.assembler;
+    const ReferenceElement &element = assembler.discretization().element();
+    mesh_number_                    = snapshot.mesh_number;
+    points_                         = places_(assembler.discretization());
+    coordinates_                    = assembler.discretization().points_of(points_);
+    values_                         = interpolation_matrix(element.nodes, in_cells(points_));
+    stretch_.emplace(element, in_cells(points_));
     if (assembler.scene().is_plain())
       stress_ = assembler.scene().active_stress->at(coordinates_);
     else
       general_ = std::make_unique<GeneralSampler>(assembler, points_);
     for (double &s : coordinates_)
-      s *= units.length;
-    for (auto *field : {&fields_.position,
-                        &fields_.displacement,
-                        &fields_.stretch,
-                        &fields_.velocity,
-                        &fields_.active_stress,
-                        &fields_.elastic_stress,
-                        &fields_.friction_force})
-      field->resize(points_.size());
+      s *= snapshot.units.length;
+    for (const FieldName &field : field_names)
+      (fields_.*field.values).resize(points_.size());
   }
 
   const Fields &
-  FieldSampler::sample(const double t, const std::span<const double> y, const std::span<const double> v)
+  FieldSampler::sample(const Snapshot &snapshot)
   {
-    const Discretization &d            = assembler_.discretization();
-    const auto u_local                 = d.to_local(assembler_.displacement(y), u_local_);
+    if (!stretch_ || mesh_number_ != snapshot.mesh_number)
+      begin_mesh(snapshot);
+    const Assembler &assembler      = snapshot.assembler;
+    const Units &units              = snapshot.units;
+    const Discretization &d         = assembler.discretization();
+    const double t                  = snapshot.computed_time;
+    const std::span<const double> y = snapshot.y, v = snapshot.v;
+    const auto u_local                 = d.to_local(assembler.displacement(y), u_local_);
     const auto v_local                 = d.to_local(v, v_local_);
-    const std::vector<double> slopes   = assembler_.stretch_slopes(y);
-    const std::vector<double> friction = assembler_.node_friction(t, y, v);
-    const auto cells                   = assembler_.stretch(y);
+    const std::vector<double> slopes   = assembler.stretch_slopes(y);
+    const std::vector<double> friction = assembler.node_friction(t, y, v);
+    const auto cells                   = assembler.stretch(y);
     const unsigned int n = d.element().n, q = d.element().degree;
-    const double k = assembler_.scene().body.elastic_modulus;
+    const double k = assembler.scene().body.elastic_modulus;
     for (std::size_t p = 0; p < points_.size(); ++p)
     {
       const unsigned int cell = points_[p].cell;
@@ -69,10 +76,10 @@ namespace crawler
         u_p += values_[p * n + i] * u_local[node];
         v_p += values_[p * n + i] * v_local[node];
       }
-      fields_.displacement[p] = u_p * units_.length;
+      fields_.displacement[p] = u_p * units.length;
       fields_.position[p]     = coordinates_[p] + fields_.displacement[p];
       fields_.velocity[p]     = v_p;
-      double strain           = stretch_.strain(u_local, cell, d.cell_size()[cell], place);
+      double strain           = stretch_->strain(u_local, cell, d.cell_size()[cell], place);
       fields_.stretch[p]      = 1. + strain;
       if (!cells.empty())
       {
@@ -80,7 +87,7 @@ namespace crawler
         strain += drawn;
         fields_.stretch[p] = std::max(cells[cell] + drawn, 0.);
       }
-      fields_.elastic_stress[p] = units_.force * equation::body_force(strain, 0., k);
+      fields_.elastic_stress[p] = units.force * equation::body_force(strain, 0., k);
     }
     if (general_)
     {
@@ -89,12 +96,12 @@ namespace crawler
       fields_.active_stress          = force.m;
       fields_.friction_force         = general_->friction();
       for (std::size_t p = 0; p < points_.size(); ++p)
-        fields_.elastic_stress[p] = units_.force * (force.N[p] - force.m[p]);
+        fields_.elastic_stress[p] = units.force * (force.N[p] - force.m[p]);
     }
     else
     {
       stress_->values(t, fields_.active_stress);
-      assembler_.scene().friction->values(fields_.stretch, fields_.friction_force);
+      assembler.scene().friction->values(fields_.stretch, fields_.friction_force);
       for (std::size_t p = 0; p < points_.size(); ++p)
         fields_.friction_force[p] = equation::friction_force(fields_.friction_force[p], fields_.velocity[p]);
     }
@@ -102,12 +109,12 @@ namespace crawler
       for (std::size_t p = 0; p < points_.size(); ++p)
         fields_.friction_force[p] =
           values_[p * n] * friction[points_[p].cell] + values_[p * n + 1] * friction[points_[p].cell + 1];
-    require_finite(fields_.active_stress, t * units_.time, d);
+    require_finite(fields_.active_stress, t * units.time, d);
     for (std::size_t p = 0; p < points_.size(); ++p)
     {
-      fields_.friction_force[p] *= units_.force / units_.length;
-      fields_.active_stress[p] *= units_.force;
-      fields_.velocity[p] *= units_.velocity();
+      fields_.friction_force[p] *= units.force / units.length;
+      fields_.active_stress[p] *= units.force;
+      fields_.velocity[p] *= units.velocity();
     }
     return fields_;
   }

@@ -20,6 +20,12 @@ namespace crawler
 
   Kymograph::Kymograph(std::vector<double> points)
     : points_(std::move(points))
+    , sampler_([points = points_](const Discretization &mesh) {
+      std::vector<double> s = points;
+      for (double &point : s)
+        point *= mesh.length();
+      return mesh.own_places(s);
+    })
   {
   }
 
@@ -39,20 +45,11 @@ namespace crawler
   {
     if (!snapshot.pictures.is_row)
       return;
-    const Discretization &d = snapshot.assembler.discretization();
-    if (!sampler_ || mesh_number_ != snapshot.mesh_number)
-    {
-      std::vector<double> s = points_;
-      for (double &point : s)
-        point *= d.length();
-      sampler_ = std::make_unique<FieldSampler>(snapshot.assembler, snapshot.units, d.own_places(s));
-    }
-    mesh_number_      = snapshot.mesh_number;
-    const Fields &own = sampler_->sample(snapshot.computed_time, snapshot.y, snapshot.v);
+    const Fields &own = sampler_.sample(snapshot);
     Fields all; // empty except on rank 0
     for (const FieldName &field : field_names)
       if (field.in_kymograph)
-        all.*field.values = gather(own.*field.values, d.communicator());
+        all.*field.values = gather(own.*field.values, snapshot.assembler.discretization().communicator());
     add(snapshot.step.time, all);
   }
 

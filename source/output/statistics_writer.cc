@@ -16,7 +16,7 @@ namespace crawler
 {
   namespace
   {
-    using Row = Statistics::Row;
+    using Row = StateNumbers;
 
     struct StatisticsColumn
     {
@@ -66,7 +66,7 @@ namespace crawler
   }
 
   void
-  Statistics::write(const Row &row)
+  Statistics::write(const StateNumbers &row)
   {
     for (std::size_t i = 0; i < n_columns_; ++i)
       values_.push_back(columns[i].value(row) + 0.); // no -0
@@ -120,7 +120,7 @@ namespace crawler
   }
 
   void
-  StatisticsWriter::write(const Row &row)
+  StatisticsWriter::write(const StateNumbers &row)
   {
     if (!out_.is_open())
       open();

@@ -114,7 +114,10 @@ namespace crawler
   }
 
   SimulationResult
-  ReducedModel::compute(const double accuracy, const bool energy_balance, const std::function<bool()> &keep_going)
+  ReducedModel::compute(const double accuracy,
+                        const bool energy_balance,
+                        const std::function<bool()> &keep_going,
+                        const bool gait)
   {
     const Stopwatch watch;
     SimulationResult result;
@@ -144,6 +147,8 @@ namespace crawler
                                         result.inversion->t);
     }
     result.solve_seconds = watch.seconds();
+    if (gait)
+      describe_gait(result);
     return result;
   }
 

@@ -322,11 +322,10 @@ TEST(RunGradient, OfStretches)
   for (const int i : {-2, -1, 1, 2})
   {
     near.push_back(scene_of(settings, entry, value + i * step));
-    std::vector<std::unique_ptr<Observer>> observers;
-    observers.push_back(std::make_unique<Kymograph>(std::vector<double>{0.31}));
+    const auto kymograph = std::make_shared<Kymograph>(std::vector<double>{0.31});
     Simulation(MPI_COMM_SELF, near.back(), time, numerics_for(near.back(), "radau 9", 10, 1e-12))
-      .run(PictureTimes({}, times, 1.), {}, observers);
-    seen.push_back(static_cast<const Kymograph &>(*observers.front()).rows().stretch);
+      .run(PictureTimes({}, times, 1.), {}, {kymograph});
+    seen.push_back(kymograph->rows().stretch);
     ASSERT_EQ(seen.back().size(), times.size());
   }
   const Variation variation  = {near, step};

@@ -28,11 +28,13 @@ namespace crawler
     void
     observe(const Snapshot &snapshot) override;
     void
-    exchange(Archive &archive) override;
-
-    /// Adds a time with @p fields at all points.
+    show(const StateWithoutMesh &state) override
+    {
+      if (state.pictures.is_row)
+        add(state.numbers.step.time, state.frame.fields);
+    }
     void
-    add(double time, const Fields &fields);
+    exchange(Archive &archive) override;
 
     const std::vector<double> &
     points() const
@@ -55,9 +57,12 @@ namespace crawler
     shown(const FieldName &field) const;
 
   private:
+    /// Adds a time with @p fields at all points.
+    void
+    add(double time, const Fields &fields);
+
     const std::vector<double> points_;
-    std::unique_ptr<FieldSampler> sampler_; ///< for the mesh mesh_number_
-    unsigned int mesh_number_ = 0;
+    FieldSampler sampler_;
     std::vector<double> times_;
     Fields rows_;
   };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/output/field_sampler.h>
+#include <crawler/output/observer.h>
 #include <crawler/output/usual_size.h>
 
 #include <array>
@@ -11,16 +11,6 @@
 
 namespace crawler
 {
-  /// The whole body at one time, in the user's units.
-  struct Frame
-  {
-    double time;
-    unsigned int step;
-    unsigned int points_per_cell;
-    std::vector<double> s; ///< of the points of all cells, ends included: two at each cell boundary [length]
-    Fields fields;
-  };
-
   /// Vertices of triangles or quadrilaterals, one after another, each with x, y and z.
   using Corners = std::vector<double>;
 

@@ -22,7 +22,7 @@ namespace crawler
   public:
     using GaitWish  = crawler::GaitWish;
     using Options   = RecordOptions;
-    using Observers = std::vector<std::unique_ptr<Observer>>;
+    using Observers = crawler::Observers;
 
     Simulation(MPI_Comm communicator, const Scene &scene, const TimeParameters &time, const Numerics &numerics);
     ~Simulation();

@@ -220,13 +220,12 @@ namespace crawler
           const double setup             = result_.setup_seconds;
           const auto keep_going          = [&]() { return !is_stopped(); };
           ReducedModel level(input_.scene, model_->model);
-          result_               = level.compute(input_.parameters.accuracy, output.energy_balance, keep_going);
+          result_ = level.compute(input_.parameters.accuracy, output.energy_balance, keep_going, /*gait=*/true);
           result_.setup_seconds = setup;
-          level.describe_gait(result_);
           log_.line(level.description());
           const Stopwatch watch;
           if (result_.error && (output.has_snapshots() || output.statistics) &&
-              !write_pictures(level, input_, memory_.folder(), keep_going))
+              !show_pictures(level, times_without_mesh(input_), Kymograph::equidistant(), observers(), keep_going))
             result_.time.status = Status::stopped;
           result_.output_seconds = watch.seconds();
         });
@@ -306,16 +305,16 @@ namespace crawler
         if (!sharing_.has_output)
           return observers;
         if (output.has_snapshots())
-          observers.push_back(std::make_unique<SnapshotWriter>(
+          observers.push_back(std::make_shared<SnapshotWriter>(
             output.snapshot_format, memory_.folder(), length, pictures_.n_snapshots() + 1));
         if (output.has_snapshots() && output.kymograph)
-          observers.push_back(std::make_unique<KymographWriter>(
+          observers.push_back(std::make_shared<KymographWriter>(
             length, input_.scene.end_time, input_.scene.ground.profile, memory_.folder()));
         if (output.statistics)
-          observers.push_back(std::make_unique<StatisticsWriter>(
+          observers.push_back(std::make_shared<StatisticsWriter>(
             length, is_first_, memory_.folder(), output.energy_balance, input_.parameters.units));
         if (!options_.quiet)
-          observers.push_back(std::make_unique<RunProgress>(log_, input_.scene));
+          observers.push_back(std::make_shared<RunProgress>(log_, input_.scene));
         return observers;
       }
 
