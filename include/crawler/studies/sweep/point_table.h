@@ -40,9 +40,7 @@ namespace crawler
   /// Reason of a point that took longer than the time limit.
   inline const std::string time_limit_reason = "time_limit";
 
-  /// Number or word of a run under this key, and its value in a row; not a number or empty where it is unknown.
-  const ResultEntry &
-  entry_of(const std::string &key);
+  /// Value in a row of a number or word of a run; not a number or empty where it is unknown.
   RowFile::Value
   value_in_row(const Task &task, const ResultEntry &entry);
 
