@@ -53,54 +53,44 @@ namespace crawler
   {
     if (!stretch_ || mesh_number_ != snapshot.mesh_number)
       begin_mesh(snapshot);
-    const Assembler &assembler      = snapshot.assembler;
-    const Units &units              = snapshot.units;
-    const Discretization &d         = assembler.discretization();
-    const double t                  = snapshot.computed_time;
-    const std::span<const double> y = snapshot.y, v = snapshot.v;
-    const auto u_local                 = d.to_local(assembler.displacement(y), u_local_);
-    const auto v_local                 = d.to_local(v, v_local_);
-    const std::vector<double> slopes   = assembler.stretch_slopes(y);
-    const std::vector<double> friction = assembler.node_friction(t, y, v);
-    const auto cells                   = assembler.stretch(y);
-    const unsigned int n = d.element().n, q = d.element().degree;
-    const double k = assembler.scene().body.elastic_modulus;
+    const Assembler &assembler         = snapshot.assembler;
+    const Units &units                 = snapshot.units;
+    const Discretization &d            = assembler.discretization();
+    const auto u_local                 = d.to_local(assembler.displacement(snapshot.y), u_local_);
+    const auto v_local                 = d.to_local(snapshot.v, v_local_);
+    const std::vector<double> slopes   = assembler.stretch_slopes(snapshot.y);
+    const std::vector<double> friction = assembler.node_friction(snapshot.computed_time, snapshot.y, snapshot.v);
+    const auto cells                   = assembler.stretch(snapshot.y);
+    const std::size_t n = d.element().n, q = d.element().degree;
     for (std::size_t p = 0; p < points_.size(); ++p)
     {
       const unsigned int cell = points_[p].cell;
-      const auto place        = static_cast<unsigned int>(p);
       double u_p = 0., v_p = 0.;
-      for (unsigned int i = 0; i < n; ++i)
+      for (std::size_t i = 0; i < n; ++i)
       {
-        const std::size_t node = static_cast<std::size_t>(cell) * q + i;
-        u_p += values_[p * n + i] * u_local[node];
-        v_p += values_[p * n + i] * v_local[node];
+        u_p += values_[p * n + i] * u_local[cell * q + i];
+        v_p += values_[p * n + i] * v_local[cell * q + i];
       }
       fields_.displacement[p] = u_p * units.length;
       fields_.position[p]     = coordinates_[p] + fields_.displacement[p];
       fields_.velocity[p]     = v_p;
-      double strain           = stretch_->strain(u_local, cell, d.cell_size()[cell], place);
-      fields_.stretch[p]      = 1. + strain;
-      if (!cells.empty())
-      {
-        const double drawn = slopes[cell] * (points_[p].x - 0.5);
-        strain += drawn;
-        fields_.stretch[p] = std::max(cells[cell] + drawn, 0.);
-      }
-      fields_.elastic_stress[p] = units.force * equation::body_force(strain, 0., k);
+      const double drawn      = cells.empty() ? 0. : slopes[cell] * (points_[p].x - 0.5);
+      const double strain = stretch_->strain(u_local, cell, d.cell_size()[cell], static_cast<unsigned int>(p)) + drawn;
+      fields_.stretch[p]  = cells.empty() ? 1. + strain : std::max(cells[cell] + drawn, 0.);
+      fields_.elastic_stress[p] =
+        units.force * equation::body_force(strain, 0., assembler.scene().body.elastic_modulus);
     }
     if (general_)
     {
-      general_->sample(t, y, v);
-      const BodyForceAtPoints &force = general_->force();
-      fields_.active_stress          = force.m;
-      fields_.friction_force         = general_->friction();
+      general_->sample(snapshot.computed_time, snapshot.y, snapshot.v);
+      fields_.active_stress  = general_->force().m;
+      fields_.friction_force = general_->friction();
       for (std::size_t p = 0; p < points_.size(); ++p)
-        fields_.elastic_stress[p] = units.force * (force.N[p] - force.m[p]);
+        fields_.elastic_stress[p] = units.force * (general_->force().N[p] - general_->force().m[p]);
     }
     else
     {
-      stress_->values(t, fields_.active_stress);
+      stress_->values(snapshot.computed_time, fields_.active_stress);
       assembler.scene().friction->values(fields_.stretch, fields_.friction_force);
       for (std::size_t p = 0; p < points_.size(); ++p)
         fields_.friction_force[p] = equation::friction_force(fields_.friction_force[p], fields_.velocity[p]);
@@ -109,7 +99,7 @@ namespace crawler
       for (std::size_t p = 0; p < points_.size(); ++p)
         fields_.friction_force[p] =
           values_[p * n] * friction[points_[p].cell] + values_[p * n + 1] * friction[points_[p].cell + 1];
-    require_finite(fields_.active_stress, t * units.time, d);
+    require_finite(fields_.active_stress, snapshot.computed_time * units.time, d);
     for (std::size_t p = 0; p < points_.size(); ++p)
     {
       fields_.friction_force[p] *= units.force / units.length;

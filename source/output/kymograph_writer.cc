@@ -19,8 +19,8 @@ namespace crawler
   }
 
   Kymograph::Kymograph(std::vector<double> points)
-    : points_(std::move(points))
-    , sampler_([points = points_](const Discretization &mesh) {
+    : points(std::move(points))
+    , sampler_([points = this->points](const Discretization &mesh) {
       std::vector<double> s = points;
       for (double &point : s)
         point *= mesh.length();
@@ -87,7 +87,7 @@ namespace crawler
       return all;
     UsualSize size;
     for (std::size_t i = 0; i < times_.size(); ++i)
-      size.add(times_[i], std::span(values).subspan(i * points_.size(), points_.size()));
+      size.add(times_[i], std::span(values).subspan(i * points.size(), points.size()));
     return size.within(all);
   }
 
@@ -121,7 +121,7 @@ namespace crawler
       }
     std::vector<double> points;
     for (const double time : times())
-      for (const double point : this->points())
+      for (const double point : Kymograph::points)
         points.insert(points.end(), {point, time / end_time_, 0.});
     const std::string text = vtk_file(
       "StructuredGrid",

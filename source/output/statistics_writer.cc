@@ -94,14 +94,6 @@ namespace crawler
   }
 
   void
-  StatisticsWriter::open()
-  {
-    out_.open(path_);
-    out_ << units_.in_brackets(fmt::format("{}\n", fmt::join(column_names(), ",")));
-    require_written();
-  }
-
-  void
   StatisticsWriter::require_written() const
   {
     if (!out_)
@@ -123,7 +115,10 @@ namespace crawler
   StatisticsWriter::write(const StateNumbers &row)
   {
     if (!out_.is_open())
-      open();
+    {
+      out_.open(path_);
+      out_ << units_.in_brackets(fmt::format("{}\n", fmt::join(column_names(), ",")));
+    }
     std::string line;
     for (std::size_t i = 0; i < n_columns_; ++i)
     {

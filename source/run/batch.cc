@@ -4,7 +4,6 @@
 #include <crawler/run/lane_extremes.h>
 #include <crawler/run/lane_sampler.h>
 #include <crawler/run/recorder.h>
-#include <crawler/time/integrators.h>
 #include <crawler/time/radau_tableau.h>
 
 #include <algorithm>
@@ -14,29 +13,6 @@
 
 namespace crawler
 {
-  std::optional<LaneMethod>
-  lane_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
-  {
-    const std::string &chosen = time.integrator == "automatic" ? numerics.integrator : time.integrator;
-    const std::string name    = chosen.empty() ? "automatic" : chosen;
-    const Integrator &method  = integrator(name);
-    const bool is_one_of_ours = method.petsc_type == "radau" && time.step_control == StepControl::adaptive;
-    const bool is_stretch     = numerics.formulation == Formulation::stretch;
-    if (time.engine != Engine::automatic || !is_one_of_ours || numerics.mesh.tolerance != 0. ||
-        !(is_stretch ? reason_against_stretch_form(scene).empty() : fits_lanes(scene)))
-      return std::nullopt;
-    LaneMethod result = {numerics.degree,
-                         numerics.n_cells,
-                         method.n_stages,
-                         first_cell_ends(scene, numerics),
-                         is_stretch,
-                         numerics.other_rule,
-                         lane_laws(scene)};
-    if (!result.cell_ends.empty())
-      result.n_cells = static_cast<unsigned int>(result.cell_ends.size() - 1);
-    return result;
-  }
-
   std::optional<LaneMethod>
   batch_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
   {

@@ -3,7 +3,6 @@
 #include <crawler/base/communication.h>
 #include <crawler/equation/general_position_form.h>
 #include <crawler/lanes/lane_adjoint.h>
-#include <crawler/run/batch.h>
 #include <crawler/run/simulation.h>
 #include <crawler/time/failure.h>
 #include <crawler/time/integrators.h>
@@ -40,6 +39,29 @@ namespace crawler
     if (numerics.layer > 0.)
       return layered_cell_ends(numerics.n_cells, numerics.parts, breaks, numerics.layer / L);
     return cell_ends(numerics.n_cells, breaks, numerics.grading);
+  }
+
+  std::optional<LaneMethod>
+  lane_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
+  {
+    const std::string &chosen = time.integrator == "automatic" ? numerics.integrator : time.integrator;
+    const std::string name    = chosen.empty() ? "automatic" : chosen;
+    const Integrator &method  = integrator(name);
+    const bool is_one_of_ours = method.petsc_type == "radau" && time.step_control == StepControl::adaptive;
+    const bool is_stretch     = numerics.formulation == Formulation::stretch;
+    if (time.engine != Engine::automatic || !is_one_of_ours || numerics.mesh.tolerance != 0. ||
+        !(is_stretch ? reason_against_stretch_form(scene).empty() : fits_lanes(scene)))
+      return std::nullopt;
+    LaneMethod result = {numerics.degree,
+                         numerics.n_cells,
+                         method.n_stages,
+                         first_cell_ends(scene, numerics),
+                         is_stretch,
+                         numerics.other_rule,
+                         lane_laws(scene)};
+    if (!result.cell_ends.empty())
+      result.n_cells = static_cast<unsigned int>(result.cell_ends.size() - 1);
+    return result;
   }
 
   Simulation::Simulation(MPI_Comm communicator,
@@ -342,7 +364,7 @@ namespace crawler
       return Ending::mesh;
     if (!segments_.is_last() && part.time == segments_.end())
       return Ending::jump;
-    const bool stops = run_->keep_going && !run_->keep_going();
+    const bool stops = !run_->keep_going();
     keep_state(stops, step);
     return stops ? Ending::stopped : Ending::none;
   }

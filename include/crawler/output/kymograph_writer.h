@@ -25,6 +25,8 @@ namespace crawler
     /// Takes @p points as increasing fractions of the length.
     explicit Kymograph(std::vector<double> points = equidistant());
 
+    const std::vector<double> points; ///< as fractions of the length
+
     void
     observe(const Snapshot &snapshot) override;
     void
@@ -36,11 +38,6 @@ namespace crawler
     void
     exchange(Archive &archive) override;
 
-    const std::vector<double> &
-    points() const
-    {
-      return points_;
-    }
     const std::vector<double> &
     times() const
     {
@@ -61,7 +58,6 @@ namespace crawler
     void
     add(double time, const Fields &fields);
 
-    const std::vector<double> points_;
     FieldSampler sampler_;
     std::vector<double> times_;
     Fields rows_;

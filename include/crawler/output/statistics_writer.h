@@ -72,8 +72,6 @@ namespace crawler
 
   private:
     void
-    open();
-    void
     require_written() const;
 
     const bool writes_;

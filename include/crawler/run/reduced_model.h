@@ -47,11 +47,7 @@ namespace crawler
            const std::vector<double> &points,
            const std::function<bool(double time, const State &state)> &see) const;
 
-    const ReducedScene &
-    reduced_scene() const
-    {
-      return reduced_scene_;
-    }
+    const ReducedScene reduced_scene;
 
     /// Description of the computation, in a sentence.
     std::string
@@ -68,7 +64,6 @@ namespace crawler
     judge(SimulationResult &result, double accuracy) const;
 
     const Scene &scene_; ///< in the user's units
-    const ReducedScene reduced_scene_;
     const Model model_;
     std::vector<double> space_panels_; ///< ends of the panels of the kinematic level
     std::vector<double> time_panels_;  ///< ends of the panels in time of the kinematic level

@@ -12,6 +12,10 @@
 
 namespace crawler
 {
+  /// Method of the fused engine by which a Simulation computes; nothing if there is none.
+  std::optional<LaneMethod>
+  lane_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics);
+
   /**
    * One crawler: builds mesh, equation and time integration in this order, connects them, and changes the mesh on the
    * way where requested. Computes in natural units (scene.h); inputs and results are in the scene's. Can run several
