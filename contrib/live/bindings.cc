@@ -22,7 +22,7 @@ namespace crawler
     using Json = nlohmann::ordered_json;
 
     /// Of the latest run; null if it has none.
-    std::unique_ptr<Kymograph> kymograph;
+    std::shared_ptr<Kymograph> kymograph;
 
     Json
     run_text(const std::string &text)

@@ -15,13 +15,13 @@ foreach(room accuracy adjoint equation formula lanes mesh reduced_models run sce
   list(APPEND ONE_PROCESS_SOURCES ${of_room})
 endforeach()
 foreach(left_out formula/formula run/summary scene/active_stress/formula_input scene/active_stress/library lanes/lanes
-        time/radau time/radau_stages time/petsc_stepper)
+        mesh/triangulation time/radau time/radau_stages time/petsc_stepper)
   list(REMOVE_ITEM ONE_PROCESS_SOURCES ${CRAWLER}/source/${left_out}.cc)
 endforeach()
 foreach(one base/archive base/clock base/communication base/csv_numbers base/cubic_spline base/files base/gauss_panels base/gauss_rule
         base/grid_interpolation base/nearest_name base/plain_numbers base/table
         output/active_stress_table output/field_sampler output/kymograph_writer output/output_parameters
-        output/picture_times output/scenery output/statistics_writer output/usual_size output/vtk_xml
+        output/picture_times output/statistics_writer output/usual_size output/vtk_xml
         parameters/axis parameters/declarations parameters/entry_info parameters/entry_lists parameters/listed_numbers
         parameters/parameter_file parameters/plain_text parameters/slips
         studies/core/entry_notes studies/core/entry_rules studies/core/form studies/core/input studies/core/parameters

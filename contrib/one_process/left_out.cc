@@ -3,8 +3,8 @@
 // Parts that need libraries which the core for one process does not have: PETSc (adaptive meshes, BDF, couplings of
 // distant cells), deal.II's triangulation, HDF5's files, shared objects. Each is refused in a sentence when a scene
 // asks for it; all else is the program's own code. CRAWLER_LEFT_OUT ends the sentences.
-#include <crawler/base/deal_ii_library.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/mesh/triangulation.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/library.h>
 #include <crawler/time/petsc_stepper.h>
@@ -33,8 +33,8 @@ namespace crawler
     return otherwise;
   }
 
-  void *
-  deal_ii_symbol(const char *)
+  std::unique_ptr<Triangulation>
+  create_triangulation(MPI_Comm, const std::vector<double> &)
   {
     refuse("this needs deal.II, as adaptive meshes do");
   }

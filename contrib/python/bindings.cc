@@ -205,7 +205,7 @@ namespace crawler
       for (const FieldName &field : field_names)
         if (field.in_kymograph)
           fields[field.name] =
-            array_of(kymograph.rows().*field.values, {kymograph.times().size(), kymograph.points().size()});
+            array_of(kymograph.rows().*field.values, {kymograph.times().size(), kymograph.points.size()});
       return fields;
     }
 
@@ -459,7 +459,7 @@ PYBIND11_MODULE(_core, module)
   module.attr("n_points") = Kymograph::n_points;
   module.attr("versions") = versions();
   py::list numbers;
-  for (const DifferentiatedNumber &one : differentiated_numbers)
-    numbers.append(one.key);
+  for (const char *const key : differentiated_numbers)
+    numbers.append(key);
   module.attr("differentiated_numbers") = numbers;
 }

@@ -178,7 +178,7 @@ namespace crawler
         const BatchRun run = {&scene, &time, &numerics};
         if (auto finer = run_batch({&run, 1}, options, keep_going, single_engine()).front())
           return std::move(*finer);
-        if (keep_going && !keep_going())
+        if (!keep_going())
           return {};
       }
       return Simulation(communicator, scene, time, numerics).run({}, options, {}, keep_going);

@@ -14,14 +14,6 @@ namespace crawler
   {
     // Constants measured by tests/verification/number_errors.py.
     constexpr double more_if_sampled = 1.5, sampling_error = 2., if_not_extrapolated = 2.;
-
-    double
-    number(const ResultEntry &entry, const SimulationResult &result)
-    {
-      const ResultValue value = entry.value(result);
-      const double *found     = std::get_if<double>(&value);
-      return found != nullptr ? *found : std::numeric_limits<double>::quiet_NaN();
-    }
   } // namespace
 
   std::vector<double>
@@ -33,7 +25,7 @@ namespace crawler
     for (std::size_t i = 0; i < errors.size(); ++i)
     {
       const ResultEntry &entry = *entries[i];
-      const double x = std::abs(number(entry, result) - number(entry, finer)), S = entry.scale_in(result);
+      const double x = std::abs(entry.number_in(result) - entry.number_in(finer)), S = entry.scale_in(result);
       errors[i] = entry.is_sampled ? more_if_sampled * factor * x + (part + sampling_error / (n_points * n_points)) * S
                                    : factor * x + part * S;
       // Two meshes may have the same error at the ends of their cells.
@@ -58,7 +50,7 @@ namespace crawler
       const double factor = if_not_extrapolated / static_cast<double>(before);
       const auto changes  = number_errors(finest, *meshes[meshes.size() - 1 - before], factor, part);
       for (std::size_t i = 0; i < errors.size(); ++i)
-        if (number(*entries[i], extrapolated) == number(*entries[i], finest))
+        if (entries[i]->number_in(extrapolated) == entries[i]->number_in(finest))
           errors[i] = std::max(errors[i], changes[i]);
     }
     return errors;
@@ -90,7 +82,7 @@ namespace crawler
       add("gait.stride_efficiency", part * *gait.efficiency);
     for (std::size_t i = 0; i < result.errors.size(); ++i)
       if (entries[i]->scale == ResultEntry::Scale::cost) // inversely proportional to the displacement
-        result.errors[i] = part < 1. ? result.errors[i] + part / (1. - part) * std::abs(number(*entries[i], result))
+        result.errors[i] = part < 1. ? result.errors[i] + part / (1. - part) * std::abs(entries[i]->number_in(result))
                                      : std::numeric_limits<double>::quiet_NaN();
   }
 } // namespace crawler

@@ -299,7 +299,7 @@ namespace crawler
       is_good() const
       {
         const double total = result_.error->total;
-        const bool stopped = std::isnan(total) && keep_going_ && !keep_going_();
+        const bool stopped = std::isnan(total) && !keep_going_();
         return std::isnan(wanted()) || total <= wanted() || stopped;
       }
 

@@ -19,19 +19,19 @@ namespace crawler
     }
   } // namespace
 
-  GridInterpolation::GridInterpolation(GridTable grid, const Method method, const Outside outside)
-    : grid_(std::move(grid))
+  GridInterpolation::GridInterpolation(GridTable samples, const Method method, const Outside outside)
+    : grid(std::move(samples))
     , outside_(outside)
   {
     if (method != Method::cubic)
       return;
-    in_s_.emplace(grid_.s);
-    in_t_.emplace(grid_.t, outside == Outside::periodic ? CubicSpline::Ends::periodic : CubicSpline::Ends::not_a_knot);
-    const std::size_t n_s = grid_.s.size();
-    curvatures_.reserve(grid_.values.size());
-    for (std::size_t j = 0; j < grid_.t.size(); ++j)
+    in_s_.emplace(grid.s);
+    in_t_.emplace(grid.t, outside == Outside::periodic ? CubicSpline::Ends::periodic : CubicSpline::Ends::not_a_knot);
+    const std::size_t n_s = grid.s.size();
+    curvatures_.reserve(grid.values.size());
+    for (std::size_t j = 0; j < grid.t.size(); ++j)
     {
-      const auto M = in_s_->curvatures({grid_.values.data() + j * n_s, n_s});
+      const auto M = in_s_->curvatures({grid.values.data() + j * n_s, n_s});
       curvatures_.insert(curvatures_.end(), M.begin(), M.end());
     }
   }
@@ -39,19 +39,19 @@ namespace crawler
   CubicSpline::Place
   GridInterpolation::place_in_s(const double s) const
   {
-    const double inside = std::clamp(s, grid_.s.front(), grid_.s.back());
-    return in_s_ ? in_s_->place(inside) : linear_place(grid_.s, inside);
+    const double inside = std::clamp(s, grid.s.front(), grid.s.back());
+    return in_s_ ? in_s_->place(inside) : linear_place(grid.s, inside);
   }
 
   CubicSpline::Place
   GridInterpolation::place_in_t(double t) const
   {
-    const double first = grid_.t.front(), last = grid_.t.back();
+    const double first = grid.t.front(), last = grid.t.back();
     if (outside_ == Outside::periodic)
       t -= (last - first) * std::floor((t - first) / (last - first));
     else if (outside_ == Outside::hold)
       t = std::clamp(t, first, last);
-    return in_t_ ? in_t_->place(t) : linear_place(grid_.t, t);
+    return in_t_ ? in_t_->place(t) : linear_place(grid.t, t);
   }
 
   GridInterpolation::Columns
@@ -72,7 +72,7 @@ namespace crawler
   GridInterpolation::AtPoints::AtPoints(const GridInterpolation &owner, const std::vector<double> &points)
     : owner_(owner)
   {
-    const std::size_t n_s = owner.grid_.s.size(), n_t = owner.grid_.t.size(), n = points.size();
+    const std::size_t n_s = owner.grid.s.size(), n_t = owner.grid.t.size(), n = points.size();
     const bool cubic = owner.in_s_.has_value();
     std::vector<CubicSpline::Place> places;
     for (const double s : points)
@@ -84,7 +84,7 @@ namespace crawler
         for (std::size_t i = 0; i < n; ++i)
         {
           const CubicSpline::Place &p = places[i];
-          const double *y             = owner.grid_.values.data() + j * n_s + p.i;
+          const double *y             = owner.grid.values.data() + j * n_s + p.i;
           double &value               = values[j * n + i];
           value                       = p.a * y[0] + p.b * y[1];
           if (cubic)
@@ -102,7 +102,7 @@ namespace crawler
       for (std::size_t j = 0; j < n_t; ++j)
       {
         const auto row = static_cast<std::ptrdiff_t>(j * n_s), length = static_cast<std::ptrdiff_t>(n_s);
-        values.insert(values.end(), owner.grid_.values.begin() + row, owner.grid_.values.begin() + row + length);
+        values.insert(values.end(), owner.grid.values.begin() + row, owner.grid.values.begin() + row + length);
         if (cubic)
           values.insert(values.end(), owner.curvatures_.begin() + row, owner.curvatures_.begin() + row + length);
       }
@@ -130,7 +130,7 @@ namespace crawler
     }
     if (places_.empty())
       return;
-    const std::span<const double> y(at_knots_), M = owner_.in_s_ ? y.subspan(owner_.grid_.s.size()) : y;
+    const std::span<const double> y(at_knots_), M = owner_.in_s_ ? y.subspan(owner_.grid.s.size()) : y;
     for (std::size_t p = 0; p < places_.size(); ++p)
       result[p] = places_[p].value(y, M); // c = d = 0 if linear
   }
@@ -145,7 +145,7 @@ namespace crawler
   void
   GridInterpolation::AtPoints::rates(const double t, const std::span<double> result)
   {
-    if (owner_.outside_ == Outside::hold && (t < owner_.grid_.t.front() || t > owner_.grid_.t.back()))
+    if (owner_.outside_ == Outside::hold && (t < owner_.grid.t.front() || t > owner_.grid.t.back()))
     {
       std::fill(result.begin(), result.end(), 0.);
       return;

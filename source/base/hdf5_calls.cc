@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <limits>
 #include <mutex>
 #include <set>
 #include <tuple>
@@ -55,6 +56,43 @@ namespace crawler::hdf5
     const Hdf5Handle attribute(H5Acreate(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     const std::string value = text.empty() ? std::string(1, '\0') : text;
     checked(attribute < 0 ? -1 : H5Awrite(attribute, type, value.data()), path, "write");
+  }
+
+  hid_t
+  create_dataset(const hid_t parent,
+                 const std::string &name,
+                 const hid_t type,
+                 const hid_t space,
+                 const bool is_filled,
+                 const std::filesystem::path &path)
+  {
+    const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
+    H5Pset_fill_time(creation, is_filled ? H5D_FILL_TIME_ALLOC : H5D_FILL_TIME_NEVER);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    if (H5Tget_class(type) == H5T_FLOAT)
+      H5Pset_fill_value(creation, H5T_NATIVE_DOUBLE, &nan);
+    return checked(H5Dcreate(parent, name.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT), path, "write");
+  }
+
+  Part::Part(const hid_t dataset, const std::vector<hsize_t> &start, const std::vector<hsize_t> &count)
+    : dataset_(dataset)
+    , memory_(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose)
+    , space_(H5Dget_space(dataset), H5Sclose)
+  {
+    H5Sselect_hyperslab(space_, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
+  }
+
+  void
+  Part::read(const hid_t type, void *const values, const std::filesystem::path &path) const
+  {
+    checked(H5Dread(dataset_, type, memory_, space_, H5P_DEFAULT, values), path, "read");
+  }
+
+  void
+  Part::write(const hid_t type, const void *const values, const std::filesystem::path &path, const hid_t transfer) const
+  {
+    checked(H5Dwrite(dataset_, type, memory_, space_, transfer, values), path, "write");
   }
 
   bool

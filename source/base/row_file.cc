@@ -58,12 +58,6 @@ namespace crawler
       return name;
     }
 
-    hid_t
-    type_of(const RowFile::Column &column)
-    {
-      return column.width == 0 ? H5Tcopy(H5T_IEEE_F64LE) : hdf5::text_type(column.width);
-    }
-
     /// Reads an attribute that is one text, as write_attribute() makes it: others would not fit into the buffer.
     std::string
     read_attribute_of(const hid_t object, const std::string &name, const std::filesystem::path &path)
@@ -100,10 +94,7 @@ namespace crawler
                  const hid_t transfer,
                  const std::filesystem::path &path)
     {
-      const hsize_t start = first, count = n;
-      const Hdf5Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose), space(H5Dget_space(dataset), H5Sclose),
-        type(width == 0 ? H5Tcopy(H5T_NATIVE_DOUBLE) : hdf5::text_type(width), H5Tclose);
-      H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr);
+      const Hdf5Handle type(width == 0 ? H5Tcopy(H5T_NATIVE_DOUBLE) : hdf5::text_type(width), H5Tclose);
       std::vector<char> data(n * (width == 0 ? sizeof(double) : width), '\0');
       for (unsigned long i = 0; i < n; ++i)
       {
@@ -117,7 +108,7 @@ namespace crawler
             text.begin(), whole_characters(text, width), data.begin() + static_cast<std::ptrdiff_t>(i * width));
         }
       }
-      hdf5::checked(H5Dwrite(dataset, type, memory, space, transfer, data.data()), path, "write");
+      hdf5::Part(dataset, {first}, {n}).write(type, data.data(), path, transfer);
     }
 
     /// Length of a column, which must be complete: numbers or texts of fixed width, one-dimensional, with storage for
@@ -193,18 +184,9 @@ namespace crawler
                   const RowFile::Known &known)
     {
       const bool is_known = number < known.n_columns;
-      const Hdf5Handle type(type_of(column), H5Tclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-      H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
-      H5Pset_fill_time(creation, is_known ? H5D_FILL_TIME_NEVER : H5D_FILL_TIME_ALLOC);
-      const double nan = std::numeric_limits<double>::quiet_NaN();
-      if (column.width == 0)
-        H5Pset_fill_value(creation, H5T_NATIVE_DOUBLE, &nan);
+      const Hdf5Handle type(column.width == 0 ? H5Tcopy(H5T_IEEE_F64LE) : hdf5::text_type(column.width), H5Tclose);
       const Hdf5Handle dataset(
-        hdf5::checked(
-          H5Dcreate(group, dataset_name(column.name).c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
-          path,
-          "write"),
-        H5Dclose);
+        hdf5::create_dataset(group, dataset_name(column.name), type, space, /*is_filled=*/!is_known, path), H5Dclose);
       hdf5::write_attribute(dataset, "name", column.name, path);
       hdf5::write_attribute(dataset, "unit", column.unit, path);
       hdf5::write_attribute(dataset, "description", column.description, path);
@@ -218,18 +200,6 @@ namespace crawler
           [&](const unsigned long i) { return known.value(number, first + i); },
           H5P_DEFAULT,
           path);
-    }
-
-    void
-    create_checksums(const std::filesystem::path &path, const hid_t file, const hid_t space)
-    {
-      const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-      H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
-      const Hdf5Handle dataset(
-        hdf5::checked(
-          H5Dcreate(file, checksums, H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT), path, "write"),
-        H5Dclose);
-      hdf5::write_attribute(dataset, "description", "CRC-32 of what was written into each row, to detect damage", path);
     }
   } // namespace
 
@@ -261,7 +231,12 @@ namespace crawler
       for (std::size_t number = 0; number < columns.size(); ++number)
         create_column(path, group, space, columns[number], number, n_rows, known);
       if (known.n_columns < columns.size())
-        create_checksums(path, file, space);
+      {
+        const Hdf5Handle dataset(
+          hdf5::create_dataset(file, checksums, H5T_IEEE_F64LE, space, /*is_filled=*/false, path), H5Dclose);
+        hdf5::write_attribute(
+          dataset, "description", "CRC-32 of what was written into each row, to detect damage", path);
+      }
       hdf5::checked(H5Fflush(file, H5F_SCOPE_GLOBAL), path, "write");
     }
     catch (...)
@@ -396,12 +371,6 @@ namespace crawler
   RowReader::~RowReader() = default;
 
   std::size_t
-  RowReader::n_columns() const
-  {
-    return columns_.size();
-  }
-
-  std::size_t
   RowReader::index_of(const std::string &name) const
   {
     for (std::size_t i = 0; i < columns_.size(); ++i)
@@ -415,17 +384,12 @@ namespace crawler
   {
     crawler::Column column = columns_[number];
     const hid_t dataset = *handles_->datasets[number], type = *handles_->types[number];
-    const hsize_t start = first, count = n;
-    const Hdf5Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose), space(H5Dget_space(dataset), H5Sclose);
-    H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr);
-    const auto fill = [&](const hid_t memory_type, void *data) {
-      hdf5::checked(H5Dread(dataset, memory_type, memory, space, H5P_DEFAULT, data), path_, "read");
-    };
+    const hdf5::Part part(dataset, {first}, {n});
     if (H5Tget_class(type) == H5T_STRING)
     {
       const std::size_t width = H5Tget_size(type);
       std::vector<char> data(n * width);
-      fill(type, data.data());
+      part.read(type, data.data(), path_);
       std::vector<std::string> texts;
       texts.reserve(n);
       for (std::size_t i = 0; i < n; ++i)
@@ -435,7 +399,7 @@ namespace crawler
     else
     {
       std::vector<double> numbers(n);
-      fill(H5T_NATIVE_DOUBLE, numbers.data());
+      part.read(H5T_NATIVE_DOUBLE, numbers.data(), path_);
       column.values = std::move(numbers);
     }
     return column;
@@ -453,13 +417,8 @@ namespace crawler
       for (unsigned long row = 0; row < n; ++row)
         std::visit([&](const auto &values) { found_checksums[row].add(values[row], column.width); }, part.values);
     }
-    const hsize_t start = first, count = n;
-    const Hdf5Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose),
-      space(H5Dget_space(*handles_->checksums), H5Sclose);
-    H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr);
     std::vector<double> kept(n);
-    hdf5::checked(
-      H5Dread(*handles_->checksums, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, kept.data()), path_, "read");
+    hdf5::Part(*handles_->checksums, {first}, {n}).read(H5T_NATIVE_DOUBLE, kept.data(), path_);
     std::vector<bool> result;
     for (unsigned long row = 0; row < n; ++row)
       result.push_back(kept[row] == found_checksums[row].value());

@@ -76,18 +76,8 @@ namespace crawler
     unsigned long both[2] = {0, 0};
     if (is_owner_)
     {
-      MPI_Get_accumulate(nullptr,
-                         0,
-                         MPI_UNSIGNED_LONG,
-                         both,
-                         2,
-                         MPI_UNSIGNED_LONG,
-                         owner,
-                         completed,
-                         2,
-                         MPI_UNSIGNED_LONG,
-                         MPI_NO_OP,
-                         window_);
+      for (const int i : {0, 1})
+        MPI_Fetch_and_op(nullptr, &both[i], MPI_UNSIGNED_LONG, owner, completed + i, MPI_NO_OP, window_);
       MPI_Win_flush(owner, window_);
     }
     return {both[0], both[1]};

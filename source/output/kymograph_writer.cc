@@ -19,7 +19,13 @@ namespace crawler
   }
 
   Kymograph::Kymograph(std::vector<double> points)
-    : points_(std::move(points))
+    : points(std::move(points))
+    , sampler_([points = this->points](const Discretization &mesh) {
+      std::vector<double> s = points;
+      for (double &point : s)
+        point *= mesh.length();
+      return mesh.own_places(s);
+    })
   {
   }
 
@@ -39,20 +45,11 @@ namespace crawler
   {
     if (!snapshot.pictures.is_row)
       return;
-    const Discretization &d = snapshot.assembler.discretization();
-    if (!sampler_ || mesh_number_ != snapshot.mesh_number)
-    {
-      std::vector<double> s = points_;
-      for (double &point : s)
-        point *= d.length();
-      sampler_ = std::make_unique<FieldSampler>(snapshot.assembler, snapshot.units, d.own_places(s));
-    }
-    mesh_number_      = snapshot.mesh_number;
-    const Fields &own = sampler_->sample(snapshot.computed_time, snapshot.y, snapshot.v);
+    const Fields &own = sampler_.sample(snapshot);
     Fields all; // empty except on rank 0
     for (const FieldName &field : field_names)
       if (field.in_kymograph)
-        all.*field.values = gather(own.*field.values, d.communicator());
+        all.*field.values = gather(own.*field.values, snapshot.assembler.discretization().communicator());
     add(snapshot.step.time, all);
   }
 
@@ -90,7 +87,7 @@ namespace crawler
       return all;
     UsualSize size;
     for (std::size_t i = 0; i < times_.size(); ++i)
-      size.add(times_[i], std::span(values).subspan(i * points_.size(), points_.size()));
+      size.add(times_[i], std::span(values).subspan(i * points.size(), points.size()));
     return size.within(all);
   }
 
@@ -124,7 +121,7 @@ namespace crawler
       }
     std::vector<double> points;
     for (const double time : times())
-      for (const double point : this->points())
+      for (const double point : Kymograph::points)
         points.insert(points.end(), {point, time / end_time_, 0.});
     const std::string text = vtk_file(
       "StructuredGrid",

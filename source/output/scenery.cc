@@ -48,12 +48,12 @@ namespace crawler
 
     /// Interpolates a field at equidistant s.
     std::vector<double>
-    at_grips(const Frame &frame, const double length, const std::vector<double> &values)
+    at_arrows(const Frame &frame, const double length, const std::vector<double> &values)
     {
       std::vector<double> all;
-      for (unsigned int i = 0; i < n_grips; ++i)
+      for (unsigned int i = 0; i < n_arrows; ++i)
       {
-        const double s = length * (i + 0.5) / n_grips;
+        const double s = length * (i + 0.5) / n_arrows;
         const auto after =
           std::clamp<std::ptrdiff_t>(std::upper_bound(frame.s.begin(), frame.s.end(), s) - frame.s.begin(),
                                      1,
@@ -90,17 +90,6 @@ namespace crawler
     return twice;
   }
 
-  std::vector<Grip>
-  grips(const Frame &frame, const double length)
-  {
-    const std::vector<double> positions = at_grips(frame, length, frame.fields.position),
-                              forces    = at_grips(frame, length, frame.fields.friction_force);
-    std::vector<Grip> all;
-    for (unsigned int i = 0; i < n_grips; ++i)
-      all.push_back({positions[i], forces[i]});
-    return all;
-  }
-
   Scenery::Scenery(const double length)
     : length_(length)
     , seen_path_(no_numbers)
@@ -121,7 +110,7 @@ namespace crawler
       seen_[f]                       = {std::min(seen_[f].first, *smallest), std::max(seen_[f].second, *largest)};
       if (field_names[f].has_peaks)
       {
-        sizes_[f].add(frame.time, at_grips(frame, length_, values));
+        sizes_[f].add(frame.time, at_arrows(frame, length_, values));
         const FieldRange now = shown(f);
         if (drawn_[f].second - drawn_[f].first > 2. * (now.second - now.first)) // only a peak had been seen
           drawn_[f] = no_numbers;
@@ -165,21 +154,24 @@ namespace crawler
     return corners;
   }
 
-  Corners
-  Scenery::arrows(const std::vector<Grip> &grips) const
+  Arrows
+  Scenery::arrows(const Frame &frame) const
   {
-    Corners corners;
+    const std::vector<double> places = at_arrows(frame, length_, frame.fields.position),
+                              forces = at_arrows(frame, length_, frame.fields.friction_force);
     const double y = arrow_y * length_, half = arrow_width * length_ / 2.;
     constexpr auto is_friction = [](const FieldName &field) { return field.values == &Fields::friction_force; };
     const double usual         = sizes_[std::ranges::find_if(field_names, is_friction) - field_names].value();
-    for (const Grip &grip : grips)
+    Arrows arrows;
+    for (unsigned int i = 0; i < n_arrows; ++i)
     {
-      const double share = usual > 0. ? std::clamp(grip.friction_force / usual, -1., 1.) : 0.,
+      const double share = usual > 0. ? std::clamp(forces[i] / usual, -1., 1.) : 0.,
                    size  = -arrow_length * length_ * share;
-      const double x     = grip.position;
-      corners.insert(corners.end(), {x, y - half, 0., x + size, y, 0., x, y + half, 0.});
+      const double x     = places[i];
+      arrows.points.insert(arrows.points.end(), {x, y - half, 0., x + size, y, 0., x, y + half, 0.});
+      arrows.friction_force.insert(arrows.friction_force.end(), 3, forces[i]);
     }
-    return corners;
+    return arrows;
   }
 
   Corners

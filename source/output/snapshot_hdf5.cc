@@ -5,7 +5,6 @@
 #include <crawler/output/snapshot_hdf5.h>
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 namespace crawler
@@ -34,7 +33,7 @@ namespace crawler
   SnapshotHdf5::layouts()
   {
     static const std::map<std::string, Layout> all = [] {
-      const hsize_t arrows = 3 * n_grips, strips = 4 * Scenery::max_ground;
+      const hsize_t arrows = 3 * n_arrows, strips = 4 * Scenery::max_ground;
       std::map<std::string, Layout> layouts = {
         {"time", {"time", "time of each frame; NaN: it was not written", true, {}}},
         {"step", {"1", "number of the time step", true, {}, true}},
@@ -47,7 +46,7 @@ namespace crawler
         {"grip/points",
          {"length", "corners of the triangles that show the forces of the ground on the body", true, {arrows, 3}}},
         {"grip/friction_force", {"force/length", "of each corner", true, {arrows}}},
-        {"grip/cells", {"1", "corners of the triangles", false, {n_grips, 3}, true}},
+        {"grip/cells", {"1", "corners of the triangles", false, {n_arrows, 3}, true}},
         {"ground/points", {"length", "corners of the quadrilaterals that show the ground", false, {strips, 3}}},
         {"ground/cells", {"1", "their corners", false, {Scenery::max_ground, 4}, true}},
         {"scale/points", {"length", "corners of a quadrilateral that shows the scale of the fields", false, {4, 3}}},
@@ -89,23 +88,9 @@ namespace crawler
     for (const auto &[name, layout] : layouts())
     {
       const Shape size = shape(layout, n_frames, n);
-      const Hdf5Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose),
-        creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-      H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
-      H5Pset_fill_time(creation, H5D_FILL_TIME_ALLOC);
-      const double nan = std::numeric_limits<double>::quiet_NaN();
-      if (!layout.is_whole)
-        H5Pset_fill_value(creation, H5T_NATIVE_DOUBLE, &nan);
-      const Hdf5Handle dataset(hdf5::checked(H5Dcreate(file,
-                                                       name.c_str(),
-                                                       layout.is_whole ? H5T_STD_I32LE : H5T_IEEE_F64LE,
-                                                       space,
-                                                       H5P_DEFAULT,
-                                                       creation,
-                                                       H5P_DEFAULT),
-                                             path,
-                                             "write"),
-                               H5Dclose);
+      const Hdf5Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
+      const hid_t type = layout.is_whole ? H5T_STD_I32LE : H5T_IEEE_F64LE;
+      const Hdf5Handle dataset(hdf5::create_dataset(file, name, type, space, /*is_filled=*/true, path), H5Dclose);
       hdf5::write_attribute(dataset, "unit", layout.unit, path);
       hdf5::write_attribute(dataset, "description", layout.description, path);
     }
@@ -121,24 +106,18 @@ namespace crawler
         std::make_unique<Hdf5Handle>(hdf5::checked(H5Dopen(file_, name.c_str(), H5P_DEFAULT), path, "open"), H5Dclose);
   }
 
-  template <typename Work>
-  void
-  SnapshotHdf5::select(const std::string &name,
-                       const std::size_t row,
-                       const std::size_t n_rows,
-                       const std::size_t n,
-                       const Work &work) const
+  hdf5::Part
+  SnapshotHdf5::part(const std::string &name,
+                     const std::size_t row,
+                     const std::size_t n_rows,
+                     const std::size_t n) const
   {
     const Layout &layout = layouts().at(name);
     const Shape count    = shape(layout, n_rows, n);
     Shape start(count.size(), 0);
     if (layout.has_rows)
       start[0] = row;
-    const hid_t dataset = *datasets_.at(name);
-    const Hdf5Handle memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose),
-      space(H5Dget_space(dataset), H5Sclose);
-    H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
-    work(dataset, memory, space, product(count));
+    return {*datasets_.at(name), start, count};
   }
 
   void
@@ -148,9 +127,7 @@ namespace crawler
                       const std::size_t n_rows,
                       const std::size_t n) const
   {
-    select(name, row, n_rows, n, [&](const hid_t dataset, const hid_t memory, const hid_t space, std::size_t) {
-      hdf5::checked(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values.data()), path_, "write");
-    });
+    part(name, row, n_rows, n).write(H5T_NATIVE_DOUBLE, values.data(), path_);
   }
 
   std::vector<double>
@@ -159,12 +136,8 @@ namespace crawler
                      const std::size_t n_rows,
                      const std::size_t n) const
   {
-    std::vector<double> values;
-    select(
-      name, row, n_rows, n, [&](const hid_t dataset, const hid_t memory, const hid_t space, const std::size_t size) {
-        values.resize(size);
-        hdf5::checked(H5Dread(dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values.data()), path_, "read");
-      });
+    std::vector<double> values(product(shape(layouts().at(name), n_rows, n)));
+    part(name, row, n_rows, n).read(H5T_NATIVE_DOUBLE, values.data(), path_);
     return values;
   }
 

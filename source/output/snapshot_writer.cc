@@ -28,7 +28,8 @@ namespace crawler
                                  const std::filesystem::path &folder,
                                  const double length,
                                  const std::size_t n_frames)
-    : scenery_(length)
+    : sampler_(line_points)
+    , scenery_(length)
     , files_(format == SnapshotFormat::xdmf ? xdmf_files(folder, length, n_frames) : vtu_files(folder, length))
   {
   }
@@ -40,12 +41,9 @@ namespace crawler
       return;
     const Discretization &d = snapshot.assembler.discretization();
     communicator_           = d.communicator();
-    if (!sampler_ || mesh_number_ != snapshot.mesh_number)
-      sampler_ = std::make_unique<FieldSampler>(snapshot.assembler, snapshot.units, line_points(d));
-    mesh_number_      = snapshot.mesh_number;
-    const Fields &own = sampler_->sample(snapshot.computed_time, snapshot.y, snapshot.v);
+    const Fields &own       = sampler_.sample(snapshot);
     Frame frame{
-      snapshot.step.time, snapshot.step.number, d.element().n, gather(sampler_->coordinates(), communicator_), {}};
+      snapshot.step.time, snapshot.step.number, d.element().n, gather(sampler_.coordinates(), communicator_), {}};
     for (const FieldName &field : field_names)
       frame.fields.*field.values = gather(own.*field.values, communicator_);
     on_first_rank(communicator_, [&]() { write(frame); });

@@ -16,7 +16,7 @@ namespace crawler
 {
   namespace
   {
-    using Row = Statistics::Row;
+    using Row = StateNumbers;
 
     struct StatisticsColumn
     {
@@ -66,7 +66,7 @@ namespace crawler
   }
 
   void
-  Statistics::write(const Row &row)
+  Statistics::write(const StateNumbers &row)
   {
     for (std::size_t i = 0; i < n_columns_; ++i)
       values_.push_back(columns[i].value(row) + 0.); // no -0
@@ -94,14 +94,6 @@ namespace crawler
   }
 
   void
-  StatisticsWriter::open()
-  {
-    out_.open(path_);
-    out_ << units_.in_brackets(fmt::format("{}\n", fmt::join(column_names(), ",")));
-    require_written();
-  }
-
-  void
   StatisticsWriter::require_written() const
   {
     if (!out_)
@@ -120,10 +112,13 @@ namespace crawler
   }
 
   void
-  StatisticsWriter::write(const Row &row)
+  StatisticsWriter::write(const StateNumbers &row)
   {
     if (!out_.is_open())
-      open();
+    {
+      out_.open(path_);
+      out_ << units_.in_brackets(fmt::format("{}\n", fmt::join(column_names(), ",")));
+    }
     std::string line;
     for (std::size_t i = 0; i < n_columns_; ++i)
     {

@@ -112,18 +112,14 @@ namespace crawler
     }
 
     std::string
-    grip_file(const Frame &frame, const Scenery &scenery, const double length)
+    grip_file(const Frame &frame, const Scenery &scenery)
     {
-      const std::vector<Grip> all = grips(frame, length);
-      std::vector<double> forces;
-      for (const Grip &grip : all)
-        forces.insert(forces.end(), 3, grip.friction_force);
-      const Corners points = scenery.arrows(all);
+      const Arrows arrows = scenery.arrows(frame);
       return vtu_file(CellType::triangle,
                       "",
-                      ">\n" + vtk_array("friction_force", forces, 1, "force/length"),
-                      points,
-                      in_order(points));
+                      ">\n" + vtk_array("friction_force", arrows.friction_force, 1, "force/length"),
+                      arrows.points,
+                      in_order(arrows.points));
     }
 
     constexpr const char *list_begin = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
@@ -156,7 +152,7 @@ namespace crawler
         if (scenery_changed)
           write_scenery(scenery);
         write_file(files / (number + ".vtu"), body_file(frame, length_));
-        write_file(files / ("grip_" + number + ".vtu"), grip_file(frame, scenery, length_));
+        write_file(files / ("grip_" + number + ".vtu"), grip_file(frame, scenery));
         write_file(files / ("line_" + number + ".vtu"), line_file(frame));
         body_.add(entry(frame.time, 0, "body", number) + entry(frame.time, 1, "grip", "grip_" + number) +
                   entry(frame.time, 2, "ground", "ground") + entry(frame.time, 3, "scale", "scale"));

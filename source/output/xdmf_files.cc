@@ -149,15 +149,13 @@ namespace crawler
           write(body + field.name, on_both_edges(frame.fields.*field.values));
           write(line + field.name, frame.fields.*field.values);
         }
-        std::vector<double> line_points(3 * n, 0.), forces;
+        std::vector<double> line_points(3 * n, 0.);
         for (std::size_t i = 0; i < n; ++i)
           line_points[3 * i] = frame.s[i];
         write(line + "points", line_points);
-        const std::vector<Grip> all = grips(frame, length_);
-        for (const Grip &one : all)
-          forces.insert(forces.end(), 3, one.friction_force);
-        write(grip + "points", scenery.arrows(all));
-        write(grip + "friction_force", forces);
+        const Arrows arrows = scenery.arrows(frame);
+        write(grip + "points", arrows.points);
+        write(grip + "friction_force", arrows.friction_force);
         write("step", {static_cast<double>(frame.step)});
         write("n_points", {static_cast<double>(n)});
         write("time", {frame.time}); // last: a frame with its time is complete
@@ -220,7 +218,7 @@ namespace crawler
               }
           const std::size_t strips = Scenery::max_ground;
           larger.write(line + "cells", numbers_to(n), 0, 1, n);
-          larger.write(grip + "cells", numbers_to(3 * n_grips));
+          larger.write(grip + "cells", numbers_to(3 * n_arrows));
           larger.write(ground + "cells", numbers_to(4 * strips));
           larger.write(scale + "cells", numbers_to(4));
         }

@@ -4,7 +4,6 @@
 #include <crawler/run/lane_extremes.h>
 #include <crawler/run/lane_sampler.h>
 #include <crawler/run/recorder.h>
-#include <crawler/time/integrators.h>
 #include <crawler/time/radau_tableau.h>
 
 #include <algorithm>
@@ -14,29 +13,6 @@
 
 namespace crawler
 {
-  std::optional<LaneMethod>
-  lane_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
-  {
-    const std::string &chosen = time.integrator == "automatic" ? numerics.integrator : time.integrator;
-    const std::string name    = chosen.empty() ? "automatic" : chosen;
-    const Integrator &method  = integrator(name);
-    const bool is_one_of_ours = method.petsc_type == "radau" && time.step_control == StepControl::adaptive;
-    const bool is_stretch     = numerics.formulation == Formulation::stretch;
-    if (time.engine != Engine::automatic || !is_one_of_ours || numerics.mesh.tolerance != 0. ||
-        !(is_stretch ? reason_against_stretch_form(scene).empty() : fits_lanes(scene)))
-      return std::nullopt;
-    LaneMethod result = {numerics.degree,
-                         numerics.n_cells,
-                         method.n_stages,
-                         first_cell_ends(scene, numerics),
-                         is_stretch,
-                         numerics.other_rule,
-                         lane_laws(scene)};
-    if (!result.cell_ends.empty())
-      result.n_cells = static_cast<unsigned int>(result.cell_ends.size() - 1);
-    return result;
-  }
-
   std::optional<LaneMethod>
   batch_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
   {
@@ -88,12 +64,11 @@ namespace crawler
       {
         std::size_t run         = 0;
         bool given_up           = false;
-        double stretch_at_start = 1.;         ///< smallest stretch of the ends
-        std::pair<double, double> end_moduli; ///< in natural units
-        bool has_known_ends = true;           ///< see Assembler
+        double stretch_at_start = 1.; ///< smallest stretch of the ends
         Units units;
         TimeSegments segments;
-        std::optional<Scene> scene; ///< general scene, in natural units
+        std::optional<Scene> scene; ///< in natural units, as all that follows
+        std::pair<double, double> end_moduli;
         std::optional<HostLaws> laws;
         std::unique_ptr<FeedbackAtPoints> end_feedback; ///< feedback at the ends of the body, if there is one
         std::vector<double> output_times;               ///< ends of the segments, and those that the record needs
@@ -102,7 +77,7 @@ namespace crawler
         std::optional<Recorder> recorder;
         std::unique_ptr<ActiveStressAtPoints> stress; ///< stress at the quadrature points and the ends of the body
         std::optional<StressWatch> watch;
-        std::vector<double> breaks; ///< breaks in space, in lengths of the body
+        std::vector<double> breaks; ///< breaks in space
         std::vector<double> m;
         std::vector<std::array<double, 2>> end_stress; ///< m at the ends, in the stages of the step that is tried
         std::size_t n_stress_calls = 0;
@@ -113,79 +88,69 @@ namespace crawler
       {
         if (next_ == members_.size() || interrupted_)
           return false;
-        lanes_[l].run = members_[next_++];
-        start(lanes_[l], job);
+        lanes_[l]      = std::make_unique<Lane>();
+        lanes_[l]->run = members_[next_++];
+        start(*lanes_[l], job);
         return true;
       }
 
       void
       start(Lane &lane, LaneJob &job) const
       {
-        const Numerics &numerics = *runs_[lane.run].numerics;
-        const Scene &scene       = *runs_[lane.run].scene;
-        lane.units               = natural_units(scene);
-        lane.segments            = TimeSegments(*scene.active_stress, scene.end_time);
-        lane.limits              = in_units(numerics, lane.units).step_limits;
-        start_record(lane, scene, numerics.tolerance / lane.units.length);
+        const BatchRun &run = runs_[lane.run];
+        lane.units          = natural_units(*run.scene);
+        lane.segments       = TimeSegments(*run.scene->active_stress, run.scene->end_time);
+        lane.scene.emplace(in_units(*run.scene, lane.units, &lane.segments));
+        const Scene &scene      = *lane.scene;
+        const Numerics numerics = in_units(*run.numerics, lane.units);
+        lane.limits             = numerics.step_limits;
+        start_record(lane, numerics.tolerance);
         std::vector<double> points = tables_->points;
-        for (double &s : points)
-          s *= lane.units.length;
-        points.push_back(0.);
-        points.push_back(lane.units.length);
+        points.insert(points.end(), {0., 1.});
         lane.stress = scene.active_stress->at(points);
-        lane.watch.emplace(
-          *scene.active_stress, lane.units.length, numerics.min_event > 0. ? numerics.min_event : HUGE_VAL);
+        lane.watch.emplace(*scene.active_stress, 1., numerics.min_event > 0. ? numerics.min_event : HUGE_VAL);
         lane.breaks = scene.breaks_in_space();
-        for (double &s : lane.breaks)
-          s /= lane.units.length;
         lane.m.resize(points.size());
         lane.end_stress.resize(tableau_.n);
-        lane.n_stress_calls = 0;
-        lane.given_up       = false;
-        lane.end_moduli     = scene.end_moduli();
-        lane.end_moduli.first /= lane.units.force;
-        lane.end_moduli.second /= lane.units.force;
-        lane.has_known_ends = scene.active_stress->feedback() == nullptr;
-        job                 = {.k              = scene.body.elastic_modulus / lane.units.force,
-                               .a              = scene.body.friction_exponent(),
-                               .tolerance      = numerics.tolerance / lane.units.length,
-                               .newton_factor  = 1.,
-                               .initial_step   = numerics.initial_step / lane.units.time,
-                               .limits         = lane.limits.data(),
-                               .n_limits       = static_cast<unsigned int>(lane.limits.size()),
-                               .max_steps      = runs_[lane.run].time->max_steps,
-                               .least_stretch  = small_stretch,
-                               .is_last_resort = false,
-                               .start_time     = 0.,
-                               .start          = nullptr,
-                               .output_times   = lane.output_times.data(),
-                               .n_output_times = static_cast<unsigned int>(lane.output_times.size()),
-                               .restarts       = lane.restarts.data()};
-        lane.laws.reset();
-        lane.end_feedback.reset();
+        lane.end_moduli = scene.end_moduli();
+        job             = {.k              = scene.body.elastic_modulus,
+                           .a              = scene.body.friction_exponent(),
+                           .tolerance      = numerics.tolerance,
+                           .newton_factor  = 1.,
+                           .initial_step   = numerics.initial_step,
+                           .limits         = lane.limits.data(),
+                           .n_limits       = static_cast<unsigned int>(lane.limits.size()),
+                           .max_steps      = run.time->max_steps,
+                           .least_stretch  = small_stretch,
+                           .is_last_resort = false,
+                           .start_time     = 0.,
+                           .start          = nullptr,
+                           .output_times   = lane.output_times.data(),
+                           .n_output_times = static_cast<unsigned int>(lane.output_times.size()),
+                           .restarts       = lane.restarts.data()};
         if (scene.is_plain())
           return;
-        lane.scene.emplace(in_units(scene, lane.units, &lane.segments));
-        lane.laws.emplace(*lane.scene, tables_->points);
+        lane.laws.emplace(scene, tables_->points);
         lane.laws->set(job);
-        if (const StretchFeedback *feedback = lane.scene->active_stress->feedback())
+        if (const StretchFeedback *feedback = scene.active_stress->feedback())
           lane.end_feedback = feedback->at({0., 1.});
       }
 
       bool
       laws(const unsigned int l, const LanePoints &points) override
       {
-        return lanes_[l].laws->evaluate(points);
+        return lanes_[l]->laws->evaluate(points);
       }
 
       /// Starts the record of a run from rest.
       void
-      start_record(Lane &lane, const Scene &scene, const double tolerance) const
+      start_record(Lane &lane, const double tolerance) const
       {
         Simulation::Options options = options_;
-        if (runs_[lane.run].cycles)
-          options.cycles = runs_[lane.run].cycles;
-        lane.recorder.emplace(scene, lane.units, options, tolerance, /*may_search=*/false);
+        const BatchRun &run         = runs_[lane.run];
+        if (run.cycles)
+          options.cycles = run.cycles;
+        lane.recorder.emplace(*run.scene, lane.units, options, tolerance, /*may_search=*/false);
         lane.recorder->set_smallest_cell(tables_->smallest_size());
         lane.output_times = lane.segments.breaks();
         lane.output_times.push_back(1.);
@@ -209,12 +174,9 @@ namespace crawler
       void
       stress(const unsigned int l, const double t, double *m) override
       {
-        Lane &lane          = lanes_[l];
+        Lane &lane          = *lanes_[l];
         const std::size_t n = tables_->points.size(), stages = tableau_.n;
-        lane.stress->values(lane.segments.inside(t) * lane.units.time, lane.m);
-        if (lane.units.force != 1.)
-          for (double &value : lane.m)
-            value /= lane.units.force;
+        lane.stress->values(t, lane.m);
         std::copy_n(lane.m.begin(), n, m);
         const std::array<double, 2> ends{{lane.m[n], lane.m[n + 1]}};
         if (lane.n_stress_calls == 0)
@@ -236,7 +198,7 @@ namespace crawler
       static bool
       end_inverts(const Lane &lane)
       {
-        if (!lane.has_known_ends)
+        if (lane.scene->active_stress->feedback() != nullptr) // see Assembler::has_known_ends()
           return false;
         double smallest = lane.stretch_at_start;
         for (const auto &m : lane.end_stress)
@@ -244,14 +206,14 @@ namespace crawler
         if (!(smallest > 0.))
           return true;
         return std::ranges::any_of(lane.watch->inside(), [&](const StressWatch::Values &m) {
-          return !(end_stretch(lane, {{m[0] / lane.units.force, m[1] / lane.units.force}}) > 0.);
+          return !(end_stretch(lane, {{m[0], m[1]}}) > 0.);
         });
       }
 
       bool
       accepted(const unsigned int l, const LaneStep &step) override
       {
-        Lane &lane = lanes_[l];
+        Lane &lane = *lanes_[l];
         if (!interrupted_ && keep_going_ && !keep_going_())
           interrupted_ = true;
         // A run that is stopped in its last step is finished to the engine.
@@ -263,8 +225,7 @@ namespace crawler
       bool
       look_at_step(Lane &lane, const LaneStep &step)
       {
-        const double from = lane.segments.inside(step.time - step.size), to = lane.segments.inside(step.time);
-        if (!step.is_settled || !lane.watch->is_calm(from * lane.units.time, to * lane.units.time) || end_inverts(lane))
+        if (!step.is_settled || !lane.watch->is_calm(step.time - step.size, step.time) || end_inverts(lane))
           return false;
         const unsigned int n = tableau_.n;
         for (unsigned int i = options_.energy_balance ? 0 : n - 1; i < n; ++i)
@@ -315,7 +276,7 @@ namespace crawler
       void
       done(const unsigned int l, const LaneOutcome &outcome) override
       {
-        Lane &lane = lanes_[l];
+        Lane &lane = *lanes_[l];
         if ((outcome.status == LaneOutcome::finished || lane.recorder->cycles_repeat()) && !lane.given_up)
           results_[lane.run] = result_of(lane, outcome);
       }
@@ -346,7 +307,7 @@ namespace crawler
       const std::function<bool()> &keep_going_;
       Results &results_;
       LaneSampler sampler_;
-      std::vector<Lane> lanes_;
+      std::vector<std::unique_ptr<Lane>> lanes_;
       std::size_t next_ = 0;
       bool interrupted_ = false;
     };

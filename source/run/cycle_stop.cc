@@ -214,13 +214,9 @@ namespace crawler
     const auto go_on    = [&](double &value, const auto of) { value += left * (of(ends_[n]) - of(ends_[n - 1])); };
     go_on(displacement, [](const End &end) { return end.displacement; });
     if (energy_balance)
-      for (double EnergyBalance::*integral : {&EnergyBalance::stress_work,
-                                              &EnergyBalance::dissipation,
-                                              &EnergyBalance::positive_work,
-                                              &EnergyBalance::exchanged_work,
-                                              &EnergyBalance::end_work,
-                                              &EnergyBalance::transfer_loss})
-        go_on(energy_balance->*integral, [&](const End &end) { return end.energy_balance.*integral; });
+      for (double EnergyBalance::*integral : EnergyBalance::energies())
+        if (integral != &EnergyBalance::elastic_energy) // that of the last state
+          go_on(energy_balance->*integral, [&](const End &end) { return end.energy_balance.*integral; });
     return {wish_.period, static_cast<unsigned int>(n), static_cast<unsigned int>(n_cycles_ - n), bound_};
   }
 

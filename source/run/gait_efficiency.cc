@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace crawler
 {
@@ -37,23 +38,6 @@ namespace crawler
     }
   } // namespace
 
-  std::optional<double>
-  gait_efficiency(const Scene &scene, const SimulationResult &result)
-  {
-    if (!result.energy_balance)
-      return std::nullopt;
-    return part_of_bound(scene, result, result.displacement, energy_of_bound(*result.energy_balance), scene.end_time);
-  }
-
-  std::optional<double>
-  stride_efficiency(const Scene &scene, const SimulationResult &result)
-  {
-    if (!result.gait || !result.gait->energy_balance)
-      return std::nullopt;
-    const Gait &gait = *result.gait;
-    return part_of_bound(scene, result, gait.displacement, gait.energy_balance->dissipation, gait.period);
-  }
-
   double
   error_of_efficiencies(const Scene &scene, const SimulationResult &result)
   {
@@ -69,8 +53,11 @@ namespace crawler
   {
     if (result.time.status != Status::finished)
       return;
-    result.gait_efficiency = gait_efficiency(scene, result);
-    if (result.gait)
-      result.gait->efficiency = stride_efficiency(scene, result);
+    if (const auto &balance = result.energy_balance)
+      result.gait_efficiency =
+        part_of_bound(scene, result, result.displacement, energy_of_bound(*balance), scene.end_time);
+    if (result.gait && result.gait->energy_balance)
+      result.gait->efficiency = part_of_bound(
+        scene, result, result.gait->displacement, result.gait->energy_balance->dissipation, result.gait->period);
   }
 } // namespace crawler

@@ -11,14 +11,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace crawler
 {
   namespace
   {
-    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
     Extreme
     stretch_of(const StrainExtreme &e)
     {
@@ -36,8 +33,8 @@ namespace crawler
   } // namespace
 
   ReducedModel::ReducedModel(const Scene &scene, const Model model)
-    : scene_(scene)
-    , reduced_scene_(scene)
+    : reduced_scene(scene)
+    , scene_(scene)
     , model_(model)
   {
   }
@@ -45,15 +42,15 @@ namespace crawler
   void
   ReducedModel::compute_perturbation(SimulationResult &result) const
   {
-    const NaturalWave &wave       = *reduced_scene_.wave();
-    const ModelErrors errors      = reduced_scene_.model_errors();
+    const NaturalWave &wave       = *reduced_scene.wave();
+    const ModelErrors errors      = reduced_scene.model_errors();
     const StrainExtremes extremes = perturbation::extremes(wave);
     result.displacement           = perturbation::displacement(wave, 1.);
-    result.error                  = {.space = 0., .time = 0., .model = errors.known ? errors.perturbation : unknown};
-    result.energy_balance         = perturbation::energies(wave, 1.);
-    result.net_friction           = unknown;
-    result.min_stretch            = stretch_of(extremes.smallest);
-    result.max_stretch            = stretch_of(extremes.largest);
+    result.error = {.space = 0., .time = 0., .model = errors.known ? errors.perturbation : DisplacementError::unknown};
+    result.energy_balance = perturbation::energies(wave, 1.);
+    result.net_friction   = DisplacementError::unknown;
+    result.min_stretch    = stretch_of(extremes.smallest);
+    result.max_stretch    = stretch_of(extremes.largest);
   }
 
   void
@@ -62,7 +59,7 @@ namespace crawler
                                   const std::function<bool()> &keep_going)
   {
     const KinematicResult motion =
-      kinematic(reduced_scene_.scene(), *reduced_scene_.strain(), 0.5 * accuracy, keep_going);
+      kinematic(reduced_scene.scene(), *reduced_scene.strain(), 0.5 * accuracy, keep_going);
     space_panels_ = motion.space_panels;
     time_panels_  = motion.time_panels;
     if (motion.stopped)
@@ -79,12 +76,13 @@ namespace crawler
       result.energy_balance.reset();
       return;
     }
-    const ModelErrors errors = reduced_scene_.model_errors();
+    const ModelErrors errors = reduced_scene.model_errors();
     result.displacement      = motion.displacement;
-    result.error             = {
-                  .space = motion.space_error, .time = motion.time_error, .model = errors.known ? errors.kinematic : unknown};
-    result.energy_balance = motion.energies;
-    result.net_friction   = motion.net_friction;
+    result.error             = {.space = motion.space_error,
+                                .time  = motion.time_error,
+                                .model = errors.known ? errors.kinematic : DisplacementError::unknown};
+    result.energy_balance    = motion.energies;
+    result.net_friction      = motion.net_friction;
   }
 
   /// Fails the result unless its error is as small as requested.
@@ -105,7 +103,7 @@ namespace crawler
         ? fmt::format(
             "the estimated error of the displacement is {:.3g}{}, but Accuracy is {:g}; a larger one, or Model "
             "= auto, is needed",
-            error.total * reduced_scene_.units().length,
+            error.total * reduced_scene.units().length,
             relative,
             accuracy)
         : fmt::format("the error of the {} model cannot be estimated for this scene, since its corrections do not "
@@ -114,7 +112,10 @@ namespace crawler
   }
 
   SimulationResult
-  ReducedModel::compute(const double accuracy, const bool energy_balance, const std::function<bool()> &keep_going)
+  ReducedModel::compute(const double accuracy,
+                        const bool energy_balance,
+                        const std::function<bool()> &keep_going,
+                        const bool gait)
   {
     const Stopwatch watch;
     SimulationResult result;
@@ -131,7 +132,7 @@ namespace crawler
     result.time.time       = is_complete ? 1. : result.inversion ? result.inversion->t : 0.;
     if (!energy_balance)
       result.energy_balance.reset();
-    result = in_user_units(std::move(result), scene_, reduced_scene_.units());
+    result = in_user_units(std::move(result), scene_, reduced_scene.units());
     set_error_of_efficiency("gait.efficiency", result.gait_efficiency, result);
     if (result.inversion)
     {
@@ -144,6 +145,8 @@ namespace crawler
                                         result.inversion->t);
     }
     result.solve_seconds = watch.seconds();
+    if (gait)
+      describe_gait(result);
     return result;
   }
 
@@ -155,8 +158,8 @@ namespace crawler
     State state;
     if (model_ == Model::perturbation)
     {
-      const NaturalWave &wave = *reduced_scene_.wave();
-      KinematicBody body(reduced_scene_.scene(), *reduced_scene_.strain(), {0., 0.5, 1.}, points);
+      const NaturalWave &wave = *reduced_scene.wave();
+      KinematicBody body(reduced_scene.scene(), *reduced_scene.strain(), {0., 0.5, 1.}, points);
       for (const double t : times)
       {
         const auto &now    = body.evaluate(t); // for its extremes
@@ -171,7 +174,7 @@ namespace crawler
       }
       return;
     }
-    KinematicBody body(reduced_scene_.scene(), *reduced_scene_.strain(), space_panels_, points);
+    KinematicBody body(reduced_scene.scene(), *reduced_scene.strain(), space_panels_, points);
     state.energies.initial_energy = body.evaluate(0.).sums.elastic_energy;
     for (std::size_t i = 0; i < times.size(); ++i)
     {
@@ -200,7 +203,7 @@ namespace crawler
   void
   ReducedModel::describe_gait(SimulationResult &result) const
   {
-    const auto period = stride_of(*reduced_scene_.scene().active_stress, 1.);
+    const auto period = stride_of(*reduced_scene.scene().active_stress, 1.);
     if (result.time.status != Status::finished || !period)
       return;
     GaitMeter meter(*period, false);
@@ -213,8 +216,8 @@ namespace crawler
     });
     if (const auto gait = meter.gait())
     {
-      result.gait             = gait->in_units(reduced_scene_.units());
-      result.gait->efficiency = stride_efficiency(scene_, result);
+      result.gait = gait->in_units(reduced_scene.units());
+      set_efficiencies(scene_, result);
       set_error_of_efficiency("gait.stride_efficiency", result.gait->efficiency, result);
     }
   }

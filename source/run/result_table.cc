@@ -33,6 +33,16 @@ namespace crawler
       return {.key = key, .unit = unit, .meaning = meaning, .value = value, .scale = scale, .is_sampled = is_sampled};
     }
 
+    /// Energy per distance of the last stride.
+    ResultEntry
+    cost_of_transport(const std::string &key,
+                      const std::string &meaning,
+                      ResultValue (*value)(const Result &),
+                      const bool is_sampled = false)
+    {
+      return number("gait.cost_of_transport." + key, force, meaning, value, Scale::cost, is_sampled);
+    }
+
     ResultEntry
     word(const std::string &key, const std::string &meaning, ResultValue (*value)(const Result &))
     {
@@ -57,7 +67,6 @@ namespace crawler
 #define VALUE(expression) [](const Result &r) -> ResultValue { return ResultValue(expression); }
 #define COUNT(expression) VALUE((unsigned long)(expression))
 #define WORK(expression) PART(energy_balance, part.expression)
-    /// Energy per distance of the last stride.
 #define COST(expression)                                 \
   [](const Result &r) -> ResultValue {                   \
     if (!r.gait || !r.gait->energy_balance)              \
@@ -127,27 +136,13 @@ namespace crawler
         number("gait.displacement", length, "displacement in the last stride", PART(gait, part.displacement), itself),
         number("gait.body_lengths", one, "body lengths covered in the last stride", PART(gait, part.body_lengths())),
         number("gait.speed", "length/time", "speed in the last stride", PART(gait, part.speed()), itself),
-        number("gait.cost_of_transport.stress_power",
-               force,
-               "work of the active stress per distance",
-               COST(part.stress_work),
-               cost),
-        number("gait.cost_of_transport.positive_power",
-               force,
-               "positive work of the active stress per distance, for actuators that cannot recover work",
-               COST(part.positive_work),
-               cost,
-               true),
-        number("gait.cost_of_transport.paper_energy",
-               force,
-               "energy of the paper per distance",
-               COST(part.paper_energy()),
-               cost),
-        number("gait.cost_of_transport.dissipation",
-               force,
-               "work against the friction per distance",
-               COST(part.dissipation),
-               cost),
+        cost_of_transport("stress_power", "work of the active stress per distance", COST(part.stress_work)),
+        cost_of_transport("positive_power",
+                          "positive work of the active stress per distance, for actuators that cannot recover work",
+                          COST(part.positive_work),
+                          /*is_sampled=*/true),
+        cost_of_transport("paper_energy", "energy of the paper per distance", COST(part.paper_energy())),
+        cost_of_transport("dissipation", "work against the friction per distance", COST(part.dissipation)),
         number("gait.slip", one, "1 - speed of the body/speed of the wave", PART(gait, known(part.slip())), itself),
         word("gait.wave.direction", "direction of the wave of stretch", PART(gait, std::string(part.direction()))),
         number("gait.wave.speed",
@@ -245,6 +240,14 @@ namespace crawler
   }
 
   double
+  ResultEntry::number_in(const SimulationResult &result) const
+  {
+    const ResultValue found = value_in(result);
+    const double *number    = std::get_if<double>(&found);
+    return number != nullptr ? *number : std::numeric_limits<double>::quiet_NaN();
+  }
+
+  double
   ResultEntry::scale_in(const SimulationResult &result) const
   {
     switch (scale)
@@ -254,11 +257,7 @@ namespace crawler
       case Scale::strain:
         return std::max(1. - result.min_stretch.value, result.max_stretch.value - 1.);
       case Scale::itself:
-      {
-        const ResultValue own = value(result);
-        const double *number  = std::get_if<double>(&own);
-        return number != nullptr ? std::abs(*number) : std::numeric_limits<double>::quiet_NaN();
-      }
+        return std::abs(number_in(result));
       case Scale::cost:
         return result.gait && result.gait->energy_balance
                  ? result.gait->energy_balance->exchanged_work / std::abs(result.gait->displacement)
@@ -274,6 +273,12 @@ namespace crawler
   {
     static const std::vector<ResultEntry> table = numbers_and_words();
     return table;
+  }
+
+  const ResultEntry &
+  entry_of(const std::string &key)
+  {
+    return *std::ranges::find(result_table(), key, &ResultEntry::key);
   }
 
   const std::vector<const ResultEntry *> &

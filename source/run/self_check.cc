@@ -96,10 +96,7 @@ namespace crawler
                        result.gait->efficiency,
                        result.gait->energy_balance->dissipation);
     }
-  } // namespace
 
-  namespace
-  {
     /// True if other meshes confirm the displacement of the stretch form. Where friction is steep its works need far
     /// shorter steps.
     bool

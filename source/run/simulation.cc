@@ -41,6 +41,29 @@ namespace crawler
     return cell_ends(numerics.n_cells, breaks, numerics.grading);
   }
 
+  std::optional<LaneMethod>
+  lane_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
+  {
+    const std::string &chosen = time.integrator == "automatic" ? numerics.integrator : time.integrator;
+    const std::string name    = chosen.empty() ? "automatic" : chosen;
+    const Integrator &method  = integrator(name);
+    const bool is_one_of_ours = method.petsc_type == "radau" && time.step_control == StepControl::adaptive;
+    const bool is_stretch     = numerics.formulation == Formulation::stretch;
+    if (time.engine != Engine::automatic || !is_one_of_ours || numerics.mesh.tolerance != 0. ||
+        !(is_stretch ? reason_against_stretch_form(scene).empty() : fits_lanes(scene)))
+      return std::nullopt;
+    LaneMethod result = {numerics.degree,
+                         numerics.n_cells,
+                         method.n_stages,
+                         first_cell_ends(scene, numerics),
+                         is_stretch,
+                         numerics.other_rule,
+                         lane_laws(scene)};
+    if (!result.cell_ends.empty())
+      result.n_cells = static_cast<unsigned int>(result.cell_ends.size() - 1);
+    return result;
+  }
+
   Simulation::Simulation(MPI_Comm communicator,
                          const Scene &scene,
                          const TimeParameters &time,
@@ -104,6 +127,27 @@ namespace crawler
     v_.resize(mesh_.discretization->n_owned());
     ++mesh_number_;
     choose_stepper(); // options of PETSc are read now
+  }
+
+  /// Chooses the fused engine where it fits and has not given up, else PETSc. The unused one is not built.
+  void
+  Simulation::choose_stepper()
+  {
+    const auto method = size_of(communicator_) == 1 ? lane_method(scene_, time_, numerics_) : std::nullopt;
+    if (method && (!run_ || !run_->lanes_gave_up))
+    {
+      if (!integrators_.lanes)
+        integrators_.lanes = std::make_unique<LaneStepper>(scene_, *method);
+      integrators_.present = integrators_.lanes.get();
+    }
+    else
+    {
+      if (mesh_.position == nullptr)
+        throw std::logic_error("the stretch form is for the fused engine");
+      if (!integrators_.petsc)
+        integrators_.petsc = petsc_stepper(communicator_, *mesh_.position, time_);
+      integrators_.present = integrators_.petsc.get();
+    }
   }
 
   SimulationResult
@@ -233,7 +277,13 @@ namespace crawler
       if (run_->diagnosis)
         return run_->before;
       const Ending ending = integrate_part();
-      TimeOutcome outcome = outcome_of_parts();
+      TimeOutcome outcome = integrators_.present->outcome();
+      if (outcome.status == Status::none)
+        outcome.status = Status::stopped;
+      outcome.steps += run_->before.steps;
+      outcome.rejected_steps += run_->before.rejected_steps;
+      outcome.newton_iterations += run_->before.newton_iterations;
+      outcome.linear_iterations += run_->before.linear_iterations;
       result().most_cells = std::max(result().most_cells, mesh_.discretization->n_cells());
       if (!goes_on_after(ending, outcome))
         return outcome;
@@ -274,8 +324,11 @@ namespace crawler
     while (ending == Ending::none)
       if (const Step *const part = stepper.next())
       {
-        run_->latest = with_counts_before(*part);
-        ending       = look_at(*part, run_->latest);
+        run_->latest = *part;
+        run_->latest.number += run_->before.steps;
+        run_->latest.rejected += run_->before.rejected_steps;
+        run_->latest.newton_iterations += run_->before.newton_iterations;
+        ending = look_at(*part, run_->latest);
       }
       else
         ending = Ending::stepper;
@@ -290,47 +343,6 @@ namespace crawler
     const std::span<const double> y = integrators_.present->state();
     if (const Ending ending = see(step, y); ending != Ending::none)
       return ending;
-    if (const Ending ending = ending_after(step, y); ending != Ending::none)
-      return ending;
-    if (run_->options.steps != nullptr && step.size > 0. && integrators_.present == integrators_.lanes.get())
-      run_->options.steps->add(
-        integrators_.lanes->lane_step(), integrators_.lanes->tables().setup.n_stages, y.size(), part.number == 1);
-    if (wants_coarser_mesh(step))
-      return Ending::mesh;
-    if (!segments_.is_last() && part.time == segments_.end())
-      return Ending::jump;
-    const bool stops = run_->keep_going && !run_->keep_going();
-    keep_state(stops, step);
-    return stops ? Ending::stopped : Ending::none;
-  }
-
-  Step
-  Simulation::with_counts_before(Step step) const
-  {
-    step.number += run_->before.steps;
-    step.rejected += run_->before.rejected_steps;
-    step.newton_iterations += run_->before.newton_iterations;
-    return step;
-  }
-
-  /// Outcome of the present part, with the counts of all.
-  TimeOutcome
-  Simulation::outcome_of_parts() const
-  {
-    TimeOutcome outcome = integrators_.present->outcome();
-    if (outcome.status == Status::none)
-      outcome.status = Status::stopped;
-    outcome.steps += run_->before.steps;
-    outcome.rejected_steps += run_->before.rejected_steps;
-    outcome.newton_iterations += run_->before.newton_iterations;
-    outcome.linear_iterations += run_->before.linear_iterations;
-    return outcome;
-  }
-
-  /// Ends the part if cycles repeat or if there are too many steps.
-  Simulation::Ending
-  Simulation::ending_after(const Step &step, const std::span<const double> y)
-  {
     std::vector<double> u;
     const auto sample = [&](const double t) -> Recorder::BodySample {
       const auto state = t < step.time && step.size > 0. ? state_within(t) : y;
@@ -340,23 +352,32 @@ namespace crawler
     if (run_->recorder.see_step(
           step.time, step.is_output_time, run_->stretch.min.value, run_->stretch.max.value, sample))
       return Ending::cycles;
-    if (step.number < time_.max_steps || step.time >= 1.)
-      return Ending::none;
-    run_->diagnosis = {Status::stopped, "step_limit", "the maximum number of steps was reached"};
-    return Ending::lost;
+    if (step.number >= time_.max_steps && step.time < 1.)
+    {
+      run_->diagnosis = {Status::stopped, "step_limit", "the maximum number of steps was reached"};
+      return Ending::lost;
+    }
+    if (run_->options.steps != nullptr && step.size > 0. && integrators_.present == integrators_.lanes.get())
+      run_->options.steps->add(
+        integrators_.lanes->lane_step(), integrators_.lanes->tables().setup.n_stages, y.size(), part.number == 1);
+    if (wants_coarser_mesh(step))
+      return Ending::mesh;
+    if (!segments_.is_last() && part.time == segments_.end())
+      return Ending::jump;
+    const bool stops = !run_->keep_going();
+    keep_state(stops, step);
+    return stops ? Ending::stopped : Ending::none;
   }
 
   /// Decides whether another part follows one that has ended.
   bool
   Simulation::goes_on_after(const Ending ending, TimeOutcome &outcome)
   {
-    if (ending == Ending::stepper && outcome.reason == LaneStepper::gave_up)
+    constexpr double smallest_step_of_petsc = 1e-9;
+
+    const bool gave_up = ending == Ending::stepper && outcome.reason == LaneStepper::gave_up;
+    if (gave_up && mesh_.position == nullptr)
     {
-      if (mesh_.position != nullptr)
-      {
-        go_on_with_petsc(outcome);
-        return true;
-      }
       outcome.reason       = "newton_diverged";
       outcome.message      = "the equations of a step cannot be solved";
       outcome.domain_error = scene_.friction_exponent() >= 0.;
@@ -366,19 +387,29 @@ namespace crawler
         outcome.domain_error = true;
       }
     }
-    const bool wants_change = ending == Ending::mesh || ending == Ending::retry || ending == Ending::jump;
+    const bool goes_to_petsc = gave_up && mesh_.position != nullptr;
+    const bool wants_change  = ending == Ending::mesh || ending == Ending::retry || ending == Ending::jump;
     // Steps to the end are repeated like any other if their state was discarded.
-    if (!wants_change || run_->accepted.time >= 1.)
+    if (!goes_to_petsc && (!wants_change || run_->accepted.time >= 1.))
       return false;
-    count_part(outcome);
-    run_->accepted.next_step = outcome.step_size;
-    if (ending == Ending::retry)
+    run_->before = outcome;
+    // States that were not accepted are repeated, and their step does not count.
+    if (outcome.time > run_->accepted.time)
     {
-      y_ = run_->accepted.y;
-      return true;
+      run_->before.steps -= std::min(run_->before.steps, 1u);
+      ++run_->before.rejected_steps;
     }
-    if (time_.integrator == "bdf") // starts anew with order 1
-      run_->accepted.next_step = std::min(run_->accepted.next_step, numerics_.initial_step);
+    double &next_step = run_->accepted.next_step;
+    next_step         = outcome.step_size;
+    if (goes_to_petsc || ending == Ending::retry)
+      y_ = run_->accepted.y;
+    if (goes_to_petsc)
+    {
+      run_->lanes_gave_up = true;
+      next_step           = std::max(std::min(next_step, numerics_.initial_step), smallest_step_of_petsc);
+    }
+    else if (ending != Ending::retry && time_.integrator == "bdf") // starts anew with order 1
+      next_step = std::min(next_step, numerics_.initial_step);
     if (ending == Ending::mesh)
       change();
     return true;
@@ -422,18 +453,5 @@ namespace crawler
       return;
     if (mesh_.velocity->compute(t, 0., y_, v_))
       run_->quadrature.advance(t, rates(t, mesh_.assembler->integrals(t, y_, v_), y_, v_));
-  }
-
-  /// Keeps the counts of a part of the run that has ended.
-  void
-  Simulation::count_part(const TimeOutcome &outcome)
-  {
-    run_->before = outcome;
-    // States that were not accepted are repeated, and their step does not count.
-    if (outcome.time > run_->accepted.time)
-    {
-      run_->before.steps -= std::min(run_->before.steps, 1u);
-      ++run_->before.rejected_steps;
-    }
   }
 } // namespace crawler

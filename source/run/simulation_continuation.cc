@@ -22,12 +22,7 @@ namespace crawler
     unsigned int n_ranks       = size_of(communicator_);
     double duration            = units_.time;
     std::optional<double> wish = options.cycles ? std::optional(options.cycles->accuracy) : std::nullopt;
-    // Members one by one, since bytes between the members of a struct may differ.
-    archive(numerics.degree, numerics.n_cells, numerics.tolerance, numerics.initial_step, numerics.step_limits);
-    archive(numerics.min_event, numerics.formulation, numerics.integrator, numerics.layer);
-    archive(numerics.mesh.tolerance, numerics.mesh.smallest_cell, numerics.mesh.most_cells, numerics.grading.levels);
-    archive(numerics.grading.ratio, numerics.parts, numerics.other_rule, numerics.jumps_move);
-    archive(time.integrator, time.engine, time.order, time.step_control, time.max_steps, time.petsc_prefix);
+    archive(numerics, time.integrator, time.engine, time.order, time.step_control, time.max_steps, time.petsc_prefix);
     archive(what.energy_balance, what.resolution, wish, what.gait, is_shown, n_ranks, duration);
     return archive.bytes();
   }

@@ -204,36 +204,29 @@ namespace crawler
   {
     const double a = scene_.friction_exponent();
     if (a <= -1. || (a < 0. && mesh_.position != nullptr))
+      run_->diagnosis = {
+        Status::failed,
+        "under_resolved",
+        fmt::format("the computed stretch reached {:.3g} at s = {:.6g}, t = {:.6g}, {}: {} cells of degree {} "
+                    "are too coarse, or the steps too long; {}a larger Discretization/Number of cells or a smaller "
+                    "Time/Tolerance is needed",
+                    value,
+                    s * units_.length,
+                    t * units_.time,
+                    a <= -1. ? "where the body itself stays uninverted (a <= -1)"
+                             : "for which only the stretch form is trusted at a < 0",
+                    mesh_.discretization->n_cells(),
+                    mesh_.discretization->element().degree,
+                    mesh_.position != nullptr ? "Discretization/Formulation = stretch, or " : "")};
+    else
     {
-      under_resolved(value, s, t);
-      return;
+      result().inversion = SimulationResult::Extreme{std::min(value, 0.), s, t};
+      run_->diagnosis    = {Status::inverted,
+                            "inverted_inside",
+                            fmt::format("the body inverted: its stretch reached 0 at s = {:.6g}, t = {:.9g}; the model "
+                                        "ends there",
+                                     s * units_.length,
+                                     t * units_.time)};
     }
-    result().inversion = SimulationResult::Extreme{std::min(value, 0.), s, t};
-    run_->diagnosis    = {Status::inverted,
-                          "inverted_inside",
-                          fmt::format("the body inverted: its stretch reached 0 at s = {:.6g}, t = {:.9g}; the model ends "
-                                      "there",
-                                   s * units_.length,
-                                   t * units_.time)};
-  }
-
-  void
-  Simulation::under_resolved(const double value, const double s, const double t)
-  {
-    const bool positive = scene_.friction_exponent() <= -1.;
-    run_->diagnosis     = {
-          Status::failed,
-          "under_resolved",
-          fmt::format("the computed stretch reached {:.3g} at s = {:.6g}, t = {:.6g}, {}: {} cells of degree {} "
-                      "are too coarse, or the steps too long; {}a larger Discretization/Number of cells or a smaller "
-                      "Time/Tolerance is needed",
-                  value,
-                  s * units_.length,
-                  t * units_.time,
-                  positive ? "where the body itself stays uninverted (a <= -1)"
-                               : "for which only the stretch form is trusted at a < 0",
-                  mesh_.discretization->n_cells(),
-                  mesh_.discretization->element().degree,
-                  mesh_.position != nullptr ? "Discretization/Formulation = stretch, or " : "")};
   }
 } // namespace crawler

@@ -46,6 +46,26 @@ namespace crawler
         value);
     }
 
+    std::string
+    displacement_in_words(const SimulationResult &result, const UnitNames &units)
+    {
+      const std::string number =
+        std::isfinite(result.displacement) ? fmt::format("{:.10g}", result.displacement) : "unknown";
+      const std::string unit = units.behind("length");
+      if (!result.error || !std::isfinite(result.error->total))
+        return number + unit;
+      const DisplacementError &error = *result.error;
+      if (!std::isfinite(error.space))
+        return fmt::format("{} +- {:.2g}{} (space and time together)", number, error.total, unit);
+      return fmt::format("{} +- {:.2g}{} (space {:.2g}, time {:.2g}, model {:.2g})",
+                         number,
+                         error.total,
+                         unit,
+                         error.space,
+                         error.time,
+                         error.model);
+    }
+
     void
     add_gait_lines(const SimulationResult &result, const UnitNames &units, std::vector<std::string> &lines)
     {
@@ -166,50 +186,21 @@ namespace crawler
     return json.dump(2, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace) + "\n";
   }
 
-  namespace
-  {
-    std::string
-    steps_in_words(const TimeOutcome &time)
-    {
-      return time.steps > 0 ? fmt::format(" after {} steps ({} rejected)", time.steps, time.rejected_steps) : "";
-    }
-
-    std::string
-    displacement_in_words(const SimulationResult &result, const UnitNames &units)
-    {
-      const std::string number =
-        std::isfinite(result.displacement) ? fmt::format("{:.10g}", result.displacement) : "unknown";
-      const std::string unit = units.behind("length");
-      if (!result.error || !std::isfinite(result.error->total))
-        return number + unit;
-      const DisplacementError &error = *result.error;
-      if (!std::isfinite(error.space))
-        return fmt::format("{} +- {:.2g}{} (space and time together)", number, error.total, unit);
-      return fmt::format("{} +- {:.2g}{} (space {:.2g}, time {:.2g}, model {:.2g})",
-                         number,
-                         error.total,
-                         unit,
-                         error.space,
-                         error.time,
-                         error.model);
-    }
-  } // namespace
-
   std::vector<std::string>
   summary_lines(const SimulationResult &result, const UnitNames &units)
   {
-    std::vector<std::string> lines;
-    const auto &time = result.time;
-    lines.push_back(fmt::format("{} at t = {:g}{}{}, {:.3g} s",
-                                time.status == Status::finished   ? "Finished"
-                                : time.status == Status::inverted ? "Inverted"
-                                : time.status == Status::stopped  ? "Stopped"
-                                                                  : "FAILED (" + time.reason + ")",
-                                time.time,
-                                units.behind("time"),
-                                steps_in_words(time),
-                                result.solve_seconds + result.output_seconds));
-    lines.push_back("  displacement      " + displacement_in_words(result, units));
+    const auto &time               = result.time;
+    std::vector<std::string> lines = {
+      fmt::format("{} at t = {:g}{}{}, {:.3g} s",
+                  time.status == Status::finished   ? "Finished"
+                  : time.status == Status::inverted ? "Inverted"
+                  : time.status == Status::stopped  ? "Stopped"
+                                                    : "FAILED (" + time.reason + ")",
+                  time.time,
+                  units.behind("time"),
+                  time.steps > 0 ? fmt::format(" after {} steps ({} rejected)", time.steps, time.rejected_steps) : "",
+                  result.solve_seconds + result.output_seconds),
+      "  displacement      " + displacement_in_words(result, units)};
     if (result.corrected)
       lines.push_back(fmt::format("  corrected         {:.12g} +- {:.2g}{} (by the adjoint)",
                                   result.corrected->value,

@@ -24,8 +24,8 @@ namespace
     for (unsigned int c = 0; c < d.n_local_cells(); ++c)
       for (const double x : fine.points)
         points.push_back({c, x});
-    FieldSampler sampler(snapshot.assembler, snapshot.units, points);
-    const Fields &fields = sampler.sample(snapshot.computed_time, snapshot.y, snapshot.v);
+    FieldSampler sampler([&](const Discretization &) { return points; });
+    const Fields &fields = sampler.sample(snapshot);
     double sum           = 0.;
     for (unsigned int c = 0; c < d.n_local_cells(); ++c)
       for (unsigned int p = 0; p < fine.n; ++p)

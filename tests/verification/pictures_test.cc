@@ -32,8 +32,8 @@ namespace
       const unsigned int cell = std::min(static_cast<unsigned int>(place), d.n_cells() - 1);
       points.push_back({cell, place - cell});
     }
-    FieldSampler sampler(snapshot.assembler, snapshot.units, points);
-    const Fields &fields = sampler.sample(snapshot.computed_time, snapshot.y, snapshot.v);
+    FieldSampler sampler([&](const Discretization &) { return points; });
+    const Fields &fields = sampler.sample(snapshot);
     return {snapshot.step.time,
             snapshot.integrals.displacement,
             snapshot.energy_balance.dissipation,

@@ -319,11 +319,10 @@ TEST(RunGradient, OfStretches)
   std::vector<std::vector<double>> seen;
   for (const Scene &one : near)
   {
-    std::vector<std::unique_ptr<Observer>> observers;
-    observers.push_back(std::make_unique<Kymograph>(std::vector<double>{0.31}));
+    const auto kymograph = std::make_shared<Kymograph>(std::vector<double>{0.31});
     Simulation(MPI_COMM_SELF, one, time, numerics_for(one, "radau 9", 10, 1e-12))
-      .run(PictureTimes({}, times, 1.), {}, observers);
-    seen.push_back(static_cast<const Kymograph &>(*observers.front()).rows().stretch);
+      .run(PictureTimes({}, times, 1.), {}, {kymograph});
+    seen.push_back(kymograph->rows().stretch);
     ASSERT_EQ(seen.back().size(), times.size());
   }
   const Variation variation  = {near, step};

@@ -6,7 +6,6 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
-#include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -94,6 +93,8 @@ namespace crawler
         value.exchange(*this);
       else if constexpr (std::is_enum_v<Type>)
         kind(value);
+      else if constexpr (requires { value.resize(0); })
+        list(value);
       else
       {
         static_assert(is_raw<Type>);
@@ -107,7 +108,7 @@ namespace crawler
       auto number = static_cast<unsigned int>(value);
       raw(&number, sizeof(number));
       if constexpr (HasWords<Enum>)
-        require(number < std::size(Words<Enum>::list), "a kind");
+        require(number < std::size(words_of<Enum>), "a kind");
       value = static_cast<Enum>(number);
     }
     /// Truth values are checked: using a byte other than 0 or 1 as one is undefined.
@@ -119,24 +120,6 @@ namespace crawler
       if (byte > 1)
         fail("a truth value");
       value = byte == 1;
-    }
-    void
-    one(std::string &text)
-    {
-      resize(text, 1);
-      raw(text.data(), text.size());
-    }
-    template <typename Type>
-    void
-    one(std::vector<Type> &list)
-    {
-      list_of(list);
-    }
-    template <typename Type>
-    void
-    one(std::deque<Type> &list)
-    {
-      list_of(list);
     }
     template <typename Type, std::size_t n>
     void
@@ -172,7 +155,7 @@ namespace crawler
 
     template <typename List>
     void
-    list_of(List &list)
+    list(List &list)
     {
       using Type = typename List::value_type;
       resize(list, is_raw<Type> ? sizeof(Type) : 1);

@@ -35,17 +35,13 @@ namespace crawler
     /// The function at fixed points s, as functions of t.
     class AtPoints;
 
-    GridInterpolation(GridTable grid, Method method, Outside outside);
+    GridInterpolation(GridTable samples, Method method, Outside outside);
 
     /// Evaluator at the points, which refers to this object.
     std::unique_ptr<AtPoints>
     at(const std::vector<double> &points) const;
 
-    const GridTable &
-    grid() const
-    {
-      return grid_;
-    }
+    const GridTable grid;
 
   private:
     /// Functions of t by their values at the knots, and their curvatures in t if they are splines.
@@ -62,7 +58,6 @@ namespace crawler
     Columns
     make_columns(std::size_t n, std::vector<double> values) const;
 
-    const GridTable grid_;
     const Outside outside_;
     std::optional<CubicSpline> in_s_, in_t_;       ///< if cubic
     std::vector<double> curvatures_;               ///< [t][s], in s, if cubic

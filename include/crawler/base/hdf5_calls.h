@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace crawler
 {
@@ -55,6 +56,33 @@ namespace crawler
     /// Writes a text attribute. Throws FileError.
     void
     write_attribute(hid_t object, const std::string &name, const std::string &text, const std::filesystem::path &path);
+
+    /// Creates a dataset (the caller closes it) with room for all its values at once. If @p is_filled they are NaN, 0
+    /// or empty texts until they are written. Throws FileError.
+    hid_t
+    create_dataset(hid_t parent,
+                   const std::string &name,
+                   hid_t type,
+                   hid_t space,
+                   bool is_filled,
+                   const std::filesystem::path &path);
+
+    /// Part of a dataset: in each direction @p count values from @p start on.
+    class Part
+    {
+    public:
+      Part(hid_t dataset, const std::vector<hsize_t> &start, const std::vector<hsize_t> &count);
+
+      /// Both are for @p values of this type in memory. Throw FileError.
+      void
+      read(hid_t type, void *values, const std::filesystem::path &path) const;
+      void
+      write(hid_t type, const void *values, const std::filesystem::path &path, hid_t transfer = H5P_DEFAULT) const;
+
+    private:
+      const hid_t dataset_;
+      const Hdf5Handle memory_, space_;
+    };
 
     /// True if @p read, which reads the structure of the HDF5 file @p path, terminates. HDF5 1.10 crashes on some
     /// damaged files and never ends on others, so a copy of this process tries first, once for each @p purpose and each

@@ -88,8 +88,6 @@ namespace crawler
     {
       return n_rows_;
     }
-    std::size_t
-    n_columns() const;
 
     /// Number of the column of this name. Throws FileError if there is none.
     std::size_t

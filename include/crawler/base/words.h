@@ -6,33 +6,31 @@
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace crawler
 {
-  /// Words for the values of an enum in files and outputs. Specialised beside the enum with a `static constexpr const
-  /// char *list[]` in the order of its values, which count from 0.
+  /// Words for the values of an enum in files and outputs. Specialised beside the enum as an array of them in the order
+  /// of its values, which count from 0.
   template <typename Enum>
-  struct Words;
+  inline constexpr const char *const *words_of = nullptr;
 
   template <typename Enum>
-  concept HasWords = requires
-  {
-    Words<Enum>::list;
-  };
+  concept HasWords = std::is_array_v<decltype(words_of<Enum>)>;
 
   template <HasWords Enum>
   constexpr const char *
   word_of(const Enum value)
   {
-    return Words<Enum>::list[static_cast<std::size_t>(value)];
+    return words_of<Enum>[static_cast<std::size_t>(value)];
   }
 
   template <HasWords Enum>
   std::vector<std::string>
   all_words()
   {
-    return {std::begin(Words<Enum>::list), std::end(Words<Enum>::list)};
+    return {std::begin(words_of<Enum>), std::end(words_of<Enum>)};
   }
 
   /// Returns the value of a word; nothing if it is none of the words.
@@ -40,8 +38,8 @@ namespace crawler
   std::optional<Enum>
   from_word(const std::string_view word)
   {
-    for (std::size_t i = 0; i < std::size(Words<Enum>::list); ++i)
-      if (word == Words<Enum>::list[i])
+    for (std::size_t i = 0; i < std::size(words_of<Enum>); ++i)
+      if (word == words_of<Enum>[i])
         return static_cast<Enum>(i);
     return std::nullopt;
   }

@@ -17,10 +17,7 @@ namespace crawler
     automatic
   };
   template <>
-  struct Words<FormulationEntry>
-  {
-    static constexpr const char *list[] = {"position", "stretch", "automatic"};
-  };
+  inline constexpr const char *words_of<FormulationEntry>[] = {"position", "stretch", "automatic"};
 
   enum class MeshKind
   {
@@ -29,10 +26,7 @@ namespace crawler
     automatic
   };
   template <>
-  struct Words<MeshKind>
-  {
-    static constexpr const char *list[] = {"uniform", "adaptive", "automatic"};
-  };
+  inline constexpr const char *words_of<MeshKind>[] = {"uniform", "adaptive", "automatic"};
 
   enum class ShareCells
   {
@@ -41,10 +35,7 @@ namespace crawler
     no
   };
   template <>
-  struct Words<ShareCells>
-  {
-    static constexpr const char *list[] = {"automatic", "yes", "no"};
-  };
+  inline constexpr const char *words_of<ShareCells>[] = {"automatic", "yes", "no"};
 
   /// Section "Discretization"; empty entries are chosen from the wanted accuracy.
   struct DiscretizationParameters

@@ -34,10 +34,10 @@ namespace crawler
     change(const std::vector<CellChange> &changes) = 0;
   };
 
-  /// Creates cells between neighbours of @p ends [length] (collective).
+  /// Creates cells between neighbours of @p ends [length] (collective). Throws FileError if deal.II cannot be loaded.
   std::unique_ptr<Triangulation>
   create_triangulation(MPI_Comm communicator, const std::vector<double> &ends);
 
-  /// Its implementation in the library that links deal.II (base/deal_ii_library.h).
+  /// Its implementation in the library that links deal.II (source/deal_ii).
   using CreateTriangulation = Triangulation *(MPI_Comm communicator, const std::vector<double> &ends);
 } // namespace crawler

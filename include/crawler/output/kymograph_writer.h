@@ -25,20 +25,19 @@ namespace crawler
     /// Takes @p points as increasing fractions of the length.
     explicit Kymograph(std::vector<double> points = equidistant());
 
+    const std::vector<double> points; ///< as fractions of the length
+
     void
     observe(const Snapshot &snapshot) override;
     void
+    show(const StateWithoutMesh &state) override
+    {
+      if (state.pictures.is_row)
+        add(state.numbers.step.time, state.frame.fields);
+    }
+    void
     exchange(Archive &archive) override;
 
-    /// Adds a time with @p fields at all points.
-    void
-    add(double time, const Fields &fields);
-
-    const std::vector<double> &
-    points() const
-    {
-      return points_;
-    }
     const std::vector<double> &
     times() const
     {
@@ -55,9 +54,11 @@ namespace crawler
     shown(const FieldName &field) const;
 
   private:
-    const std::vector<double> points_;
-    std::unique_ptr<FieldSampler> sampler_; ///< for the mesh mesh_number_
-    unsigned int mesh_number_ = 0;
+    /// Adds a time with @p fields at all points.
+    void
+    add(double time, const Fields &fields);
+
+    FieldSampler sampler_;
     std::vector<double> times_;
     Fields rows_;
   };

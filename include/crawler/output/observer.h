@@ -32,6 +32,59 @@ namespace crawler
     const EnergyBalance &energy_balance;
   };
 
+  /// Output fields at a list of points, in the user's units.
+  struct Fields
+  {
+    std::vector<double> position, displacement, stretch, velocity, active_stress, elastic_stress, friction_force;
+  };
+
+  /// Name of a field in files, and its unit.
+  struct FieldName
+  {
+    const char *name, *unit;
+    std::vector<double> Fields::*values;
+    bool in_kymograph;
+    bool has_peaks; ///< a jump of the active stress makes it large for an instant
+  };
+  constexpr FieldName field_names[] = {
+    {"stretch", "1", &Fields::stretch, true, false},
+    {"position", "length", &Fields::position, false, false},
+    {"displacement", "length", &Fields::displacement, true, false},
+    {"velocity", "length/time", &Fields::velocity, true, true},
+    {"active_stress", "force", &Fields::active_stress, true, false},
+    {"elastic_stress", "force", &Fields::elastic_stress, false, false},
+    {"friction_force", "force/length", &Fields::friction_force, true, true},
+  };
+
+  /// The whole body at one time, in the user's units.
+  struct Frame
+  {
+    double time;
+    unsigned int step;
+    unsigned int points_per_cell;
+    std::vector<double> s; ///< of the points of all cells, ends included: two at each cell boundary [length]
+    Fields fields;
+  };
+
+  /// Numbers of a state, in the user's units: a row of the statistics.
+  struct StateNumbers
+  {
+    const Step &step;
+    double displacement;
+    StretchRange stretch;
+    double velocity; ///< of the centre of mass
+    const EnergyBalance &energy_balance;
+    double net_friction;
+  };
+
+  /// A state of a level without a mesh: its body is one cell.
+  struct StateWithoutMesh
+  {
+    PictureKinds pictures; ///< pictures for which it was requested
+    Frame frame;
+    StateNumbers numbers;
+  };
+
   /// Sees the accepted states of a run and the requested ones. Called on all ranks together.
   class Observer
   {
@@ -40,6 +93,12 @@ namespace crawler
 
     virtual void
     observe(const Snapshot &snapshot) = 0;
+
+    /// Counterpart for levels without a mesh, whose states are all requested (this rank alone).
+    virtual void
+    show(const StateWithoutMesh &)
+    {
+    }
 
     /// Exchanges the data collected so far, to continue the same files. Throws FileError if these are missing.
     virtual void
@@ -54,8 +113,10 @@ namespace crawler
     }
   };
 
+  using Observers = std::vector<std::shared_ptr<Observer>>;
+
   /// Observers, one in number, that show each snapshot of a run to @p see.
-  inline std::vector<std::unique_ptr<Observer>>
+  inline Observers
   watched_by(std::function<void(const Snapshot &)> see)
   {
     struct Watcher : public Observer
@@ -71,8 +132,6 @@ namespace crawler
       }
       const std::function<void(const Snapshot &)> see;
     };
-    std::vector<std::unique_ptr<Observer>> observers;
-    observers.push_back(std::make_unique<Watcher>(std::move(see)));
-    return observers;
+    return {std::make_shared<Watcher>(std::move(see))};
   }
 } // namespace crawler

@@ -18,10 +18,7 @@ namespace crawler
     xdmf
   };
   template <>
-  struct Words<SnapshotFormat>
-  {
-    static constexpr const char *list[] = {"vtu", "xdmf"};
-  };
+  inline constexpr const char *words_of<SnapshotFormat>[] = {"vtu", "xdmf"};
 
   /// Section "Output": results and files besides the displacement.
   struct OutputParameters

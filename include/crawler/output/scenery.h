@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/output/field_sampler.h>
+#include <crawler/output/observer.h>
 #include <crawler/output/usual_size.h>
 
 #include <array>
@@ -11,16 +11,6 @@
 
 namespace crawler
 {
-  /// The whole body at one time, in the user's units.
-  struct Frame
-  {
-    double time;
-    unsigned int step;
-    unsigned int points_per_cell;
-    std::vector<double> s; ///< of the points of all cells, ends included: two at each cell boundary [length]
-    Fields fields;
-  };
-
   /// Vertices of triangles or quadrilaterals, one after another, each with x, y and z.
   using Corners = std::vector<double>;
 
@@ -36,16 +26,13 @@ namespace crawler
   std::vector<double>
   on_both_edges(const std::vector<double> &values);
 
-  /// A place on the body where the force of the ground is drawn as an arrow.
-  struct Grip
+  /// Triangles that show the forces of the ground on the body, with the friction force at each corner.
+  struct Arrows
   {
-    double position, friction_force;
+    Corners points;
+    std::vector<double> friction_force;
   };
-  constexpr unsigned int n_grips = 24;
-
-  /// Places of arrows, at equidistant s.
-  std::vector<Grip>
-  grips(const Frame &frame, double length);
+  constexpr unsigned int n_arrows = 24;
 
   /// Surroundings of the body: the ground below its path, the size of the arrows, and scales of the fields.
   class Scenery
@@ -71,10 +58,9 @@ namespace crawler
     double
     tick_distance() const;
 
-    /// Triangles, an arrow for each place: forces of the ground on the body. An arrow 0.15 L long is the usual size in
-    /// the frames so far; none is longer.
-    Corners
-    arrows(const std::vector<Grip> &grips) const;
+    /// Arrows at equidistant s. One 0.15 L long is the usual size in the frames so far; none is longer.
+    Arrows
+    arrows(const Frame &frame) const;
 
     /// A quadrilateral below the left end of the ground, whose fields go from their smallest value on the left to their
     /// largest on the right, those with peaks within their usual size.

@@ -67,10 +67,8 @@ namespace crawler
     place(const std::string &name, std::size_t row) const;
 
   private:
-    /// Calls @p work with the dataset, the spaces of memory and file, and the number of values.
-    template <typename Work>
-    void
-    select(const std::string &name, std::size_t row, std::size_t n_rows, std::size_t n, const Work &work) const;
+    hdf5::Part
+    part(const std::string &name, std::size_t row, std::size_t n_rows, std::size_t n) const;
 
     std::filesystem::path path_;
     Hdf5Handle file_;

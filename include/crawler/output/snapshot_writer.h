@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/output/observer.h>
+#include <crawler/output/field_sampler.h>
 #include <crawler/output/output_parameters.h>
 #include <crawler/output/snapshot_files.h>
 
@@ -28,6 +28,12 @@ namespace crawler
     void
     observe(const Snapshot &snapshot) override;
     void
+    show(const StateWithoutMesh &state) override
+    {
+      if (state.pictures.is_snapshot)
+        write(state.frame);
+    }
+    void
     end() override;
     void
     exchange(Archive &archive) override
@@ -35,6 +41,7 @@ namespace crawler
       archive(scenery_, *files_);
     }
 
+  private:
     /// Writes a frame (this rank alone). Throws FileError.
     void
     write(const Frame &frame)
@@ -43,10 +50,8 @@ namespace crawler
       files_->add(frame, scenery_, changed);
     }
 
-  private:
-    std::unique_ptr<FieldSampler> sampler_; ///< for the mesh mesh_number_
-    unsigned int mesh_number_ = 0;
-    MPI_Comm communicator_    = MPI_COMM_SELF; ///< of the ranks that share the cells
+    FieldSampler sampler_;
+    MPI_Comm communicator_ = MPI_COMM_SELF; ///< of the ranks that share the cells
     Scenery scenery_;
     std::unique_ptr<SnapshotFiles> files_;
   };

@@ -21,19 +21,16 @@ namespace crawler
     void
     observe(const Snapshot &snapshot) override;
 
-    /// A row of the table, in the user's units.
-    struct Row
+    void
+    show(const StateWithoutMesh &state) override
     {
-      const Step &step;
-      double displacement;
-      StretchRange stretch;
-      double velocity; ///< of the centre of mass
-      const EnergyBalance &energy_balance;
-      double net_friction;
-    };
+      if (state.pictures.is_snapshot)
+        write(state.numbers);
+    }
 
+    /// Adds a row.
     virtual void
-    write(const Row &row);
+    write(const StateNumbers &row);
 
     /// Names with units, "time [time]".
     std::vector<std::string>
@@ -67,15 +64,13 @@ namespace crawler
     void
     observe(const Snapshot &snapshot) override;
     void
-    write(const Row &row) override;
+    write(const StateNumbers &row) override;
     void
     end() override;
     void
     exchange(Archive &archive) override;
 
   private:
-    void
-    open();
     void
     require_written() const;
 

@@ -15,8 +15,5 @@ namespace crawler
     nonlinear
   };
   template <>
-  struct Words<Model>
-  {
-    static constexpr const char *list[] = {"auto", "perturbation", "kinematic", "linear", "nonlinear"};
-  };
+  inline constexpr const char *words_of<Model>[] = {"auto", "perturbation", "kinematic", "linear", "nonlinear"};
 } // namespace crawler

@@ -11,10 +11,6 @@
 
 namespace crawler
 {
-  /// Method of the fused engine that does what a Simulation would do; nothing if there is none.
-  std::optional<LaneMethod>
-  lane_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics);
-
   /// Method of the fused engine for batches, which are in the position form.
   std::optional<LaneMethod>
   batch_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics);

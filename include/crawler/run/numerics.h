@@ -34,8 +34,10 @@ namespace crawler
     void
     exchange(Archive &archive)
     {
-      archive(degree, n_cells, tolerance, initial_step, step_limits, min_event, formulation, mesh, integrator);
-      archive(grading, layer, parts, other_rule, jumps_move);
+      archive(degree, n_cells, tolerance, initial_step, step_limits, min_event, formulation, integrator, layer);
+      // Members one by one, since bytes between the members of a struct may differ.
+      archive(mesh.tolerance, mesh.smallest_cell, mesh.most_cells, grading.levels, grading.ratio);
+      archive(parts, other_rule, jumps_move);
     }
   };
 

@@ -23,10 +23,11 @@ namespace crawler
     /**
      * Computes the result of the level, in the user's units. If the error is not known, or larger than @p accuracy
      * times the displacement (and 1e-12 of the length), the status is "failed" with the reason accuracy_not_met; if the
-     * strain that the level assumes inverts the body it is "inverted". @p keep_going is asked now and then.
+     * strain that the level assumes inverts the body it is "inverted". @p keep_going is asked now and then. With
+     * @p gait the last stride is described, if the run finished and the active stress declares its period.
      */
     SimulationResult
-    compute(double accuracy, bool energy_balance, const std::function<bool()> &keep_going = {});
+    compute(double accuracy, bool energy_balance, const std::function<bool()> &keep_going = {}, bool gait = false);
 
     /// State at one time, in natural units.
     struct State
@@ -46,15 +47,7 @@ namespace crawler
            const std::vector<double> &points,
            const std::function<bool(double time, const State &state)> &see) const;
 
-    /// Adds the last stride to the @p result of compute(), if it finished and the active stress declares its period.
-    void
-    describe_gait(SimulationResult &result) const;
-
-    const ReducedScene &
-    reduced_scene() const
-    {
-      return reduced_scene_;
-    }
+    const ReducedScene reduced_scene;
 
     /// Description of the computation, in a sentence.
     std::string
@@ -66,10 +59,11 @@ namespace crawler
     void
     compute_kinematic(SimulationResult &result, double accuracy, const std::function<bool()> &keep_going);
     void
+    describe_gait(SimulationResult &result) const;
+    void
     judge(SimulationResult &result, double accuracy) const;
 
     const Scene &scene_; ///< in the user's units
-    const ReducedScene reduced_scene_;
     const Model model_;
     std::vector<double> space_panels_; ///< ends of the panels of the kinematic level
     std::vector<double> time_panels_;  ///< ends of the panels in time of the kinematic level

@@ -39,6 +39,9 @@ namespace crawler
 
     ResultValue
     value_in(const SimulationResult &result) const;
+    /// The same of a number; not a number if it is not known.
+    double
+    number_in(const SimulationResult &result) const;
     /// Scale of its error; 0 if it has none.
     double
     scale_in(const SimulationResult &result) const;
@@ -47,6 +50,10 @@ namespace crawler
   /// Entries in the order of summary.json.
   const std::vector<ResultEntry> &
   result_table();
+
+  /// Entry of a key, which must exist.
+  const ResultEntry &
+  entry_of(const std::string &key);
 
   /// Entries with an error bound, in the order of SimulationResult::errors.
   const std::vector<const ResultEntry *> &

@@ -116,10 +116,6 @@ namespace crawler
     {
     }
 
-    explicit operator bool() const
-    {
-      return static_cast<bool>(question_);
-    }
     bool
     operator()() const
     {

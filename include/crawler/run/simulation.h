@@ -12,6 +12,10 @@
 
 namespace crawler
 {
+  /// Method of the fused engine by which a Simulation computes; nothing if there is none.
+  std::optional<LaneMethod>
+  lane_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics);
+
   /**
    * One crawler: builds mesh, equation and time integration in this order, connects them, and changes the mesh on the
    * way where requested. Computes in natural units (scene.h); inputs and results are in the scene's. Can run several
@@ -22,7 +26,7 @@ namespace crawler
   public:
     using GaitWish  = crawler::GaitWish;
     using Options   = RecordOptions;
-    using Observers = std::vector<std::unique_ptr<Observer>>;
+    using Observers = crawler::Observers;
 
     Simulation(MPI_Comm communicator, const Scene &scene, const TimeParameters &time, const Numerics &numerics);
     ~Simulation();
@@ -65,10 +69,6 @@ namespace crawler
     void
     choose_stepper();
     void
-    go_on_with_petsc(const TimeOutcome &outcome);
-    void
-    count_part(const TimeOutcome &outcome);
-    void
     begin_segment();
     void
     change();
@@ -78,8 +78,6 @@ namespace crawler
     stress_failed();
     Ending
     see(const Step &step, std::span<const double> y);
-    Ending
-    ending_after(const Step &step, std::span<const double> y);
     Ending
     examine(const Step &step, std::span<const double> y);
     bool
@@ -134,18 +132,12 @@ namespace crawler
     inverted_at_end(double s, double t, const std::string &reason);
     void
     inverted_inside(double value, double s, double t);
-    void
-    under_resolved(double value, double s, double t);
     TimeOutcome
     integrate();
     Ending
     integrate_part();
     Ending
     look_at(const Step &part, const Step &step);
-    Step
-    with_counts_before(Step step) const;
-    TimeOutcome
-    outcome_of_parts() const;
     bool
     goes_on_after(Ending ending, TimeOutcome &outcome);
     TimeOutcome

@@ -96,7 +96,7 @@ namespace crawler::simulation_parts
   struct Run
   {
     RecordOptions options;
-    const std::vector<std::unique_ptr<Observer>> &observers;
+    const Observers &observers;
     const KeepGoing &keep_going;
     RunJournal *journal; ///< null if there is none
     Recorder recorder;

@@ -39,10 +39,7 @@ namespace crawler
     stopped ///< on request, or by a limit
   };
   template <>
-  struct Words<Status>
-  {
-    static constexpr const char *list[] = {"", "finished", "inverted", "failed", "stopped"};
-  };
+  inline constexpr const char *words_of<Status>[] = {"", "finished", "inverted", "failed", "stopped"};
 
   /// Outcome of a time integration.
   struct TimeOutcome

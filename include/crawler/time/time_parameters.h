@@ -17,10 +17,7 @@ namespace crawler
     petsc ///< never the fused engine
   };
   template <>
-  struct Words<Engine>
-  {
-    static constexpr const char *list[] = {"automatic", "petsc"};
-  };
+  inline constexpr const char *words_of<Engine>[] = {"automatic", "petsc"};
 
   enum class StepControl
   {
@@ -28,10 +25,7 @@ namespace crawler
     fixed
   };
   template <>
-  struct Words<StepControl>
-  {
-    static constexpr const char *list[] = {"adaptive", "fixed"};
-  };
+  inline constexpr const char *words_of<StepControl>[] = {"adaptive", "fixed"};
 
   /// Option to end a run when its cycles repeat.
   enum class CycleStopMode
@@ -41,10 +35,7 @@ namespace crawler
     off
   };
   template <>
-  struct Words<CycleStopMode>
-  {
-    static constexpr const char *list[] = {"automatic", "on", "off"};
-  };
+  inline constexpr const char *words_of<CycleStopMode>[] = {"automatic", "on", "off"};
 
   /// Section "Time"; empty entries are chosen from the wanted accuracy.
   struct TimeParameters

@@ -186,7 +186,7 @@ namespace crawler
              parameters.interpolation == "cubic" ? GridInterpolation::Method::cubic : GridInterpolation::Method::linear,
              outside_in_t(parameters))
   {
-    const GridTable &grid = table_.grid();
+    const GridTable &grid = table_.grid;
     const std::size_t n_s = grid.s.size();
     largest_              = largest(grid.values);
     for (std::size_t j = 0; j + 1 < grid.t.size(); ++j)
@@ -198,7 +198,7 @@ namespace crawler
     }
     const bool linear = parameters.interpolation == "linear";
     if (parameters.outside == "periodic")
-      facts_.search = [this]() { return repetition_of(table_.grid()); };
+      facts_.search = [this]() { return repetition_of(table_.grid); };
     facts_.breaks_in_space = kinks_in_space(grid.s, linear, length);
     facts_.breaks_in_time  = kinks_in_time(grid.t, linear, parameters.outside == "periodic", end_time);
   }
@@ -217,7 +217,7 @@ namespace crawler
   {
     const bool is_cubic          = parameters_.interpolation == "cubic";
     const double more            = is_cubic ? 2. : 1.;
-    const std::vector<double> &t = table_.grid().t;
+    const std::vector<double> &t = table_.grid.t;
     const double whole           = t.back() - t.front();
     const auto n                 = static_cast<std::ptrdiff_t>(changes_.size());
     const auto largest_change    = [&](const double from, const double to) {
@@ -245,7 +245,7 @@ namespace crawler
   void
   ActiveStressTable::report(std::ostream &out) const
   {
-    const GridTable &grid        = table_.grid();
+    const GridTable &grid        = table_.grid;
     const auto [least, greatest] = std::minmax_element(grid.values.begin(), grid.values.end());
     out << fmt::format(
       "Table \"{}\": {} x {} samples, s from {:g} to {:g}, t from {:g} to {:g}{}, m from {:.6g} to {:.6g}, "

@@ -68,10 +68,8 @@ namespace crawler
         if (!model.needs_mesh())
         {
           ReducedModel level(*task.scene, model.model);
-          SimulationResult &result = task.computed.result;
-          result = level.compute(task.parameters.accuracy, task.parameters.output.energy_balance, keep_going);
-          if (task.gait)
-            level.describe_gait(result);
+          task.computed.result =
+            level.compute(task.parameters.accuracy, task.parameters.output.energy_balance, keep_going, task.gait);
           return;
         }
         const auto choice = choose_numerics(MPI_COMM_SELF, task.parameters, *task.scene, keep_going);

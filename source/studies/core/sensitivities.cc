@@ -67,15 +67,15 @@ namespace crawler
     known(const SimulationResult &result, const std::size_t number)
     {
       const double error = number == 0 ? (result.error ? result.error->total : NAN)
-                                       : error_bound(result, differentiated_numbers[number].key).value_or(NAN);
-      return {differentiated_numbers[number].of(result), error};
+                                       : error_bound(result, differentiated_numbers[number]).value_or(NAN);
+      return {entry_of(differentiated_numbers[number]).number_in(result), error};
     }
 
     void
     add(EntrySensitivity &entry, const std::size_t number, const double value, const double error)
     {
       if (number > 0)
-        return entry.others.push_back({differentiated_numbers[number].key, value, error});
+        return entry.others.push_back({differentiated_numbers[number], value, error});
       entry.value = value;
       entry.error = error;
     }
@@ -241,12 +241,13 @@ namespace crawler
       {
         if (!values[i] || !finer[i])
           continue;
-        const double number = std::abs(differentiated_numbers[i].of(result)), size = std::abs(*values[i]);
+        const double number = std::abs(entry_of(differentiated_numbers[i]).number_in(result)),
+                     size   = std::abs(*values[i]);
         // Works are less accurate than the displacement, in units of the exchanged work.
         const bool of_work = is_work(all_quantities[i]);
         const double scale = of_work ? std::max(number, result.energy_balance->exchanged_work) : number;
         const double of_number =
-          i == 0 ? 0. : error_bound(result, differentiated_numbers[i].key).value_or(0.) / std::max(scale, 1e-300);
+          i == 0 ? 0. : error_bound(result, differentiated_numbers[i]).value_or(0.) / std::max(scale, 1e-300);
         const double by_size = entry.at != 0. ? scale / std::abs(entry.at) : scale;
         const double factor  = all_quantities[i] == Quantity::positive_work ? wanted_factor_of_positive_work
                                : of_work                                    ? wanted_factor_of_works

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/equation/crawler_equation.h>
-#include <crawler/output/kymograph_writer.h>
-#include <crawler/output/snapshot_writer.h>
-#include <crawler/output/statistics_writer.h>
 #include <crawler/run/reduced_model.h>
 #include <crawler/studies/run/reduced_pictures.h>
 
@@ -56,75 +53,50 @@ namespace crawler
   bool
   show_pictures(const ReducedModel &level,
                 const PictureTimes &times,
-                const PictureViewers &viewers,
+                const std::vector<double> &points,
+                const Observers &observers,
                 const std::function<bool()> &keep_going)
   {
-    const Units &units = level.reduced_scene().units();
-    const auto points  = viewers.kymograph != nullptr ? viewers.kymograph->points() : Kymograph::equidistant();
+    const Units &units = level.reduced_scene.units();
     std::vector<double> natural;
     for (std::size_t i = 0; i < times.all().size(); ++i)
       natural.push_back(times.natural(i));
     std::vector<double> places; // [length]
     for (const double point : points)
       places.push_back(point * units.length);
-    unsigned int number = 0, n_rows = 0;
+    unsigned int number = 0, n_snapshots = 0;
     bool stopped  = false;
     double before = 0.;
     level.replay(natural, points, [&](const double t, const ReducedModel::State &state) {
       const PictureTimes::Time &picture = times.all()[number++];
       const double time                 = picture.value;
-      const Fields fields               = physical_fields(state.fields, points, level.reduced_scene().scene(), units);
-      if (picture.kinds.is_row && viewers.kymograph != nullptr)
-        viewers.kymograph->add(time, fields);
-      stopped = !keep_going();
-      if (!picture.kinds.is_snapshot)
-        return !stopped && t <= 1.;
-      const Step step{time, time - before, n_rows++, true, 0, 0};
-      before = time;
-      if (viewers.snapshots)
-        viewers.snapshots({time, step.number, static_cast<unsigned int>(points.size()), places, fields});
+      const Step step{time, time - before, n_snapshots, true, 0, 0};
+      if (picture.kinds.is_snapshot)
+      {
+        ++n_snapshots;
+        before = time;
+      }
       const auto stretch_at = [&](const StrainExtreme &e) { return StretchAt{1. + e.strain, e.s * units.length}; };
-      if (viewers.statistics != nullptr)
-        viewers.statistics->write({step,
-                                   state.displacement * units.length,
-                                   {stretch_at(state.smallest), stretch_at(state.largest)},
-                                   state.velocity * units.velocity(),
-                                   state.energies.scaled(units.energy()),
-                                   state.net_friction * units.force});
+      const EnergyBalance energies = state.energies.scaled(units.energy());
+      const StateWithoutMesh shown{picture.kinds,
+                                   {time,
+                                    step.number,
+                                    static_cast<unsigned int>(points.size()),
+                                    places,
+                                    physical_fields(state.fields, points, level.reduced_scene.scene(), units)},
+                                   {step,
+                                    state.displacement * units.length,
+                                    {stretch_at(state.smallest), stretch_at(state.largest)},
+                                    state.velocity * units.velocity(),
+                                    energies,
+                                    state.net_friction * units.force}};
+      for (const auto &observer : observers)
+        observer->show(shown);
+      stopped = !keep_going();
       return !stopped && t <= 1.;
     });
+    for (const auto &observer : observers)
+      observer->end();
     return !stopped;
-  }
-
-  bool
-  write_pictures(const ReducedModel &level,
-                 const Input &input,
-                 const std::filesystem::path &folder,
-                 const std::function<bool()> &keep_going)
-  {
-    const OutputParameters &output = input.parameters.output;
-    const double length            = input.scene.body.length;
-    const PictureTimes times       = times_without_mesh(input);
-    std::optional<SnapshotWriter> snapshots;
-    if (output.has_snapshots())
-      snapshots.emplace(output.snapshot_format, folder, length, times.n_snapshots() + 1);
-    KymographWriter kymograph(length, input.scene.end_time, input.scene.ground.profile, folder);
-    std::optional<StatisticsWriter> statistics;
-    if (output.statistics)
-      statistics.emplace(length, true, folder, output.energy_balance, input.parameters.units);
-    const bool whole = show_pictures(
-      level,
-      times,
-      {snapshots ? [&](const Frame &frame) { snapshots->write(frame); } : std::function<void(const Frame &)>(),
-       output.has_snapshots() ? &kymograph : nullptr,
-       statistics ? &*statistics : nullptr},
-      keep_going);
-    if (statistics)
-      statistics->end();
-    if (snapshots)
-      snapshots->end();
-    if (output.has_snapshots() && output.kymograph)
-      kymograph.end();
-    return whole;
   }
 } // namespace crawler

@@ -114,7 +114,7 @@ namespace crawler
       {
         const auto limit = input_.parameters.time.wall_time_limit;
         clock_.set_limit(limit, wall_time_limit_in_words(limit.value_or(0.)));
-        clock_.set_stop_file(memory_.folder() / stop_file_name);
+        clock_.set_stop_file(memory_.folder / stop_file_name);
       }
 
       ExitCode
@@ -122,7 +122,11 @@ namespace crawler
       {
         if (!memory_.begin(log_))
           return ExitCode::finished;
-        choose_level();
+        guarded([&]() {
+          model_                  = choose_model(input_);
+          input_.parameters.model = model_->model;
+        });
+        agree_on_failure(communicator_, result_.time);
         const bool has_mesh = !model_ || model_->needs_mesh();
         if (has_mesh)
         {
@@ -162,16 +166,6 @@ namespace crawler
 
       // Steps before the files exist.
       void
-      choose_level()
-      {
-        guarded([&]() {
-          model_                  = choose_model(input_);
-          input_.parameters.model = model_->model;
-        });
-        agree_on_failure(communicator_, result_.time);
-      }
-
-      void
       choose_mesh_and_steps()
       {
         guarded([&]() {
@@ -182,7 +176,7 @@ namespace crawler
             return !is_stopped();
           };
           choice_ =
-            choose_numerics(MPI_COMM_SELF, input_.parameters, input_.scene, KeepGoing(goes_on, &memory_.journal()));
+            choose_numerics(MPI_COMM_SELF, input_.parameters, input_.scene, KeepGoing(goes_on, &memory_.journal));
           if (choice_ && input_.parameters.output.has_snapshots())
             prepare_for_pictures(*choice_, input_.parameters);
         });
@@ -220,13 +214,12 @@ namespace crawler
           const double setup             = result_.setup_seconds;
           const auto keep_going          = [&]() { return !is_stopped(); };
           ReducedModel level(input_.scene, model_->model);
-          result_               = level.compute(input_.parameters.accuracy, output.energy_balance, keep_going);
+          result_ = level.compute(input_.parameters.accuracy, output.energy_balance, keep_going, /*gait=*/true);
           result_.setup_seconds = setup;
-          level.describe_gait(result_);
           log_.line(level.description());
           const Stopwatch watch;
           if (result_.error && (output.has_snapshots() || output.statistics) &&
-              !write_pictures(level, input_, memory_.folder(), keep_going))
+              !show_pictures(level, times_without_mesh(input_), Kymograph::equidistant(), observers(), keep_going))
             result_.time.status = Status::stopped;
           result_.output_seconds = watch.seconds();
         });
@@ -245,7 +238,7 @@ namespace crawler
                 other_runs_->step();
               return !is_true_anywhere(clock_.is_over(), sharing_.ranks);
             },
-            &memory_.journal());
+            &memory_.journal);
           const Simulation::Options options = {.energy_balance = output.energy_balance,
                                                .cycles = cycle_wish(parameters, input_.scene, output.has_snapshots()),
                                                .gait   = Simulation::GaitWish::any};
@@ -306,16 +299,16 @@ namespace crawler
         if (!sharing_.has_output)
           return observers;
         if (output.has_snapshots())
-          observers.push_back(std::make_unique<SnapshotWriter>(
-            output.snapshot_format, memory_.folder(), length, pictures_.n_snapshots() + 1));
+          observers.push_back(std::make_shared<SnapshotWriter>(
+            output.snapshot_format, memory_.folder, length, pictures_.n_snapshots() + 1));
         if (output.has_snapshots() && output.kymograph)
-          observers.push_back(std::make_unique<KymographWriter>(
-            length, input_.scene.end_time, input_.scene.ground.profile, memory_.folder()));
+          observers.push_back(std::make_shared<KymographWriter>(
+            length, input_.scene.end_time, input_.scene.ground.profile, memory_.folder));
         if (output.statistics)
-          observers.push_back(std::make_unique<StatisticsWriter>(
-            length, is_first_, memory_.folder(), output.energy_balance, input_.parameters.units));
+          observers.push_back(std::make_shared<StatisticsWriter>(
+            length, is_first_, memory_.folder, output.energy_balance, input_.parameters.units));
         if (!options_.quiet)
-          observers.push_back(std::make_unique<RunProgress>(log_, input_.scene));
+          observers.push_back(std::make_shared<RunProgress>(log_, input_.scene));
         return observers;
       }
 
@@ -327,7 +320,14 @@ namespace crawler
         check_identities(result_, input_.parameters);
         add_what_follows();
         warn_of_unused_petsc_options(communicator_, options_, log_);
-        on_first_rank(communicator_, [&]() { leave_folder(); });
+        on_first_rank(communicator_, [&]() {
+          memory_.require_in_place();
+          const bool is_complete = !(choice_ && result_.time.status == Status::stopped && is_stopped());
+          if (!is_complete)
+            memory_.journal.write();
+          write_summary();
+          memory_.leave(log_, is_complete); // a kill before this loses nothing
+        });
         // Signals may have stopped some ranks only.
         return exit_code_of_first_rank(communicator_, [&]() {
           const OutputParameters &output = input_.parameters.output;
@@ -335,7 +335,7 @@ namespace crawler
           return report_end(log_,
                             result_,
                             input_.parameters.units,
-                            memory_.folder(),
+                            memory_.folder,
                             has_pictures ? animation_file(output.snapshot_format) : "");
         });
       }
@@ -367,7 +367,7 @@ namespace crawler
             return !is_stopped();
           };
           write_sensitivities(add_sensitivities(input_, choice_.value_or(NumericsChoice()), result_, goes_on),
-                              memory_.folder(),
+                              memory_.folder,
                               input_.parameters.units);
           if (is_stopped() &&
               !std::ranges::all_of(result_.sensitivities, [](const auto &one) { return one.value.has_value(); }))
@@ -382,19 +382,8 @@ namespace crawler
       write_summary()
       {
         result_.model = input_.parameters.model;
-        write_file(memory_.folder() / "summary.json",
+        write_file(memory_.folder / "summary.json",
                    summary_json(result_, size_of(communicator_), options_.command_line));
-      }
-
-      void
-      leave_folder()
-      {
-        memory_.require_in_place();
-        const bool is_complete = !(choice_ && result_.time.status == Status::stopped && is_stopped());
-        if (!is_complete)
-          memory_.journal().write();
-        write_summary();
-        memory_.leave(log_, is_complete); // a kill before this loses nothing
       }
 
       /// Decides on this rank alone. Levels without a mesh cannot be resumed, so only a signal stops them.
@@ -427,7 +416,7 @@ namespace crawler
           result_.time = failure_of(std::current_exception());
           if (!sharing_.is_shared)
             return;
-          std::filesystem::create_directories(memory_.folder());
+          std::filesystem::create_directories(memory_.folder);
           write_summary(); // by the rank that failed, since the others may be waiting
           throw;
         }

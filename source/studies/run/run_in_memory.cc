@@ -23,13 +23,15 @@ namespace crawler
   namespace
   {
     /// Makes new tables for a run, or for the next attempt.
-    void
+    Observers
     begin_tables(const OutputParameters &output, const Scene &scene, const WantedFields &wanted, RunInMemory &run)
     {
+      Observers tables;
       if (!wanted.points.empty())
-        run.kymograph = std::make_unique<Kymograph>(wanted.points);
+        tables.push_back(run.kymograph = std::make_shared<Kymograph>(wanted.points));
       if (output.statistics)
-        run.statistics = std::make_unique<Statistics>(scene.body.length, output.energy_balance);
+        tables.push_back(run.statistics = std::make_shared<Statistics>(scene.body.length, output.energy_balance));
+      return tables;
     }
 
     void
@@ -42,18 +44,16 @@ namespace crawler
       const OutputParameters &output = input.parameters.output;
       run.notes                      = notes_on_choice(input, input.parameters.model);
       ReducedModel level(input.scene, input.parameters.model);
-      run.result = level.compute(input.parameters.accuracy, output.energy_balance, keep_going);
-      if (!wanted.is_all)
-        level.describe_gait(run.result);
+      run.result = level.compute(input.parameters.accuracy, output.energy_balance, keep_going, /*gait=*/!wanted.is_all);
       check_identities(run.result, input.parameters);
       if (afterwards && run.result.time.status == Status::finished)
         afterwards(input, {}, run.result);
       if (!run.result.error || (wanted.points.empty() && !output.statistics))
         return;
-      begin_tables(output, input.scene, wanted, run);
       show_pictures(level,
                     wanted.times ? PictureTimes({}, *wanted.times, input.scene.end_time) : times_without_mesh(input),
-                    {nullptr, run.kymograph.get(), run.statistics.get()},
+                    wanted.points.empty() ? Kymograph::equidistant() : wanted.points,
+                    begin_tables(output, input.scene, wanted, run),
                     keep_going);
     }
 
@@ -85,17 +85,9 @@ namespace crawler
                                            .gait =
                                              wanted.is_all ? Simulation::GaitWish::none : Simulation::GaitWish::any};
       const auto simulate               = [&](const NumericsChoice &choice) {
-        begin_tables(parameters.output, input.scene, wanted, run);
-        std::vector<std::unique_ptr<Observer>> observers;
-        if (run.kymograph || run.statistics)
-          observers = watched_by([&](const Snapshot &snapshot) {
-            if (run.kymograph)
-              run.kymograph->observe(snapshot);
-            if (run.statistics)
-              run.statistics->observe(snapshot);
-          });
+        const Observers tables = begin_tables(parameters.output, input.scene, wanted, run);
         return Simulation(MPI_COMM_SELF, input.scene, parameters.time, choice.numerics)
-          .run(pictures, options, observers, keep_going);
+          .run(pictures, options, tables, keep_going);
       };
       Answer answer = run_to_accuracy(
         MPI_COMM_SELF, parameters, input.scene, *chosen, simulate, options, /*writes=*/true, keep_going);

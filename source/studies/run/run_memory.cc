@@ -28,13 +28,13 @@ namespace crawler
   } // namespace
 
   RunMemory::RunMemory(MPI_Comm communicator, const Input &input, const CommandOptions &options)
-    : communicator_(communicator)
+    : folder(output_folder(options.output, options.file))
+    , journal(input.parameters.time.checkpoint_interval,
+              rank_of(communicator) == 0 ? [this](const std::string &states) { return keep(states); }
+                                         : RunJournal::Write())
+    , communicator_(communicator)
     , input_(input)
     , options_(options)
-    , folder_(output_folder(options.output, options.file))
-    , journal_(input.parameters.time.checkpoint_interval,
-               rank_of(communicator) == 0 ? [this](const std::string &states) { return keep(states); }
-                                          : RunJournal::Write())
   {
   }
 
@@ -48,22 +48,22 @@ namespace crawler
   RunMemory::begin(Log &log)
   {
     Archive known(on_first_rank(communicator_, [&]() {
-      require_usable(folder_, options_.overwrite || options_.resume);
+      require_usable(folder, options_.overwrite || options_.resume);
       checkpoint_ = checkpoint_of(input_, options_);
       if (!options_.resume)
         return std::string();
-      lock_.emplace(folder_, log);
-      Resumption found = resumption_of(folder_, checkpoint_);
+      lock_.emplace(folder, log);
+      Resumption found = resumption_of(folder, checkpoint_);
       return archived(found);
     }));
     if (!options_.resume)
       return true;
     Resumption resumption;
     known(resumption);
-    report(log, resumption, folder_);
+    report(log, resumption, folder);
     goes_on_ = resumption.kind == Resumption::goes_on;
     if (goes_on_)
-      journal_.load(resumption.journal);
+      journal.load(resumption.journal);
     return resumption.kind != Resumption::is_whole;
   }
 
@@ -72,24 +72,24 @@ namespace crawler
   {
     if (!lock_)
     {
-      lock_.emplace(folder_, log);
-      require_usable(folder_, options_.overwrite || is_free(folder_)); // the previous owner may have written
+      lock_.emplace(folder, log);
+      require_usable(folder, options_.overwrite || is_free(folder)); // the previous owner may have written
     }
     if (!goes_on_)
-      prepare(folder_);
+      prepare(folder);
     const OutputParameters &output = input_.parameters.output;
     if (output.has_snapshots() && output.snapshot_format == SnapshotFormat::vtu)
-      std::filesystem::create_directories(folder_ / "solution");
-    write_file(folder_ / "original.prm", input_.file.text());
-    write_file(folder_ / "parameters.prm", input_.effective);
+      std::filesystem::create_directories(folder / "solution");
+    write_file(folder / "original.prm", input_.file.text());
+    write_file(folder / "parameters.prm", input_.effective);
     std::error_code error;
-    std::filesystem::remove(folder_ / stop_file_name, error);
-    log.open(folder_ / "log.txt", /*append=*/goes_on_);
+    std::filesystem::remove(folder / stop_file_name, error);
+    log.open(folder / "log.txt", /*append=*/goes_on_);
     if (output.segment_table > 0)
       write_segment_tables(
-        folder_, *input_.scene.active_stress, input_.scene.end_time, output.segment_table, input_.parameters.units);
+        folder, *input_.scene.active_stress, input_.scene.end_time, output.segment_table, input_.parameters.units);
     if (const std::vector<double> &size = output.active_stress_table; !size.empty())
-      if (const std::string problem = write_active_stress_table(folder_ / "active_stress.csv",
+      if (const std::string problem = write_active_stress_table(folder / "active_stress.csv",
                                                                 *input_.scene.active_stress,
                                                                 input_.scene.body.length,
                                                                 input_.scene.end_time,
@@ -103,20 +103,20 @@ namespace crawler
   void
   RunMemory::forget_fields()
   {
-    if (journal_.was_written()) // older states need the files that are about to be removed
+    if (journal.was_written()) // older states need the files that are about to be removed
     {
-      remove_checkpoints(folder_);
-      journal_.write();
+      remove_checkpoints(folder);
+      journal.write();
     }
-    remove_fields(folder_);
+    remove_fields(folder);
   }
 
   void
   RunMemory::leave(Log &log, const bool is_complete)
   {
     if (is_complete)
-      remove_checkpoints(folder_);
-    else if (journal_.was_written())
+      remove_checkpoints(folder);
+    else if (journal.was_written())
       log.line("The state of the run is in restart.dat: the same command with --resume continues it.");
   }
 
@@ -127,7 +127,7 @@ namespace crawler
       return false;
     lock_->require_in_place();
     checkpoint_.journal = states;
-    write_checkpoint(folder_, checkpoint_);
+    write_checkpoint(folder, checkpoint_);
     reach(StopPlace::state);
     return true;
   }

@@ -111,12 +111,6 @@ namespace crawler
     }
   } // namespace
 
-  const ResultEntry &
-  entry_of(const std::string &key)
-  {
-    return *std::ranges::find(result_table(), key, &ResultEntry::key);
-  }
-
   RowFile::Value
   value_in_row(const Task &task, const ResultEntry &entry)
   {

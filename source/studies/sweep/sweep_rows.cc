@@ -65,19 +65,19 @@ namespace crawler
       if (!entry.of_process)
         columns.push_back({entry.key, entry.unit, entry.meaning, entry.is_word ? word_width : 0});
     for (const SensitivityEntry &entry : points.sensitivities())
-      for (const auto &[number, of] : differentiated_numbers)
+      for (const std::string number : differentiated_numbers)
       {
-        const std::string key = fmt::format(
-          "sensitivities.{}.{}", entry.path, number == std::string("displacement") ? "" : std::string(number) + ".");
+        const std::string key =
+          fmt::format("sensitivities.{}.{}", entry.path, number == "displacement" ? "" : number + ".");
         const std::string unit = entry_of(number).unit + " per unit of the entry";
         columns.push_back({key + "value", unit, fmt::format("d({})/d({})", number, entry.path), 0});
         columns.push_back({key + "error", unit, "bound of the error of this derivative", 0});
       }
     if (are_uncertain(points.sensitivities()))
-      for (const auto &[number, of] : differentiated_numbers)
-        columns.push_back({std::string("uncertainty.") + number,
+      for (const std::string number : differentiated_numbers)
+        columns.push_back({"uncertainty." + number,
                            entry_of(number).unit,
-                           std::string("standard deviation of ") + number + " from that of the uncertain entries",
+                           "standard deviation of " + number + " from that of the uncertain entries",
                            0});
     if (points.sweep().cross_check)
       std::ranges::move(checked_columns(), std::back_inserter(columns));
@@ -101,7 +101,7 @@ namespace crawler
       row.emplace_back(std::in_place_type<double>, value.value_or(NAN));
     };
     for (const SensitivityEntry &entry : sensitivities)
-      for (const auto &[number, of] : differentiated_numbers)
+      for (const std::string number : differentiated_numbers)
       {
         const auto one   = std::ranges::find(result.sensitivities, entry.path, &EntrySensitivity::entry);
         const auto known = one != result.sensitivities.end() ? one->of(number) : std::nullopt;
@@ -109,7 +109,7 @@ namespace crawler
         add(known ? std::optional(known->error) : std::nullopt);
       }
     if (are_uncertain(sensitivities))
-      for (const auto &[number, of] : differentiated_numbers)
+      for (const std::string number : differentiated_numbers)
         add(result.standard_deviation(number));
     row.insert(row.end(), checked.begin(), checked.end());
     row.insert(row.end(), {task.seconds, status.reason, shortened(status.message, message_width), status.status});

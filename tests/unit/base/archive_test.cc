@@ -4,6 +4,8 @@
 #include <crawler/base/archive.h>
 #include <crawler/base/exceptions.h>
 
+#include <deque>
+
 namespace
 {
   enum class Colour
@@ -14,10 +16,7 @@ namespace
 } // namespace
 
 template <>
-struct crawler::Words<Colour>
-{
-  static constexpr const char *list[] = {"red", "green"};
-};
+inline constexpr const char *crawler::words_of<Colour>[] = {"red", "green"};
 
 namespace
 {

@@ -28,6 +28,13 @@ namespace
     energies.dissipation     = 0.04;
     return result;
   }
+
+  std::optional<double>
+  gait_efficiency(const Scene &scene, SimulationResult result)
+  {
+    set_efficiencies(scene, result);
+    return result.gait_efficiency;
+  }
 } // namespace
 
 TEST(SelfCheck, NoGaitIsBetterThanTheBound)

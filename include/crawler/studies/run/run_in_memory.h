@@ -25,8 +25,8 @@ namespace crawler
   struct RunInMemory
   {
     SimulationResult result;
-    std::unique_ptr<Kymograph> kymograph;   ///< null if it is not wanted, or if the run broke off before
-    std::unique_ptr<Statistics> statistics; ///< null in the same cases
+    std::shared_ptr<Kymograph> kymograph;   ///< null if it is not wanted, or if the run broke off before
+    std::shared_ptr<Statistics> statistics; ///< null in the same cases
     std::vector<std::string> notes = {};    ///< notes_on_choice()
     std::optional<NumericsChoice> numerics; ///< those that were chosen or given, of a run on a mesh
   };

@@ -50,18 +50,8 @@ namespace crawler
     void
     leave(Log &log, bool is_complete);
 
-    const std::filesystem::path &
-    folder() const
-    {
-      return folder_;
-    }
-
-    /// Journal of this rank.
-    RunJournal &
-    journal()
-    {
-      return journal_;
-    }
+    const std::filesystem::path folder;
+    RunJournal journal; ///< of this rank
 
   private:
     bool
@@ -70,8 +60,6 @@ namespace crawler
     const MPI_Comm communicator_;
     const Input &input_;
     const CommandOptions &options_;
-    const std::filesystem::path folder_;
-    RunJournal journal_;
     std::optional<FolderLock> lock_;
     RunCheckpoint checkpoint_;
     bool goes_on_ = false, has_files_ = false;

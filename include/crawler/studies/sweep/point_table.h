@@ -37,9 +37,7 @@ namespace crawler
     written_columns() const;
   };
 
-  /// Number or word of a run under this key, and its value in a row; not a number or empty where it is unknown.
-  const ResultEntry &
-  entry_of(const std::string &key);
+  /// Value in a row of a number or word of a run; not a number or empty where it is unknown.
   RowFile::Value
   value_in_row(const Task &task, const ResultEntry &entry);
 
