@@ -23,6 +23,8 @@ namespace crawler
     constexpr double time_factor = 0.25;
     /// Factors on that tolerance for radau 5 and 9 on uniform meshes of the position form, whose steps end better.
     constexpr double radau_5_superconvergence = 50., radau_9_superconvergence = 2000.;
+    /// Part of them where the body may have a rhythm of its own, whose errors of the phase add up.
+    constexpr double part_of_rhythm = 0.1;
     /// Smallest tolerances relative to the motion; below the second, kinks in the friction of stiff bodies stop a run.
     constexpr double min_tolerance = 1e-15, min_tolerance_if_kinks = 1e-10;
     /// Wanted error, relative to the largest deformation, below which runs on uniform meshes are by radau 9, others by
@@ -175,7 +177,10 @@ namespace crawler
         const std::string &name = pilots_.integrator(choice_.numerics);
         if (choice_.numerics.mesh.tolerance > 0. || pilots_.last.min_stretch.value < emptied || kinks_move())
           return 1.;
-        return name == "radau 9" ? radau_9_superconvergence : name == "radau 5" ? radau_5_superconvergence : 1.;
+        const double usual = name == "radau 9"   ? radau_9_superconvergence
+                             : name == "radau 5" ? radau_5_superconvergence
+                                                 : 1.;
+        return pilots_.scene.feels_elsewhere() ? std::max(part_of_rhythm * usual, 1.) : usual;
       }
 
       /// Time tolerance for the wanted error: the number of steps grows as tolerance^(-1/(order+1)), and error =

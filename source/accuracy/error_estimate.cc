@@ -49,8 +49,7 @@ namespace crawler
     bool
     is_predicted(const NumericsChoice &choice, const Scene &scene)
     {
-      const StretchFeedback *feedback = scene.active_stress->feedback();
-      return choice.follows_rule() && (feedback == nullptr || !feedback->facts.sees_near());
+      return choice.follows_rule() && !scene.feels_elsewhere();
     }
 
     /// Changes the tolerance by @p factor. The limits of the steps change with it, as the steps of radau 9 do: steps

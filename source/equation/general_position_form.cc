@@ -96,7 +96,7 @@ namespace crawler
   bool
   GeneralPositionForm::solves_exactly() const
   {
-    return scene_.active_stress->feedback() == nullptr || !scene_.active_stress->feedback()->facts.sees_near();
+    return !scene_.feels_elsewhere();
   }
 
   void

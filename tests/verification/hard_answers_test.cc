@@ -29,6 +29,23 @@ TEST(HardAnswers, ACoarseMeshDoesNotInvertABody)
   EXPECT_EQ(answer_to(test::set("p = 0; chi = 0.6; c = -1; cells = 12; degree = 6")).time.status, Status::inverted);
 }
 
+/// A rhythm of the body's own (prm/examples/feedback.prm), whose errors of the phase add up. True one at 1e-6.
+TEST(HardAnswers, ARhythmOfItsOwnNeedsOneTry)
+{
+  for (const char *const accuracy : {"1e-3", "1e-4"})
+  {
+    const SimulationResult result =
+      answer_to(test::set("k = 0.1; Body/Initial stretch = 1+0.01*exp(-((s-0.425)/0.05)^2); T = 10; Accuracy = {}; "
+                          "strain feedback; Active stress = 0.05*tanh(10*(w_near-1)); Distance = -0.25; "
+                          "Sensor length = 0.2",
+                          accuracy));
+    ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
+    EXPECT_EQ(result.refinements, 0u) << accuracy;
+    EXPECT_NEAR(result.displacement, 0.27515297, result.error->total) << accuracy;
+    EXPECT_LE(result.error->total, std::stod(accuracy) * result.displacement) << accuracy;
+  }
+}
+
 /// On coarse meshes of steep friction the stretch jumps between cells, and is wrong at the ends of the body, alike on
 /// all of them: in the answer and where observers look at the run, and the efficiencies follow from it. True ones on 26
 /// cells and more at 1e-7.

@@ -50,6 +50,14 @@ namespace crawler
       return !ground.profile && (feedback == nullptr || feedback->facts.delay == 0.);
     }
 
+    /// True if the active stress at a point depends on the stretch elsewhere.
+    bool
+    feels_elsewhere() const
+    {
+      const StretchFeedback *feedback = active_stress->feedback();
+      return feedback != nullptr && feedback->facts.sees_near();
+    }
+
     /// Features that is_plain() excludes, in words; empty if none.
     std::string
     general_features() const;
