@@ -44,7 +44,8 @@ namespace crawler
   class PowerFriction : public FrictionLaw
   {
   public:
-    /// @param gamma friction coefficient [force time/length^2]; @param a exponent [1].
+    /// @param gamma friction coefficient [force time/length^2]; @param a exponent [1]; @param its_is_power_law false if
+    /// the exponent is not that of the body.
     PowerFriction(double gamma, double a, bool its_is_power_law = true);
 
     void
