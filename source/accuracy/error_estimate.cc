@@ -83,8 +83,11 @@ namespace crawler
         n.parts *= 2; // one family of meshes
       else
       {
-        const double factor = much_finer || choice.is_rough ? more_cells_without_rule : more_cells;
+        const bool many     = much_finer || choice.is_rough;
+        const double factor = many ? more_cells_without_rule : more_cells;
         n.n_cells           = finer_n_cells(factor, n.n_cells, scene.breaks_in_space().size(), n.grading);
+        if (many) // kinks are not at the same places of cells twice
+          ++n.n_cells;
       }
       change_steps(n,
                    much_finer                      ? finer_tolerance_without_rule

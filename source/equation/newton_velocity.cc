@@ -56,12 +56,13 @@ namespace crawler
         if (new_norm < norm || i == 0) // the first one solves the linear case
           break;
       }
-      const double size = largest(v, discretization);
       if (!(new_norm < norm) && i > 0) // round-off, or no descent
-        return correction <= std::max(acceptable * size, tiny);
+        return correction <= std::max(acceptable * largest(v, discretization), tiny);
+      // Friction that is linear in the velocity leaves round-off alone; the next correction would be smaller by as much.
+      const double next = correction * new_norm / norm;
       std::copy(trial.begin(), trial.end(), v.begin());
       norm = new_norm;
-      if (part == 1. && correction <= small * size)
+      if (part == 1. && std::min(correction, next) <= small * largest(v, discretization))
         return true;
     }
     return norm == 0.;

@@ -175,6 +175,12 @@ TEST(HardAnswers, DisplacementsAreWithinTheirBounds)
      "Active stress = abs(0.249*sin(2*pi*(1.43*s-1.325*t+0.607)))+max(0,0.257*sin(2*pi*(1.628*s+1.481*t+0.367)))",
      2.66954669e-3,
      1e-3},
+    {"kinks whose error is the same with 6, 9 and 12 cells (true by 233 cells)",
+     "Accuracy = 1e-3; k = 7.227; p = 1.66; T = 0.822; expression; "
+     "Active stress = abs(0.256*sin(2*pi*(1.713*s+0.701*t+0.731)))+max(0,0.094*sin(2*pi*(-1.666*s+1.526*t+0.165)))"
+     "+0.081*(t>0.6724)",
+     1.200396e-5,
+     1e-3},
     {"a kink that travels, and a jump in time",
      "Accuracy = 1e-2; k = 4.44; p = 1.9; T = 1.348; expression; "
      "Active stress = abs(0.186*sin(2*pi*(1.8*s-1.128*t+0.07)))-0.273*(t>0.5549)",
