@@ -58,7 +58,7 @@ namespace crawler
       }
       if (!(new_norm < norm) && i > 0) // round-off, or no descent
         return correction <= std::max(acceptable * largest(v, discretization), tiny);
-      // Friction that is linear in the velocity leaves round-off alone; the next correction would be smaller by as much.
+      // Linear friction leaves round-off alone: the next correction would be smaller by as much as the residual is.
       const double next = correction * new_norm / norm;
       std::copy(trial.begin(), trial.end(), v.begin());
       norm = new_norm;

@@ -101,8 +101,6 @@ namespace crawler
           const WriteAccess access(solution_.get());
           std::copy(start.begin(), start.end(), access.span.begin());
         }
-        if (!system_.solves_exactly())
-          use_krylov_method();
         petsc(TSSetTolerances(stepper, tolerance_, nullptr, relative_tolerance_, nullptr));
         petsc(TSSetTime(stepper, time));
         petsc(TSSetStepNumber(stepper, 0));
@@ -229,15 +227,16 @@ namespace crawler
         apply_user_options();
       }
 
-      /// Newton's method with exact elimination.
+      /// Newton's method with exact elimination, or with that as preconditioner of a Krylov method.
       void
       set_newton()
       {
-        TS stepper                 = ts_.get();
-        SNES snes                  = nullptr;
-        SNESLineSearch line_search = nullptr;
-        KSP ksp                    = nullptr;
-        PC pc                      = nullptr;
+        constexpr double krylov_tolerance = 1e-6; // Newton's method is quadratic
+        TS stepper                        = ts_.get();
+        SNES snes                         = nullptr;
+        SNESLineSearch line_search        = nullptr;
+        KSP ksp                           = nullptr;
+        PC pc                             = nullptr;
         petsc(TSGetSNES(stepper, &snes));
         petsc(SNESSetType(snes, SNESNEWTONLS));
         petsc(SNESGetLineSearch(snes, &line_search));
@@ -247,8 +246,9 @@ namespace crawler
           SNESSetTolerances(snes, PETSC_DEFAULT, PETSC_DEFAULT, /*correction=*/0., /*iterations=*/10, PETSC_DEFAULT));
         petsc(SNESSetConvergenceTest(snes, newton_converged, this, nullptr));
         petsc(SNESGetKSP(snes, &ksp));
-        petsc(KSPSetType(ksp, KSPPREONLY)); // the elimination is exact
-        petsc(KSPSetPCSide(ksp, PC_RIGHT));
+        petsc(KSPSetType(ksp, system_.solves_exactly() ? KSPPREONLY : KSPGMRES));
+        petsc(KSPSetPCSide(ksp, PC_RIGHT)); // residuals are the true ones
+        petsc(KSPSetTolerances(ksp, krylov_tolerance, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
         petsc(KSPGetPC(ksp, &pc));
         petsc(PCSetType(pc, PCSHELL));
         petsc(PCShellSetContext(pc, this));
@@ -300,22 +300,6 @@ namespace crawler
         throw InputError("the PETSc integrator \"" + name + "\" (option -ts_type) is refused: " +
                          (reason.empty() ? "it is not tested for a mass matrix that depends on the state" : reason) +
                          "; \"bdf\" or \"radau\" is expected");
-      }
-
-      /// Makes the elimination a right preconditioner, so that residuals are the true ones.
-      void
-      use_krylov_method()
-      {
-        constexpr double relative_tolerance_of_krylov = 1e-6;
-        PetscBool chosen                              = PETSC_FALSE;
-        petsc(PetscOptionsHasName(nullptr, parameters_.petsc_prefix.c_str(), "-ksp_type", &chosen));
-        if (chosen)
-          return;
-        KSP ksp = nullptr;
-        petsc(SNESGetKSP(ts_->snes, &ksp));
-        petsc(KSPSetType(ksp, KSPGMRES));
-        petsc(KSPSetPCSide(ksp, PC_RIGHT));
-        petsc(KSPSetTolerances(ksp, relative_tolerance_of_krylov, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
       }
 
       static PetscErrorCode

@@ -17,7 +17,7 @@ namespace crawler
     constexpr double slow = 0.1;
     /// Number of steps with the Krylov method after the simplified Newton method failed.
     constexpr unsigned int krylov_steps = 10;
-    /// Relative tolerance of the Krylov method in these steps.
+    /// Relative tolerance of the Krylov method: the rate of Newton's method is measured.
     constexpr double krylov_tolerance = 0.01;
     constexpr int krylov_iterations   = 30;
 
@@ -284,8 +284,10 @@ namespace crawler
     PetscInt iteration = 0;
     SNESGetIterationNumber(snes, &iteration);
     const ReadAccess z(Z);
-    radau.products_ready = false;
-    if (iteration == 0 || radau.rate > slow)
+    const bool is_renewed = iteration == 0 || radau.rate > slow;
+    if (is_renewed || radau.linear) // exact where the simplified Newton method failed
+      radau.products_ready = false;
+    if (is_renewed)
       PetscCall(radau_factorize(ts, z.span));
     MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY); // tells PETSc that the matrix has changed
     return MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY);
@@ -323,8 +325,11 @@ namespace crawler
       PetscCall(KSPSetType(ksp, KSPGMRES));
       PetscCall(KSPSetPC(ksp, pc));
       PetscCall(KSPSetPCSide(ksp, PC_RIGHT));
-      PetscCall(KSPSetTolerances(ksp, krylov_tolerance, PETSC_DEFAULT, PETSC_DEFAULT, krylov_iterations));
     }
+    PetscCall(KSPSetTolerances(
+      ksp, krylov_tolerance, PETSC_DEFAULT, PETSC_DEFAULT, is_preonly ? krylov_iterations : PETSC_DEFAULT));
+    if (!is_preonly)
+      PetscCall(KSPSetFromOptions(ksp));
     return 0;
   }
 } // namespace crawler

@@ -18,8 +18,8 @@ namespace crawler
    * estimate of order s, and the collocation polynomial as dense output and as first guess of the next step. The stages
    * are solved together by SNES; their system is preconditioned by one real and (s-1)/2 complex systems of the size of
    * y, to which it reduces where K and M are the same in all stages (Hairer and Wanner @cite HairerWanner1996, section
-   * IV.8). `-ksp_type preonly` makes this the simplified Newton method, anything else a Newton-Krylov method with exact
-   * products.
+   * IV.8). `-ksp_type preonly` makes this the simplified Newton method, anything else a Newton-Krylov method, whose
+   * products are renewed as the factors are.
    */
   PetscErrorCode
   register_radau();
