@@ -72,9 +72,9 @@ TEST(Jumps, InSpaceKeepTheOrder)
   }
 }
 
-/// The stress, or only its derivative, jumps at t = 3/8, where a step ends in any case. With a tolerance that any step meets
-/// all steps have the largest length; for a = 0 the equation is linear and Newton's method exact. The body is not stiff:
-/// else the order is reduced.
+/// The stress, or only its derivative, jumps at t = 3/8, where a step ends in any case. With a tolerance that any step
+/// meets all steps have the largest length; for a = 0 the equation is linear and Newton's method exact. The body is not
+/// stiff: else the order is reduced.
 TEST(Jumps, InTimeKeepTheOrder)
 {
   for (const std::string after : {"0.02*cos(2*t)", "0.02*sin(pi*0.375/2)^8*(1+3*(t-0.375))"})

@@ -5,9 +5,9 @@
 using namespace crawler;
 
 /// A one-step method loses nothing when the mesh changes: a pulse that travels takes its fine cells with it, and the
-/// steps are those of a mesh that is fine everywhere, but for the norm of their error: it is a mean over nodes, which an
-/// adaptive mesh has where the errors are. A state that the mesh refuses is done again, so a change may cost that one
-/// step.
+/// steps are those of a mesh that is fine everywhere, but for the norm of their error: it is a mean over nodes, which
+/// an adaptive mesh has where the errors are. A state that the mesh refuses is done again, so a change may cost that
+/// one step.
 TEST(Remesh, AnAdaptiveRunTakesTheStepsOfAFineMesh)
 {
   auto parameters = test::parameters_with(
