@@ -20,6 +20,7 @@ Ends with 0 if all is as expected, 7 if a number has drifted, 2 for a bad input,
 import argparse
 import csv
 import dataclasses
+import decimal
 import hashlib
 import json
 import os
@@ -118,28 +119,16 @@ CHECKS = (
 )
 
 
-class Numbers:
-    """All numbers of a text, in order of size."""
-
-    def __init__(self, text):
-        found = {float(one) for one in NUMBER.findall(text)}
-        self.values = sorted(found | {100 * one for one in found if abs(one) <= 1})  # shares may be written in per cent
-
-    def nearest(self, value):
-        """The one that is closest, relative to the value."""
-        return min(self.values, key=lambda one: abs(one - value), default=float("nan"))
+def numbers_of(text):
+    """All numbers of a text."""
+    found = {float(one) for one in NUMBER.findall(text)}
+    return found | {100 * one for one in found if abs(one) <= 1}  # shares may be written in per cent
 
 
-def digits_of(text):
-    """How many digits a number is written with."""
-    mantissa = re.sub(r"[eE].*", "", text).lstrip("+-")
-    return len(mantissa.replace(".", "").lstrip("0")) if float(text) else 0
-
-
-def half_unit(text):
-    """Half a unit of the last digit of a number as written."""
-    mantissa, _, exponent = text.lower().partition("e")
-    return 0.5 * 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+def written_as(text):
+    """How many digits a number is written with, and half a unit of the last one."""
+    _, digits, exponent = decimal.Decimal(text).as_tuple()
+    return len(digits), 0.5 * 10.0 ** exponent
 
 
 def tables_of(lines):
@@ -215,14 +204,15 @@ def compared(check, text):
     """A row for each number of the document: as written, nearest, relative drift, whether it agrees."""
     if not check.document:
         return []
-    found, rows = Numbers(text), []
+    found, rows = numbers_of(text), []
     for line in part_of(check):
         for written in NUMBER.findall(line):
-            if digits_of(written) < 3:
+            digits, half_unit = written_as(written)
+            if digits < 3 or not (value := float(written)):
                 continue
-            value, nearest = float(written), found.nearest(float(written))
+            nearest = min(found, key=lambda one: abs(one - value), default=float("nan"))
             # A document may round what a command cuts off, and the other way round.
-            agrees = abs(nearest - value) <= max(2.0002 * half_unit(written), check.within * abs(value))
+            agrees = abs(nearest - value) <= max(2.0002 * half_unit, check.within * abs(value))
             rows.append((line[:60], written, nearest, abs(nearest - value) / abs(value), agrees))
     if not rows:
         sys.exit(f"verify.py: {check.document} has no numbers behind \"{check.phrase}\" ({check.name})")

@@ -11,7 +11,7 @@ import sys
 from xml.etree import ElementTree
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, contents, prm, sets  # noqa: E402
+from program import call, checks, contents, expect, prm, sets  # noqa: E402
 from tables import json_of  # noqa: E402
 
 CRAWLER = pathlib.Path(sys.argv[1]).resolve()
@@ -22,8 +22,6 @@ BY_SPEED = OPTIMAL + "Choose wave by=wave speed"
 KEYS = "status reason displacement_error model seconds versions command_line".split()
 NUMBERS = "displacement end_time cells degree degrees_of_freedom steps rejected_steps newton_iterations".split()
 ENERGIES = "stress_power dissipation elastic_energy ledger_residual paper_energy positive_power net_friction".split()
-checks = Checks()
-expect = checks.expect
 
 
 def crawler(folder, *words, **more):

@@ -19,7 +19,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import NO_PICTURES, Checks, Paused, call, prm  # noqa: E402
+from program import NO_PICTURES, Paused, call, checks, expect, prm, skip  # noqa: E402
 from tables import without_columns  # noqa: E402
 
 CRAWLER, PRM = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
@@ -37,7 +37,7 @@ TRADEOFF = prm("Active stress/Optimal wave/Perturbation parameter=0.4",
                "Time/End time=0.1")
 SAMPLES = "s,t,m\n" + "".join(f"{s / 4},{t / 8},{(s - t) % 3}\n" for t in range(9) for s in range(5))
 TIMES = ("seconds", "cost", "memory", "speed", "time of")  # parts of names of columns that differ from run to run
-checks, chance = Checks(), random.Random(SEED)
+chance = random.Random(SEED)
 
 
 def content(folder):
@@ -84,7 +84,7 @@ class Faults:
         """Expects the files of an undisturbed command."""
         ours = content(folder) if folder.is_dir() else {"": folder.read_bytes()}
         free = {"log.txt", "restart.dat", "restart.old.dat"}
-        checks.expect(set(ours) - free == set(whole) - free, f"{what}: other files: {sorted(set(ours) ^ set(whole))}")
+        expect(set(ours) - free == set(whole) - free, f"{what}: other files: {sorted(set(ours) ^ set(whole))}")
         for name in set(ours) & set(whole) - free:
             if name.endswith(("results.csv", "starts.csv", "optima.csv")):
                 same = without_columns(ours[name].decode(), *TIMES) == without_columns(whole[name].decode(), *TIMES)
@@ -94,7 +94,7 @@ class Faults:
                 same = ours[name] == whole[name]
             else:  # contain times
                 same = abs(len(ours[name]) - len(whole[name])) < 0.2 * len(whole[name]) + 200
-            checks.expect(same, f"{what}: {name} is another one")
+            expect(same, f"{what}: {name} is another one")
 
     def judge(self, done, out, before, what):
         """Judges a command that could not write: exit code, sentence, older files. Returns True if it had enough
@@ -105,14 +105,14 @@ class Faults:
         if done.returncode == 0:
             return True
         words = done.stderr
-        checks.expect(done.returncode == 6, f"{what}: exit code {done.returncode}, {words[:400]!r}")
-        checks.expect(words.count("\n") == 1 and words.startswith("crawler: ") and len(words) < 1000 and
-                           any(text in words for text in ("disk", '"', "standard output")), f"{what}: {words[:600]!r} is not one sentence")
+        expect(done.returncode == 6, f"{what}: exit code {done.returncode}, {words[:400]!r}")
+        expect(words.count("\n") == 1 and words.startswith("crawler: ") and len(words) < 1000 and
+               any(text in words for text in ("disk", '"', "standard output")), f"{what}: {words[:600]!r} is not one sentence")
         for path, text in before.items():
-            checks.expect(path.read_bytes() == text, f"{what}: {path.name}, which is older, was damaged")
+            expect(path.read_bytes() == text, f"{what}: {path.name}, which is older, was damaged")
         parts = [path.name for path in (out.rglob("*") if out.is_dir() else out.parent.glob("*.part"))
                  if path.name.endswith(".part")]
-        checks.expect(not parts, f"{what}: {parts} are left")
+        expect(not parts, f"{what}: {parts} are left")
         return False
 
     def resumed(self, case, out, inputs, whole, what):
@@ -121,7 +121,7 @@ class Faults:
         if not case.resumes and case.prepared is None:
             out.unlink(missing_ok=True)
         done = case.start(out, inputs, options)
-        checks.expect(done.returncode == 0, f"{what}, then with room: exit code {done.returncode}, {done.stderr[:400]!r}")
+        expect(done.returncode == 0, f"{what}, then with room: exit code {done.returncode}, {done.stderr[:400]!r}")
         if done.returncode == 0:
             self.compare(case, out, whole, what)
 
@@ -133,7 +133,7 @@ class Faults:
                 shutil.rmtree(folder, ignore_errors=True)
             what = f"{command[1]}, its folder {how}"
             with Paused([*command, "--output", out], stop_at) as paused:
-                checks.expect((out / "study.lock").exists(), f"{what}: it has not begun, {list(out.rglob('*'))}")
+                expect((out / "study.lock").exists(), f"{what}: it has not begun, {list(out.rglob('*'))}")
                 if how == "removed":
                     shutil.rmtree(out)
                 else:
@@ -143,10 +143,10 @@ class Faults:
                     (out / "mine").write_text("mine", encoding="utf-8")
                 done = paused.go_on()
             self.n += 1
-            checks.expect(done.returncode == 6 and done.stderr.count("\n") == 1 and str(out) in done.stderr,
-                               f"{what}: exit code {done.returncode}, {done.stderr[:400]!r}")
+            expect(done.returncode == 6 and done.stderr.count("\n") == 1 and str(out) in done.stderr,
+                        f"{what}: exit code {done.returncode}, {done.stderr[:400]!r}")
             if how == "replaced":
-                checks.expect(content(out) == {"mine": b"mine"}, f"{what}: written into the new folder: {[*content(out)]}")
+                expect(content(out) == {"mine": b"mine"}, f"{what}: written into the new folder: {[*content(out)]}")
 
 
 faults = Faults()
@@ -240,7 +240,7 @@ def small_files(case, place, inputs, whole, written):
         found.append(not faults.judge(case.start(out, inputs, largest=size), out, before, what))
         if found[-1]:
             faults.resumed(case, out, inputs, whole, what)
-    checks.expect(any(found), f"{case.name}: no fault")
+    expect(any(found), f"{case.name}: no fault")
 
 
 def small_disks(case, disk, inputs, whole, written):
@@ -261,7 +261,7 @@ def small_disks(case, disk, inputs, whole, written):
                 faults.judge(case.start(out, inputs, ["--resume"]), out, {older: b"older"}, what + ", resumed")
             disk.room()
             faults.resumed(case, out, inputs, whole, what)
-    checks.expect(any(found), f"{case.name}: no fault")
+    expect(any(found), f"{case.name}: no fault")
     disk.room()
 
 
@@ -274,7 +274,7 @@ def read_only(cases, disk, has_disk, inputs):
         if case.prepared is None and not case.to_screen:
             out = place / ("new_" + case.place)
             what = f"{case.name}, read-only"
-            checks.expect(not faults.judge(case.start(out, inputs), out, {}, what), f"{what}: no fault")
+            expect(not faults.judge(case.start(out, inputs), out, {}, what), f"{what}: no fault")
 
 
 def main(place):
@@ -283,7 +283,7 @@ def main(place):
     cases = prepare(inputs)
     has_disk = disk.room()
     if not has_disk:
-        checks.skip("small disks and a read-only one: a tmpfs may not be mounted here")
+        skip("small disks and a read-only one: a tmpfs may not be mounted here")
     try:
         for case in cases:
             out = place / case.place
@@ -291,7 +291,7 @@ def main(place):
             if only and case.name not in ["run", *only]:
                 continue
             done = case.start(out, inputs)
-            checks.expect(done.returncode == 0, f"{case.name} itself: {done.returncode}, {done.stderr[:500]!r}")
+            expect(done.returncode == 0, f"{case.name} itself: {done.returncode}, {done.stderr[:500]!r}")
             whole = content(out) if out.is_dir() else {"": out.read_bytes()}
             if case.name == "run":
                 shutil.copytree(out, inputs / "whole_run", dirs_exist_ok=True)
@@ -306,5 +306,4 @@ def main(place):
     print(f"{faults.n} faults")
 
 
-if __name__ == "__main__":
-    checks.run((main,))
+checks.run((main,))

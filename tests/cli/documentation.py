@@ -127,6 +127,8 @@ def main():
     for entry in json.loads(ask(program, "parameters", "--format", "json")):
         words = entry["entry"].split("/")
         names.update("/".join(words[:n]) for n in range(1, len(words) + 1))  # sections may be named as well
+        if not entry["expected"] or not entry["documentation"]:
+            problems.append(f"the entry {entry['entry']} does not say what it means and what is expected")
     for path in markdown_files():
         text = path.read_text(encoding="utf-8")
         lines, blocks = split_blocks(text)

@@ -20,7 +20,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, Paused, call, prm  # noqa: E402
+from program import Paused, call, checks, expect, prm, refused  # noqa: E402
 from tables import csv_rows, without_columns  # noqa: E402
 
 CRAWLER, PRM = sys.argv[1], pathlib.Path(sys.argv[2])
@@ -28,8 +28,6 @@ EVERY = int(sys.argv[3]) if len(sys.argv) > 3 else 1
 QUICK = prm("Model=kinematic", "Active stress/Generator=prescribed strain",
             "Active stress/Prescribed strain/Given by=wave",
             "Sweep/Axes=Active stress/Prescribed strain/Amplitude : linspace(0.05, 0.3, 16)")
-checks = Checks()
-expect = checks.expect
 
 
 def some(things):
@@ -41,9 +39,9 @@ def crawler(*arguments, **options):
     return call([CRAWLER, *arguments], **options)
 
 
-def refused(done, code, words, what):
+def is_refused(done, code, words, what):
     """One short sentence, and this exit code."""
-    checks.refused(done, words, code=code)
+    refused(done, words, code=code)
     expect(len(done.stderr) < 3000, f"{what}: {len(done.stderr)} characters")
 
 
@@ -67,7 +65,7 @@ def damaged_tables(place, scene):
                 for key, value in attributes.items():
                     file["results"]["displacement"].attrs[key] = value
         before = (folder / "results.h5").read_bytes()
-        refused(crawler("sweep", scene, "--output", folder, "--resume"), 2, "results.h5", name)
+        is_refused(crawler("sweep", scene, "--output", folder, "--resume"), 2, "results.h5", name)
         expect((folder / "results.h5").read_bytes() == before, f"{name}: a refused table is another one")
         expect(not (folder / "study.lock").exists(), f"{name}: a refused study leaves its lock")
 
@@ -128,7 +126,7 @@ def links(place, scene):
         folder = place / f"link_{name}"
         folder.mkdir()
         (folder / name).symlink_to(outside / "snapshots")
-        refused(crawler("run", scene, "--output", folder, "--overwrite"), 6, "is a link", f"the link {name}")
+        is_refused(crawler("run", scene, "--output", folder, "--overwrite"), 6, "is a link", f"the link {name}")
         expect((outside / "snapshots" / "mine.vtu").exists(), f"files behind the link {name} are gone")
 
 
@@ -139,17 +137,17 @@ def texts(place):
     for level in range(9):
         (bomb / f"{level}.prm").write_text(f"include {level + 1}.prm\n" * 10)
     (bomb / "9.prm").write_text("# nothing\n")
-    refused(crawler("check", bomb / "0.prm"), 2, "at most 1000", "ten includes of ten files")
+    is_refused(crawler("check", bomb / "0.prm"), 2, "at most 1000", "ten includes of ten files")
     nested = place / "nested.prm"
     nested.write_text("subsection a\n" * 100000 + "end\n" * 100000)
-    refused(crawler("check", nested), 2, "more than 100 deep", "nested sections")
+    is_refused(crawler("check", nested), 2, "more than 100 deep", "nested sections")
     many = place / "many.prm"
     many.write_text("".join(f"set Entry {i} = 1\n" for i in range(100000)))
-    refused(crawler("check", many), 2, "Entry 0", "many entries")
+    is_refused(crawler("check", many), 2, "Entry 0", "many entries")
     long = place / "long.prm"
     long.write_text("subsection Active stress\n set Generator = expression\n subsection Expression\n  set Active stress = "
                     + "1+" * 500000 + "x\n end\nend\n")
-    refused(crawler("check", long), 2, "characters)", "a long formula")
+    is_refused(crawler("check", long), 2, "characters)", "a long formula")
     steering = place / "steering.prm"
     steering.write_text("subsection Body\n set Length = \x1b[31mred\nend\n")
     done = crawler("check", steering)
@@ -159,23 +157,23 @@ def texts(place):
 def endless(place):
     """Files without an end, or with too much in them."""
     for name in some(("/dev/zero", "/dev/urandom")):
-        refused(crawler("check", name), 6, "is a device", name)
+        is_refused(crawler("check", name), 6, "is a device", name)
         (place / "endless.prm").write_text(f"include {name}\n")
-        refused(crawler("check", place / "endless.prm"), 6, "is a device", f"include {name}")
-        refused(crawler("table", name, place / "out.csv"), 6, "is a device", f"table {name}")
+        is_refused(crawler("check", place / "endless.prm"), 6, "is a device", f"include {name}")
+        is_refused(crawler("table", name, place / "out.csv"), 6, "is a device", f"table {name}")
         for generator, section in (("table", "Table"), ("prescribed strain", "Prescribed strain")):
             done = crawler("check", "-", "--set", f"Active stress/Generator={generator}", "--set",
                            f"Active stress/{section}/File={name}", "--set", "Active stress/Prescribed strain/Given by=table",
                            input="set Accuracy = 1e-3\n")
-            refused(done, 2, "is a device", f"{generator} {name}")
+            is_refused(done, 2, "is a device", f"{generator} {name}")
     (place / "dash.prm").write_text("include -\n")
-    refused(crawler("check", "dash.prm", folder=place, input="set Accuracy = 1\n"), 6, "no such file", "include -")
+    is_refused(crawler("check", "dash.prm", folder=place, input="set Accuracy = 1\n"), 6, "no such file", "include -")
     with open(place / "big.prm", "wb") as file:
         file.truncate(1 << 40)
-    refused(crawler("check", place / "big.prm"), 6, "4 GiB", "a file of 1 TiB")
+    is_refused(crawler("check", place / "big.prm"), 6, "4 GiB", "a file of 1 TiB")
     (place / "part.prm").write_text(("#" * 99 + "\n") * 200000)
     (place / "whole.prm").write_text("include part.prm\n" * 900)
-    refused(crawler("check", place / "whole.prm"), 2, "at most 64 MB", "900 includes of 20 MB")
+    is_refused(crawler("check", place / "whole.prm"), 2, "at most 64 MB", "900 includes of 20 MB")
 
 
 def counts(scene):
@@ -201,17 +199,17 @@ def counts(scene):
     for axes in ("Body/Length : linspace(1, 2, 1e18)", "Body/Length : linspace(1, 2, 1e5); Body/Elastic modulus : "
                  "linspace(1, 2, 1e5); Body/Anchoring exponent : linspace(1, 2, 1e5)"):
         done = crawler("check", scene, "--set", f"Sweep/Axes={axes}", preexec_fn=limit)
-        refused(done, 2, "Sweep/Axes", axes)
+        is_refused(done, 2, "Sweep/Axes", axes)
 
 
 def names_and_cells(place, scene):
     """Names that steer terminals or shells, and cells that spreadsheets would compute."""
     for word in ("a\nb", "a\x1b[2Jb", "a\rb", "a\tb"):
-        refused(crawler("run", scene, "--output", place / word), 2, "control character", repr(word))
+        is_refused(crawler("run", scene, "--output", place / word), 2, "control character", repr(word))
         expect(not (place / word).exists(), f"a folder {word!r} is there")
-        refused(crawler("run", place / f"{word}.prm"), 2, "control character", repr(word))
+        is_refused(crawler("run", place / f"{word}.prm"), 2, "control character", repr(word))
     done = crawler("run", place / "a\xc2\x9b31mb.prm".encode("latin-1").decode("utf-8"))
-    refused(done, 6, "\\xc2\\x9b31m", "a control character behind ASCII")
+    is_refused(done, 6, "\\xc2\\x9b31m", "a control character behind ASCII")
     for name in some(("$(touch pwned) `touch pwned`; touch pwned; a b' \" &", "$(touch pwned)", "`touch pwned`",
                       "; touch pwned;", "a b' \" &")):
         folder = place / "names" / name
@@ -247,7 +245,7 @@ def plugins(place):
     for name in ("libm.so.6", "libdeal.ii.so"):
         done = crawler("check", "-", "--set", "Active stress/Generator=library", "--set",
                        f"Active stress/Library/File={name}", folder=place, input="set Accuracy = 1e-3\n")
-        refused(done, 2, "there is no file", f"plug-in {name}")
+        is_refused(done, 2, "there is no file", f"plug-in {name}")
 
 
 def damaged_input(place):
@@ -279,7 +277,7 @@ def two_at_once(place):
                "--set", "Output/Number of snapshots=10000", "--set", "Active stress/Generator=expression",
                "--set", "Active stress/Expression/Active stress=" + formula]
     with Paused(command, "write:000003.vtu:STOP") as first:
-        refused(crawler("run", scene, "--output", folder, "--overwrite"), 2, "is writing to", "a second run in the same folder")
+        is_refused(crawler("run", scene, "--output", folder, "--overwrite"), 2, "is writing to", "a second run in the same folder")
         done = first.go_on(signal.SIGTERM)
     expect(done.returncode == 5 and not (folder / "study.lock").exists(), f"the first run leaves its lock: {done.returncode}")
 

@@ -12,7 +12,7 @@ import shutil
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call  # noqa: E402
+from program import call, checks, expect  # noqa: E402
 
 CMAKE, BUILD = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
@@ -25,8 +25,6 @@ PARTS = ["bin/crawler", "include/crawler/scene/stress_plugin.h", "lib*/**/cmake/
 # In a namespace of its own (user, files), with empty folders in place of source and build.
 HIDDEN = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c",
           f'mount -t tmpfs none "{SOURCE}" && {{ [ ! -d "{BUILD}" ] || mount -t tmpfs none "{BUILD}"; }} && exec "$@"', "sh"]
-checks = Checks()
-expect = checks.expect
 
 
 def printed(*words, folder, before=()):

@@ -14,7 +14,7 @@ import struct
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import NO_PICTURES, Checks, call, on_ranks, sets  # noqa: E402
+from program import NO_PICTURES, call, checks, expect, on_ranks, refused, sets  # noqa: E402
 from tables import csv_rows, h5_columns, json_of  # noqa: E402
 
 CRAWLER, PRM, MPIRUN = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), sys.argv[3]
@@ -22,8 +22,6 @@ MODES, SEGMENTS = "Active stress/Modes/", "Active stress/Segments/"
 LAG, AMPLITUDE = SEGMENTS + "Phase lag", SEGMENTS + "Amplitude"
 BUDGETS = ["Sweep/Axes=Optimize/Work : 0.001, 0.003", "Optimize/Objective=displacement", "Optimize/Starts=3"]
 LONG = "--long" in sys.argv
-checks = Checks()
-expect = checks.expect
 
 
 def run(study, folder, *settings, options=(), ranks=1, stop_at=None, picture=False):
@@ -189,7 +187,7 @@ def test_cases(place):
                and rows(place / "pairs") == before, f"a damaged row of {name}: {damaged.returncode}, {damaged.stderr}")
     (place / "old" / "starts").mkdir(parents=True)
     (place / "old" / "starts" / "1-0.json").write_text("{}", encoding="utf-8")
-    checks.refused(run("optimize_harmonics", place / "old", options=["--resume"]), "no optimization that can be resumed")
+    refused(run("optimize_harmonics", place / "old", options=["--resume"]), "no optimization that can be resumed")
 
 
 def test_neighbours(place):
@@ -228,8 +226,8 @@ def test_stops(place):
     single = run("optimize_harmonics", place / "single", *BUDGETS[1:], "Optimize/Work=0.003")
     expect(single.returncode == 0 and optima(place / "single")[0]["objective"] == found[1]["objective"],
            "a case has the same optimum alone")
-    checks.refused(run("optimize_harmonics", place / "one", "Optimize/Largest strain=0.2", options=["--resume"]),
-                   "Optimize/Largest strain was")
+    refused(run("optimize_harmonics", place / "one", "Optimize/Largest strain=0.2", options=["--resume"]),
+            "Optimize/Largest strain was")
 
     # The row of evaluations behind which this start has a row of its own.
     evaluations = [int(float(start["evaluations"])) for start in csv_rows(place / "one" / "starts.csv")]
@@ -400,11 +398,10 @@ def test_bad_input(place):
                             (["Sweep/Axes=Active stress/Modes/Coefficients[2] : 0.2, 3"], "expected in its range"),
                             (no_limit, "has no maximum"),
                             (["Model=perturbation"], "perturbation")):
-        checks.refused(run("optimize_harmonics", place / "bad", *settings), words)
+        refused(run("optimize_harmonics", place / "bad", *settings), words)
     expect(not (place / "bad").exists(), "bad input leaves a folder")
 
 
-if __name__ == "__main__":
-    checks.run((test_merits, test_theorem, test_simulations, test_pulling_limits, test_many_crests, test_far_start,
-                test_narrow_stress, test_cases, test_neighbours, test_starts, test_gradients, test_uneven, test_obstacles,
-                test_bad_input), (test_stops,))
+checks.run((test_merits, test_theorem, test_simulations, test_pulling_limits, test_many_crests, test_far_start,
+            test_narrow_stress, test_cases, test_neighbours, test_starts, test_gradients, test_uneven, test_obstacles,
+            test_bad_input), (test_stops,))

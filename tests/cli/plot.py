@@ -19,7 +19,7 @@ import matplotlib.image
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from pictures import draw, words  # noqa: E402
-from program import NO_PICTURES, Checks, call, prm  # noqa: E402
+from program import NO_PICTURES, call, checks, expect, prm, refused  # noqa: E402
 from tables import csv_rows, json_of  # noqa: E402
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
@@ -75,8 +75,6 @@ REFUSED_BY_SCRIPTS = [
     (["run", "--output", "picture.doc"], 2, ".png, .svg or .pdf"),
     (["sweep", "--kind", "tradeoff"], 2, "the output folder of crawler tradeoff is expected"), (["unreadable", "--kind", "tradeoff"], 6, "cannot read"),
     (["optimum", "--optimum", "2"], 2, "the number of a case is expected: 1"), (["calibration.csv", "--value", "x"], 2, "--value")]
-checks = Checks()
-check = checks.expect
 
 
 def crawler(*arguments, **variables):
@@ -104,9 +102,9 @@ def make_folders():
     for folder, (command, file, more, _) in STUDIES.items():
         path = ROOT / file if (ROOT / file).is_file() else file
         end = crawler(command, path, "--output", folder, "--quiet", *more, **NO_PICTURES)
-        check(end.returncode == 0, f"crawler {command} {file}: {end.returncode} {end.stderr.strip()}")
+        expect(end.returncode == 0, f"crawler {command} {file}: {end.returncode} {end.stderr.strip()}")
     end = crawler("run", ROOT / "prm/examples/expression.prm", "--output", "no_stride", "--quiet", "--set", "Time/End time=0.4")
-    check(end.returncode == 0, f"a run without a stride: {end.stderr.strip()}")
+    expect(end.returncode == 0, f"a run without a stride: {end.stderr.strip()}")
 
 
 def test_pictures():
@@ -116,12 +114,12 @@ def test_pictures():
             pathlib.Path(folder, picture).unlink(missing_ok=True)
         end = crawler("plot", folder)
         said = [f"wrote {folder}/{picture}" for picture in pictures]
-        check(end.returncode == 0 and end.stdout.splitlines()[: len(said)] == said, f"plot {folder}: {end.stdout} {end.stderr}")
+        expect(end.returncode == 0 and end.stdout.splitlines()[: len(said)] == said, f"plot {folder}: {end.stdout} {end.stderr}")
         image = matplotlib.image.imread(f"{folder}/{pictures[0]}")[:, :, :3]
-        check(image.shape[1] > 700 and image.std() > 0.05, f"{folder}/{pictures[0]} is not blank: {image.shape}, {image.std():.2f}")
-        check(folder != "run" or "--kind sensitivity" in end.stdout, "the other picture of a run is named")
+        expect(image.shape[1] > 700 and image.std() > 0.05, f"{folder}/{pictures[0]} is not blank: {image.shape}, {image.std():.2f}")
+        expect(folder != "run" or "--kind sensitivity" in end.stdout, "the other picture of a run is named")
     end = crawler("plot", "calibration.csv")
-    check(end.returncode == 0 and pathlib.Path("calibration.png").is_file(), f"calibration.png lies beside its table {end.stderr}")
+    expect(end.returncode == 0 and pathlib.Path("calibration.png").is_file(), f"calibration.png lies beside its table {end.stderr}")
     for folder, options, wanted in WORDS:
         own = STUDIES.get(folder, ((), (), (), ()))[3]
         if not options and f"{own[-1:]}".count(".svg"):  # it has been drawn already
@@ -130,7 +128,7 @@ def test_pictures():
             code, printed = drawn(folder, *options, "--output", "picture.svg")
             texts = words("picture.svg") if code == 0 else []
         missing = [word for word in wanted if not any(word in text for text in texts)]
-        check(code == 0 and not missing, f"plot {folder} {' '.join(options)}: without {missing} {printed}")
+        expect(code == 0 and not missing, f"plot {folder} {' '.join(options)}: without {missing} {printed}")
 
 
 def test_times():
@@ -142,10 +140,10 @@ def test_times():
             code, printed = drawn("run", "--kind", kind, *options, "--output", "part.svg")
             texts = words("part.svg") if code == 0 else []
             numbers = {float(text) for text in texts if re.fullmatch(r"[\d.]+", text)}
-            check(code == 0 and all(float(number) in numbers for number in there),
-                  f"{kind} {' '.join(options)} has the times {there}: {printed}")
+            expect(code == 0 and all(float(number) in numbers for number in there),
+                   f"{kind} {' '.join(options)} has the times {there}: {printed}")
             if kind == "kymograph":
-                check(not any(number in texts for number in away), f"{kind} {' '.join(options)} has not the times {away}")
+                expect(not any(number in texts for number in away), f"{kind} {' '.join(options)} has not the times {away}")
 
 
 def test_units():
@@ -158,17 +156,17 @@ def test_units():
     path.write_text(f"{before}subsection Units{units}", encoding="utf-8")
     code, printed = drawn("named", "--stress", "--output", "named.svg")
     texts = " ".join(words("named.svg")) if code == 0 else ""
-    check(code == 0 and all(word in texts for word in ("[mm]", "time $t$ [s]", "active stress $m$ [mN]")) and "[time]" not in texts,
-          f"units of the user: {texts} {printed}")
+    expect(code == 0 and all(word in texts for word in ("[mm]", "time $t$ [s]", "active stress $m$ [mN]")) and "[time]" not in texts,
+           f"units of the user: {texts} {printed}")
     end = crawler("paper", "named")
-    check("\ndisplacement,mm," in pathlib.Path("named/paper/numbers.csv").read_text(encoding="utf-8"), f"units of numbers.csv: {end.stderr}")
+    expect("\ndisplacement,mm," in pathlib.Path("named/paper/numbers.csv").read_text(encoding="utf-8"), f"units of numbers.csv: {end.stderr}")
 
 
 def test_copied_program():
     """A copy of the program alone says where its scripts are looked for."""
     shutil.copy(PROGRAM, "copied")
     end = call(["./copied", "plot", "run"])
-    checks.refused(end, "__main__.py is neither ", f"{pathlib.Path.cwd()}/python/crawler/__main__.py")
+    refused(end, "__main__.py is neither ", f"{pathlib.Path.cwd()}/python/crawler/__main__.py")
     pathlib.Path("copied").unlink()
 
 
@@ -183,38 +181,38 @@ def test_screen():
     for display, word in (("", "DISPLAY is not set"), (":4711", "DISPLAY=:4711 does not answer")):
         end = call(["/usr/bin/python3", "-B", "-c", "import ctypes.util; assert ctypes.util.find_library('X11'), 'no X11'\n"
                     "import crawler_view; crawler_view.new_view([640, 480])"], variables={"PYTHONPATH": folders, "DISPLAY": display})
-        check("no X11" in end.stderr or (end.returncode == 2 and word in end.stderr and "xvfb-run -a pvbatch" in end.stderr
-                                         and end.stderr.count("\n") == 1), f"no screen: {end.returncode} {end.stderr.strip()}")
+        expect("no X11" in end.stderr or (end.returncode == 2 and word in end.stderr and "xvfb-run -a pvbatch" in end.stderr
+                                          and end.stderr.count("\n") == 1), f"no screen: {end.returncode} {end.stderr.strip()}")
 
 
 def test_part_of_its_own():
     """The picture of a part leaves that of the whole as it is; the program passes on the options."""
     before = pathlib.Path("run/kymograph.png").read_bytes()
     end = crawler("plot", "run", "--last-stride")
-    check(end.returncode == 0 and pathlib.Path("run/kymograph_last_stride.png").is_file(), f"--last-stride: {end.stderr}")
+    expect(end.returncode == 0 and pathlib.Path("run/kymograph_last_stride.png").is_file(), f"--last-stride: {end.stderr}")
     code, printed = drawn("run", "--from", "0.5", "--to", "1.5")
-    check(code == 0 and pathlib.Path("run/kymograph_from_0.5_to_1.5.png").is_file(), f"--from 0.5 --to 1.5: {printed}")
+    expect(code == 0 and pathlib.Path("run/kymograph_from_0.5_to_1.5.png").is_file(), f"--from 0.5 --to 1.5: {printed}")
     end = crawler("plot", "run", "--kind", "sensitivity", "--output", "passed.svg")
-    check(end.returncode == 0 and any("change of the displacement" in text for text in words("passed.svg")),
-          f"--kind: {end.stderr}")
-    check(pathlib.Path("run/kymograph.png").read_bytes() == before, "the picture of the whole run stays")
+    expect(end.returncode == 0 and any("change of the displacement" in text for text in words("passed.svg")),
+           f"--kind: {end.stderr}")
+    expect(pathlib.Path("run/kymograph.png").read_bytes() == before, "the picture of the whole run stays")
 
 
 def test_bad_input():
     """One sentence, and nothing is drawn."""
     for arguments, code, word in REFUSED:
         end = crawler("plot", *arguments)
-        checks.refused(end, "crawler: ", word, code=code)
-        check("wrote" not in end.stdout, f"plot {' '.join(arguments)}: {end.stdout}")
+        refused(end, "crawler: ", word, code=code)
+        expect("wrote" not in end.stdout, f"plot {' '.join(arguments)}: {end.stdout}")
     for arguments, code, word in REFUSED_BY_SCRIPTS:
         found, printed = drawn(*arguments)
-        check(found == code and printed.count("\n") == 1 and word in printed and re.match(r"\w+\.py: ", printed),
-              f"{' '.join(arguments)}: {found} {printed[-300:]}")
+        expect(found == code and printed.count("\n") == 1 and word in printed and re.match(r"\w+\.py: ", printed),
+               f"{' '.join(arguments)}: {found} {printed[-300:]}")
     for arguments, word in (([], "--kind"), (["sweep"], "--where")):
         end = crawler("plot", *arguments, "--help")
-        check(end.returncode == 0 and word in end.stdout, f"plot {' '.join(arguments)} --help tells of {word}")
+        expect(end.returncode == 0 and word in end.stdout, f"plot {' '.join(arguments)} --help tells of {word}")
     code, printed = drawn("run", "--help")
-    check(code == 0 and "--last-stride" in printed, f"help of a run: {printed}")
+    expect(code == 0 and "--last-stride" in printed, f"help of a run: {printed}")
 
 
 def test_paper():
@@ -224,36 +222,36 @@ def test_paper():
                                  (["sweep", "--lines", "--value", "stress_power"], 86, 80), (["checked", "--columns", "2"], 178, 70)):
         shutil.rmtree("printed", ignore_errors=True)
         end = crawler("paper", *words, "--output", "printed")
-        check(end.returncode == 0 and end.stdout.splitlines() == [f"wrote printed/{name}" for name in ("figure.pdf", "numbers.csv", "numbers.tex")],
-              f"paper {' '.join(words)}: {end.returncode} {end.stdout} {end.stderr}")
+        expect(end.returncode == 0 and end.stdout.splitlines() == [f"wrote printed/{name}" for name in ("figure.pdf", "numbers.csv", "numbers.tex")],
+               f"paper {' '.join(words)}: {end.returncode} {end.stdout} {end.stderr}")
         figure = pathlib.Path("printed/figure.pdf").read_bytes()
         box = [float(number) * 25.4 / 72 for number in re.search(rb"/MediaBox \[ 0 0 (\S+) (\S+) \]", figure).groups()]
-        check(max(abs(box[0] - width), abs(box[1] - height)) < 0.1, f"the figure has {box} mm, expected {width} x {height}")
-        check(b"/FontFile2" in figure and b"/Type3" not in figure, "fonts are embedded, as outlines")
+        expect(max(abs(box[0] - width), abs(box[1] - height)) < 0.1, f"the figure has {box} mm, expected {width} x {height}")
+        expect(b"/FontFile2" in figure and b"/Type3" not in figure, "fonts are embedded, as outlines")
         rows = csv_rows("printed/numbers.csv")
         table = pathlib.Path("printed/numbers.tex").read_text(encoding="utf-8")
         cells = [line.removesuffix(r" \\").split(" & ") for line in table.splitlines() if line.endswith(r" \\")]
-        check(len(cells) == len(rows) + 1 and len({len(line) for line in cells}) == 1, f"rows of the table: {len(cells)}, of the CSV file {len(rows)}")
+        expect(len(cells) == len(rows) + 1 and len({len(line) for line in cells}) == 1, f"rows of the table: {len(cells)}, of the CSV file {len(rows)}")
         if words[0] == "run":
             known = {row["number"]: (float(row["value"]), float(row["bound"])) for row in rows}
-            check(known["displacement"] == (summary["displacement"], summary["displacement_error"]["total"]) and
-                  known["gait.speed"] == (summary["gait"]["speed"], summary["errors"]["gait"]["speed"]), f"numbers of summary.json: {known}")
-            check(all(round_trip(line[1], *known[row["number"]]) for line, row in zip(cells[1:], rows)), f"numbers for LaTeX: {cells}")
-            check(cells[1][0] == "displacement $D$ [length]", f"names and units: {cells[1][0]}")
+            expect(known["displacement"] == (summary["displacement"], summary["displacement_error"]["total"]) and
+                   known["gait.speed"] == (summary["gait"]["speed"], summary["errors"]["gait"]["speed"]), f"numbers of summary.json: {known}")
+            expect(all(round_trip(line[1], *known[row["number"]]) for line, row in zip(cells[1:], rows)), f"numbers for LaTeX: {cells}")
+            expect(cells[1][0] == "displacement $D$ [length]", f"names and units: {cells[1][0]}")
         elif words[0] == "sweep":
             points = [(float(row["stress_power"]), float(row["errors.stress_power"])) for row in csv_rows("sweep/results.csv")]
             found = [(float(row["stress_power"]), float(row["bound"])) for row in rows]
-            check(len(found) == 6 and all(abs(one / other - 1) < 1e-6 for mine, theirs in zip(found, points) for one, other in zip(mine, theirs)), f"values of the sweep: {found}")
-            check(all(round_trip(line[-1], *one) for line, one in zip(cells[1:], found)), f"points for LaTeX: {cells}")
+            expect(len(found) == 6 and all(abs(one / other - 1) < 1e-6 for mine, theirs in zip(found, points) for one, other in zip(mine, theirs)), f"values of the sweep: {found}")
+            expect(all(round_trip(line[-1], *one) for line, one in zip(cells[1:], found)), f"points for LaTeX: {cells}")
         else:
-            check([line[-1] for line in cells] == ["outcome", *["finished"] * 6], f"outcomes: {cells}")
+            expect([line[-1] for line in cells] == ["outcome", *["finished"] * 6], f"outcomes: {cells}")
     for arguments, code, word in (([], 2, "DIR missing"), (["nowhere"], 2, '"nowhere" is not a folder'), (["empty"], 2, "summary.json"),
                                   (["optimum"], 2, "an optimisation, but that of a run or sweep"), (["run", "--columns", "3"], 2, "one of 1, 2"),
                                   (["run", "--height", "5"], 2, "from 20 to 250"), (["run", "--lastt-stride"], 2, '"--last-stride"'),
                                   (["sweep", "--value", "nothing"], 2, "nearest"), (["run", "--output", "no/where"], 6, "no/where")):
         end = crawler("paper", *arguments)
-        checks.refused(end, "crawler: ", word, code=code)
-        check("wrote" not in end.stdout, f"paper {' '.join(arguments)}: {end.stdout}")
+        refused(end, "crawler: ", word, code=code)
+        expect("wrote" not in end.stdout, f"paper {' '.join(arguments)}: {end.stdout}")
 
 
 def round_trip(text, value, bound):
@@ -265,22 +263,22 @@ def round_trip(text, value, bound):
 
 def test_python(folder):
     """A Python without modules hands over to Debian's; if that lacks one too, both are named."""
-    check(call([sys.executable, "-m", "venv", "--without-pip", "bare"]).returncode == 0, "a Python without modules is made")
+    expect(call([sys.executable, "-m", "venv", "--without-pip", "bare"]).returncode == 0, "a Python without modules is made")
     bare = f"{folder}/bare/bin"
     pathlib.Path("run/kymograph.png").unlink()
     end = crawler("plot", "run", PATH=f"{bare}:{os.environ['PATH']}")
-    check(end.returncode == 0 and pathlib.Path("run/kymograph.png").is_file() and end.stderr == "",
-          f"a Python without modules comes first: {end.stderr.strip()}")
+    expect(end.returncode == 0 and pathlib.Path("run/kymograph.png").is_file() and end.stderr == "",
+           f"a Python without modules comes first: {end.stderr.strip()}")
     pathlib.Path("blind").mkdir()
     pathlib.Path("blind/h5py.py").write_text("raise ImportError\n", encoding="utf-8")
     end = crawler("plot", "sweep", PATH=f"{bare}:{os.environ['PATH']}", PYTHONPATH=f"{folder}/blind")
-    checks.refused(end, f"{bare}/python3 has no numpy and no matplotlib; /usr/bin/python3 has no h5py "
-                   "(on Debian: apt install python3-h5py)")
+    refused(end, f"{bare}/python3 has no numpy and no matplotlib; /usr/bin/python3 has no h5py "
+            "(on Debian: apt install python3-h5py)")
     end = crawler("plot", "run", PYTHONPATH=f"{folder}/blind")
-    check(end.returncode == 0, f"a run needs no h5py: {end.stderr.strip()}")
+    expect(end.returncode == 0, f"a run needs no h5py: {end.stderr.strip()}")
     for script in sorted((ROOT / "contrib/python/crawler/plot").glob("*.py")):
         first = script.read_text(encoding="utf-8").splitlines()[0]
-        check(script.name == "plotting.py" or first == "#!/usr/bin/env python3", f"{script.name} runs with any Python: {first}")
+        expect(script.name == "plotting.py" or first == "#!/usr/bin/env python3", f"{script.name} runs with any Python: {first}")
 
 
 def main():
@@ -300,5 +298,4 @@ def main():
     checks.end()
 
 
-if __name__ == "__main__":
-    main()
+main()

@@ -18,14 +18,12 @@ import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, on_ranks, sets  # noqa: E402
+from program import call, checks, expect, on_ranks, refused, sets  # noqa: E402
 from tables import csv_rows  # noqa: E402
 
 CMAKE, BUILD, MPIRUN = sys.argv[1:4]
 HERE = pathlib.Path(__file__).resolve().parent
 PLUGIN_SOURCE = HERE.parents[1] / "contrib/plugin"
-checks = Checks()
-expect = checks.expect
 
 
 def command(*words):
@@ -60,13 +58,13 @@ def is_finite(file):
     return all(np.isfinite(vtk_to_numpy(data.GetArray(i))).all() for i in range(data.GetNumberOfArrays()))
 
 
-def refused(name, entries, *words):
+def is_refused(name, entries, *words):
     """The program must refuse this with exit code 2 and one sentence that has these words in it, and write nothing."""
     if isinstance(entries, str):
         entries = {"File": FAULTY, "Parameters": entries}
     for kind in ("run", "check"):
         done = run(name, "library", entries, command=kind)
-        checks.refused(done, "crawler: ", *words)
+        refused(done, "crawler: ", *words)
     expect(not os.path.exists(name), f"{name}: something was written")
 
 
@@ -158,24 +156,24 @@ with tempfile.TemporaryDirectory() as folder:
     include = f"-I{folder}/installed/include"
     compiler = os.environ.get("CXX", "c++")
     command(compiler, "-std=c++20", "-shared", "-fPIC", include, HERE / "faulty_plugin.cc", "-o", FAULTY)
-    refused("missing", {"File": "no.so"}, "there is no file", f"{folder}/no.so", "missing.prm, line ")
-    refused("folder", {"File": "source"}, "is not a file")
-    refused("text", {"File": "text.prm"}, "cannot be loaded", "invalid ELF header", "compiled with -shared on this machine")
-    refused("empty", {"File": ""}, "name of the shared object is missing")
+    is_refused("missing", {"File": "no.so"}, "there is no file", f"{folder}/no.so", "missing.prm, line ")
+    is_refused("folder", {"File": "source"}, "is not a file")
+    is_refused("text", {"File": "text.prm"}, "cannot be loaded", "invalid ELF header", "compiled with -shared on this machine")
+    is_refused("empty", {"File": ""}, "name of the shared object is missing")
     with open("other.c", "w") as file:
         file.write("int f(void) { return 0; }\n")
     command(compiler, "-x", "c", "-shared", "-fPIC", "other.c", "-o", "other.so")
-    refused("other", {"File": "other.so"}, "has no function crawler_active_stress_plugin", "CRAWLER_ACTIVE_STRESS_PLUGIN")
+    is_refused("other", {"File": "other.so"}, "has no function crawler_active_stress_plugin", "CRAWLER_ACTIVE_STRESS_PLUGIN")
     with open("other.c", "w") as file:
         file.write("int g(void);\nint f(void) { return g(); }\n")
     command(compiler, "-x", "c", "-shared", "-fPIC", "other.c", "-o", "undefined.so")
-    refused("undefined", {"File": "undefined.so"}, "cannot be loaded", "undefined symbol: g")
+    is_refused("undefined", {"File": "undefined.so"}, "cannot be loaded", "undefined symbol: g")
     with open("other.so", "rb") as file:
         content = bytearray(file.read())
     content[18:20] = (0x1234).to_bytes(2, "little")
     with open("machine.so", "wb") as file:
         file.write(content)
-    refused("machine", {"File": "machine.so"}, "cannot be loaded", "compiled with -shared on this machine")
+    is_refused("machine", {"File": "machine.so"}, "cannot be loaded", "compiled with -shared on this machine")
     for name, interface, version in (("old", 0, "PLUGIN_VERSION"), ("version", 1, '"0.0.7"')):
         with open("old.cc", "w") as file:
             file.write("#include <crawler/scene/plugin_version.h>\n#define PLUGIN_VERSION crawler::plugin_version\n"
@@ -183,15 +181,15 @@ with tempfile.TemporaryDirectory() as folder:
                        'extern "C" const Old *crawler_active_stress_plugin()\n'
                        f"{{ static const Old old = {{{interface}, {version}}}; return &old; }}\n")
         command(compiler, "-std=c++20", "-shared", "-fPIC", include, "old.cc", "-o", f"{name}.so")
-        refused(name, {"File": f"{name}.so"}, "was built against crawler", "but this program is crawler", "build it again")
-    refused("factory", "kind=factory", "refuses the scene: this body is too short")
-    refused("number", "t=soon", 'the parameter "t" is "soon"', "a number is expected")
-    refused("nothing", "kind=nothing", "returned nothing")
-    refused("period", "kind=period", "its period is -1")
-    refused("breaks", "kind=breaks", "breaks_in_space(): no breaks here")
-    refused("unknown", "knd=nan", 'does not know the parameter "knd"', '"kind"')
-    refused("words", "kind", 'found "kind"', "name=value")
-    refused("twice", "t=1, t=2", '"t"', "a second time")
+        is_refused(name, {"File": f"{name}.so"}, "was built against crawler", "but this program is crawler", "build it again")
+    is_refused("factory", "kind=factory", "refuses the scene: this body is too short")
+    is_refused("number", "t=soon", 'the parameter "t" is "soon"', "a number is expected")
+    is_refused("nothing", "kind=nothing", "returned nothing")
+    is_refused("period", "kind=period", "its period is -1")
+    is_refused("breaks", "kind=breaks", "breaks_in_space(): no breaks here")
+    is_refused("unknown", "knd=nan", 'does not know the parameter "knd"', '"kind"')
+    is_refused("words", "kind", 'found "kind"', "name=value")
+    is_refused("twice", "t=1, t=2", '"t"', "a second time")
 
     # What goes wrong on the way. Frames every 0.05 of the time; what follows the last accepted step is lost.
     half, late, thrown = "kind=throw, s=0.5, t=0.68", "kind=throw, s=0.75, t=0.68", range(12, 15)

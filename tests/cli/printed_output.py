@@ -136,5 +136,4 @@ def main():
     return 0 if WRITES else len(problems)
 
 
-if __name__ == "__main__":
-    sys.exit(1 if main() else 0)
+sys.exit(1 if main() else 0)

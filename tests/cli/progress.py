@@ -16,14 +16,13 @@ import pty
 import re
 import select
 import signal
-import statistics
 import struct
 import subprocess
 import sys
 import termios
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import PATIENCE, Checks, call, environment, on_ranks  # noqa: E402
+from program import PATIENCE, call, checks, environment, expect, on_ranks  # noqa: E402
 
 PROGRAM, MPIEXEC = sys.argv[1:3]
 PRM = pathlib.Path(__file__).resolve().parents[2] / "prm"
@@ -32,8 +31,6 @@ VERSION = re.compile(r"crawler \d+\.\d+\.\d+ \(revision \S+, deal\.II \S+, PETSc
 BAR = re.compile(r"^[█░]{24} ")
 LEFT = re.compile(r"^[█░]{24} +(\d+) %  \S+ (ms|s|min) left  ")
 POINTS = re.compile(r"(\d+) of (\d+) points, ")
-checks = Checks()
-check = checks.expect
 
 
 class Screen:
@@ -111,40 +108,40 @@ def run(folder):
     slow = [PROGRAM, "run", PRM / "examples/earthworm.prm", "--set", "Accuracy=1e-9", "--set", "Time/Engine=petsc"]
     screen, code = on_terminal([*slow, "--output", "bar", "--set", "Time/End time=1e4"], folder,
                                stop=(signal.SIGTERM, lambda screen: len(set(percents(screen))) > 2))
-    check(code == 5 and not any(BAR.match(row) for row in screen.seen[-1]),
-          f"a run that is stopped leaves no bar: {code}, {screen.seen[-1]}")
+    expect(code == 5 and not any(BAR.match(row) for row in screen.seen[-1]),
+           f"a run that is stopped leaves no bar: {code}, {screen.seen[-1]}")
     grows = percents(screen)
-    check(len(set(grows)) > 2 and grows == sorted(grows) and grows[-1] <= 100, f"the bar grows: {grows}")
-    check(max(len(row) for row in shown(screen) if BAR.match(row)) <= WIDTH, "no bar is wider than the terminal")
-    check("\x1b" not in (folder / "bar/log.txt").read_text(), "log.txt has no control sequences")
+    expect(len(set(grows)) > 2 and grows == sorted(grows) and grows[-1] <= 100, f"the bar grows: {grows}")
+    expect(max(len(row) for row in shown(screen) if BAR.match(row)) <= WIDTH, "no bar is wider than the terminal")
+    expect("\x1b" not in (folder / "bar/log.txt").read_text(), "log.txt has no control sequences")
 
     quick = [PROGRAM, "run", PRM / "examples/earthworm.prm", "--set", "Output/Number of snapshots=2"]
     screen, code = on_terminal([*quick, "--output", "whole"], folder)
     last = screen.seen[-1]
-    check(code == 0, f"the run finishes {last}")
-    check(VERSION.fullmatch(last[0]) is not None, f"the first line names the version: {last[0]}")
-    check(last[-1].startswith("Results are in whole/"), f"the last line says where the files are: {last[-1]}")
-    check(not any(BAR.match(row) for row in last), "no bar stays")
+    expect(code == 0, f"the run finishes {last}")
+    expect(VERSION.fullmatch(last[0]) is not None, f"the first line names the version: {last[0]}")
+    expect(last[-1].startswith("Results are in whole/"), f"the last line says where the files are: {last[-1]}")
+    expect(not any(BAR.match(row) for row in last), "no bar stays")
     tenths = [line for line in (folder / "whole/log.txt").read_text().splitlines() if re.match(r" +\d+ %  t = ", line)]
-    check(len(tenths) >= 8 and not any(line in last for line in tenths), "the lines are in log.txt only")
+    expect(len(tenths) >= 8 and not any(line in last for line in tenths), "the lines are in log.txt only")
 
     plain = call([*quick, "--output", "plain"], folder)
     lines = plain.stdout.splitlines()
-    check(plain.returncode == 0 and "\x1b" not in plain.stdout and "\r" not in plain.stdout, "redirected: plain text")
-    check(VERSION.fullmatch(lines[0]) is not None and lines[-1].startswith("Results are in plain/"),
-          "redirected: the version first, the folder last")
-    check(sum(re.match(r" +\d+ %  t = ", line) is not None for line in lines) >= 8, "redirected: a line at each tenth")
-    check(lines == (folder / "plain/log.txt").read_text().splitlines(), "log.txt has the same lines")
+    expect(plain.returncode == 0 and "\x1b" not in plain.stdout and "\r" not in plain.stdout, "redirected: plain text")
+    expect(VERSION.fullmatch(lines[0]) is not None and lines[-1].startswith("Results are in plain/"),
+           "redirected: the version first, the folder last")
+    expect(sum(re.match(r" +\d+ %  t = ", line) is not None for line in lines) >= 8, "redirected: a line at each tenth")
+    expect(lines == (folder / "plain/log.txt").read_text().splitlines(), "log.txt has the same lines")
 
     screen, code = on_terminal([*quick, "--output", "dumb"], folder, term="dumb")
-    check(code == 0 and not any(BAR.match(row) for row in shown(screen)) and
-          any(re.match(r" +\d+ %  t = ", row) for row in screen.seen[-1]), "a terminal that cannot do it has lines")
+    expect(code == 0 and not any(BAR.match(row) for row in shown(screen)) and
+           any(re.match(r" +\d+ %  t = ", row) for row in screen.seen[-1]), "a terminal that cannot do it has lines")
 
 
 def quiet(folder):
     screen, code = on_terminal([PROGRAM, "run", str(PRM / "examples/earthworm.prm"), "--quiet", "--output", "quiet"],
                                folder)
-    check(code == 0 and not any(shown(screen)), "--quiet shows nothing")
+    expect(code == 0 and not any(shown(screen)), "--quiet shows nothing")
 
 
 def counts(screen):
@@ -162,22 +159,22 @@ def sweep(folder):
     two = on_ranks(MPIEXEC, 2)
     # mpirun gives its processes pseudo terminals even if its own output is redirected.
     done = call([*two, *command(20), "--output", "plain_sweep"], folder, variables={"TERM": "xterm"})
-    check(done.returncode == 0 and VERSION.fullmatch(done.stdout.splitlines()[0]) is not None and
-          "\x1b" not in done.stdout and "█" not in done.stdout,
-          f"a sweep on two ranks, redirected, is plain: {done.returncode} {done.stdout[:200]!r} {done.stderr[:200]!r}")
+    expect(done.returncode == 0 and VERSION.fullmatch(done.stdout.splitlines()[0]) is not None and
+           "\x1b" not in done.stdout and "█" not in done.stdout,
+           f"a sweep on two ranks, redirected, is plain: {done.returncode} {done.stdout[:200]!r} {done.stderr[:200]!r}")
     for name, ranks in (("one", []), ("two", two)):
         screen, code = on_terminal([*ranks, *command(1000), "--output", name + "_stopped"], folder,
                                    stop=(signal.SIGUSR1, lambda screen: len(set(counts(screen))) > 3))
         found = counts(screen)
-        check(code == 5 and len(set(found)) > 3 and found == sorted(found) and found[-1] < 10**6,
-              f"the bar of a sweep on {name} counts points: {code}, {found[:3]} ... {found[-3:]}")
-        check(any(LEFT.match(row) for row in shown(screen)), "it has the time left")
-        check(not any(BAR.match(row) and "mpirun: Forwarding" not in row for row in screen.seen[-1]),
-              f"no bar stays: {screen.seen[-1]}")
+        expect(code == 5 and len(set(found)) > 3 and found == sorted(found) and found[-1] < 10**6,
+               f"the bar of a sweep on {name} counts points: {code}, {found[:3]} ... {found[-3:]}")
+        expect(any(LEFT.match(row) for row in shown(screen)), "it has the time left")
+        expect(not any(BAR.match(row) and "mpirun: Forwarding" not in row for row in screen.seen[-1]),
+               f"no bar stays: {screen.seen[-1]}")
         screen, code = on_terminal([*ranks, *command(20), "--output", name], folder)
         last = screen.seen[-1]
-        check(code == 0 and VERSION.fullmatch(last[0]) is not None and f"Results are in {name}/" in last[-1] and
-              not any(BAR.match(row) for row in last), f"the version first, the folder last: {last[-1]}")
+        expect(code == 0 and VERSION.fullmatch(last[0]) is not None and f"Results are in {name}/" in last[-1] and
+               not any(BAR.match(row) for row in last), f"the version first, the folder last: {last[-1]}")
 
 
 def optimise(folder):
@@ -189,9 +186,8 @@ def optimise(folder):
     screen, code = on_terminal([PROGRAM, "optimize", str(PRM / "studies/optimize_from_rest.prm"), "--output", "optimised"],
                                folder, stop=(signal.SIGUSR1, lambda screen: len(set(seen(screen))) > 3))
     found = seen(screen)
-    check(code == 5 and len(set(found)) > 3 and found == sorted(found), f"evaluations of a start: {code}, {found}")
-    check(not any("of 1 starts" in row for row in shown(screen)), "a single start is not counted")
+    expect(code == 5 and len(set(found)) > 3 and found == sorted(found), f"evaluations of a start: {code}, {found}")
+    expect(not any("of 1 starts" in row for row in shown(screen)), "a single start is not counted")
 
 
-if __name__ == "__main__":
-    checks.run((run, quiet, optimise), (sweep,))
+checks.run((run, quiet, optimise), (sweep,))

@@ -9,20 +9,18 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-import program  # noqa: E402
+from program import call, checks, expect  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-checks = program.Checks()
-expect = checks.expect
 
 
-def call(*words, folder):
-    end = program.call(words, folder)
+def ended(*words, folder):
+    end = call(words, folder)
     return end.returncode, end.stdout + end.stderr
 
 
 def git(folder, *words):
-    code, out = call("git", "-c", "user.name=t", "-c", "user.email=t@localhost", *words, folder=folder)
+    code, out = ended("git", "-c", "user.name=t", "-c", "user.email=t@localhost", *words, folder=folder)
     expect(code == 0, f"git {words}: {out}")
 
 
@@ -31,13 +29,13 @@ def version(folder):
     script = folder / "print.cmake"
     script.write_text(f'include("{ROOT}/contrib/package/version.cmake")\ncrawler_version("{folder}" 0.1.0)\n'
                       'message(STATUS "${CRAWLER_VERSION} ${CRAWLER_NUMBERS} ${CRAWLER_REVISION}")\n')
-    code, out = call(sys.argv[1], "-P", script, folder=folder)
+    code, out = ended(sys.argv[1], "-P", script, folder=folder)
     script.unlink()
     expect(code == 0, out)
     return out.strip().splitlines()[-1].split()[1:]
 
 
-code, out = call(ROOT / "contrib/release_notes.py", "--check", folder=ROOT)
+code, out = ended(ROOT / "contrib/release_notes.py", "--check", folder=ROOT)
 expect(code == 0 and out == "", f"doc/changes.md: {out}")
 
 def main(folder):
@@ -50,7 +48,7 @@ def main(folder):
     changes.write_text(TEXT)
 
     def notes(*arguments):
-        return call(sys.executable, script, *arguments, folder=folder)
+        return ended(sys.executable, script, *arguments, folder=folder)
 
     expect(version(folder) == ["0.1.0", "0.1.0", "unknown"], "the version without git")
     git(folder, "init", "-q")

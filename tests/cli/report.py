@@ -16,7 +16,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from browser import Browser  # noqa: E402
-from program import NO_PICTURES, Checks, call, prm, sets  # noqa: E402
+from program import NO_PICTURES, call, checks, expect, prm, refused, sets  # noqa: E402
 from tables import csv_rows, json_of  # noqa: E402
 
 NASTY = "</script><script>window.broken = 1</script><img src=x onerror='window.broken = 1'>"
@@ -31,8 +31,6 @@ STRAIN = prm("Model=kinematic", "Accuracy=1e-4", "Active stress/Generator=prescr
 FOLDERS = ("run", "sweep", "checked", "tradeoff", "optimisation", "fit", "comparison")
 PYTHON = pathlib.Path(__file__).resolve().parents[2] / "contrib/python"
 STUDIES = pathlib.Path(__file__).resolve().parents[2] / "prm/studies"
-checks = Checks()
-check = checks.expect
 
 
 class Program:
@@ -49,7 +47,7 @@ class Program:
         (self.folder / f"{command}.prm").write_text(scene, encoding="utf-8")
         named = {entry.replace("__", "/").replace("_", " "): value for entry, value in entries.items()}
         result = self(command, f"{command}.prm", "--quiet", "--output", output, *sets(named))
-        check(result.returncode in (0, 4), f"{output} is made ({result.returncode}) {result.stderr.strip()}")
+        expect(result.returncode in (0, 4), f"{output} is made ({result.returncode}) {result.stderr.strip()}")
 
 
 def make_studies(program):
@@ -67,7 +65,7 @@ def make_studies(program):
                   Fit__Variables=f"{P} : 0.5 to 5; Body/Friction coefficient : 0.5 to 2")
     shutil.copy(program.folder / "fit.prm", program.folder / "same.prm")
     result = program("fit", "fit.prm", "same.prm", "--quiet", "--output", "comparison", "--set", f"Fit/Variables={P} : 0.5 to 5")
-    check(result.returncode == 0, f"a comparison is made {result.stderr}")
+    expect(result.returncode == 0, f"a comparison is made {result.stderr}")
     program.study("run", WAVE.replace("wave speed", "wave speed # <b>"), "<b>inverted", Body__Anchoring_exponent="0",
                   **{CHI.replace("/", "__").replace(" ", "_"): "0.6"})
     program.study("run", FORMULAS, "sudden", Active_stress__Expression__Active_stress="0.2*sin(2*pi*(s+t))",
@@ -79,8 +77,8 @@ def make_studies(program):
 def page_data(folder):
     """What the page knows."""
     text = (folder / "report.html").read_text(encoding="utf-8")
-    check(len(re.findall("</script", text)) == 3 and "Chart.js v" in text and NASTY not in text, f"no text ends a script of {folder.name}")
-    check(not re.search(r"(src|href)=[\"']?(https?:)?//|@import|url\(", text), f"{folder.name} needs no network")
+    expect(len(re.findall("</script", text)) == 3 and "Chart.js v" in text and NASTY not in text, f"no text ends a script of {folder.name}")
+    expect(not re.search(r"(src|href)=[\"']?(https?:)?//|@import|url\(", text), f"{folder.name} needs no network")
     return json.loads(re.search(r'id="data">(.*?)</script>', text, re.DOTALL)[1])
 
 
@@ -94,20 +92,20 @@ def test_content(program):
     """The data of the pages are those of the files."""
     for name in (*FOLDERS, "<b>inverted", "formulas"):
         result = program("report", name)
-        check(result.returncode == 0 and f"{name}/report.html" in result.stdout, f"{name} has a report {result.stderr.strip()}")
+        expect(result.returncode == 0 and f"{name}/report.html" in result.stdout, f"{name} has a report {result.stderr.strip()}")
     folder = program.folder
     data = {name: page_data(folder / name) for name in (*FOLDERS, "<b>inverted", "formulas")}
     for name in FOLDERS:
         summary = json_of(folder / name / "summary.json")
-        check(data[name]["kind"] == name.replace("checked", "sweep") and {**data[name]["summary"], **summary} == data[name]["summary"], f"the summary of the {name}")
-    check(data["tradeoff"]["summary"]["recommendations"] and data["tradeoff"]["summary"]["pareto"], "advice where the study could not call Python")
-    check(data["run"]["runs"][0]["summary"] == data["run"]["summary"] and NASTY in data["run"]["parameters"]["original"],
-          "the run and its parameter file, word for word")
+        expect(data[name]["kind"] == name.replace("checked", "sweep") and {**data[name]["summary"], **summary} == data[name]["summary"], f"the summary of the {name}")
+    expect(data["tradeoff"]["summary"]["recommendations"] and data["tradeoff"]["summary"]["pareto"], "advice where the study could not call Python")
+    expect(data["run"]["runs"][0]["summary"] == data["run"]["summary"] and NASTY in data["run"]["parameters"]["original"],
+           "the run and its parameter file, word for word")
     ground = data["run"]["runs"][0]["ground"]
-    check(np.allclose(ground["factor"], 1 + 0.5 * np.sin(6 * np.array(ground["x"])), atol=1e-4), "the ground of the run")
+    expect(np.allclose(ground["factor"], 1 + 0.5 * np.sin(6 * np.array(ground["x"])), atol=1e-4), "the ground of the run")
     entries = {one["entry"]: one for one in data["run"]["parameters"]["entries"]}
-    check(entries["Accuracy"]["value"] == "1e-3" and P not in entries and "Body/Length" not in entries and entries["Ground/Profile"]["default"] == "1",
-          "entries that differ from their defaults, as numbers or as words")
+    expect(entries["Accuracy"]["value"] == "1e-3" and P not in entries and "Body/Length" not in entries and entries["Ground/Profile"]["default"] == "1",
+           "entries that differ from their defaults, as numbers or as words")
     data["fit"]["table"], = data["fit"]["tables"]
     for name, file, columns in (("sweep", "results.csv", (P, CHI, "displacement", "errors.stress_power", "status", "reason")),
                                 ("checked", "results.csv", (CHI, P, "outcome", "displacement")),
@@ -117,9 +115,9 @@ def test_content(program):
         rows = csv_rows(folder / name / file)
         good = all(value == (None if row[key] == "" else float(row[key]) if isinstance(value, (int, float)) else row[key])
                    for key in columns for value, row in zip(column(data[name], key), rows))
-        check(good and data[name]["table"]["all_rows"] == len(rows), f"the table of the {name}")
-    check([one["title"] for one in data["sweep"]["runs"]] == ["points/5"]
-          and [one["title"] for one in data["optimisation"]["runs"]] == ["best"], "runs within studies")
+        expect(good and data[name]["table"]["all_rows"] == len(rows), f"the table of the {name}")
+    expect([one["title"] for one in data["sweep"]["runs"]] == ["points/5"]
+           and [one["title"] for one in data["optimisation"]["runs"]] == ["best"], "runs within studies")
 
 
 def test_sudden_start(program):
@@ -133,12 +131,12 @@ def test_sudden_start(program):
         values = field["step"] * np.reshape(field["values"], (-1, n))
         shown = max(map(abs, field["shown"]))
         longer = np.diff(times)[:, None] * (np.abs(values[1:]) > shown)
-        check(np.abs(values).max() > 3 * shown > 0 and longer.sum() / n < 0.03 * times[-1]
-              and np.median(np.abs(values)) > 0.05 * shown, f"{name} of a sudden start: shown to {shown} of {np.abs(values).max()}")
-    check(data["units"] == {"length": "mm", "time": "s", "force": "force", "energy": "force mm"}, f"units {data['units']}")
+        expect(np.abs(values).max() > 3 * shown > 0 and longer.sum() / n < 0.03 * times[-1]
+               and np.median(np.abs(values)) > 0.05 * shown, f"{name} of a sudden start: shown to {shown} of {np.abs(values).max()}")
+    expect(data["units"] == {"length": "mm", "time": "s", "force": "force", "energy": "force mm"}, f"units {data['units']}")
     header = (program.folder / "sudden/statistics.csv").read_text(encoding="utf-8").splitlines()[0]
-    check(result.returncode == 0 and "time [s],step size [s],displacement [mm]" in header and "[force mm]" in header
-          and re.search(r"displacement .* [+]- \S+ mm ", (program.folder / "sudden/log.txt").read_text(encoding="utf-8")), f"units of the user: {header}")
+    expect(result.returncode == 0 and "time [s],step size [s],displacement [mm]" in header and "[force mm]" in header
+           and re.search(r"displacement .* [+]- \S+ mm ", (program.folder / "sudden/log.txt").read_text(encoding="utf-8")), f"units of the user: {header}")
 
 
 def test_refused(program):
@@ -159,11 +157,11 @@ def test_refused(program):
                               ("no_json", 6, "summary.json\" is damaged"), ("no_picture", 6, "kymograph.vts\" is damaged"),
                               ("no_table", 6, "results.h5\""), ("full", 6, "cannot write \"full/report.html\"")):
         result = program("report", name)
-        checks.refused(result, words, code=code)
-        check(not result.stdout, f"{name}: {result.stdout}")
+        refused(result, words, code=code)
+        expect(not result.stdout, f"{name}: {result.stdout}")
     for arguments, words in (((), "the folder is missing"), (("run", "sweep"), "one folder is expected"),
                              (("run", "--set", "Accuracy=1"), "unknown option \"--set\""), (("run", "--", "-ts_view"), "takes no PETSc")):
-        checks.refused(program("report", *arguments), words)
+        refused(program("report", *arguments), words)
 
 
 def test_library(program):
@@ -174,10 +172,10 @@ def test_library(program):
         return call([sys.executable, "-c", "; ".join(["import pathlib, sys", f"sys.path.insert(0, {str(PYTHON)!r})", *words]), "report", "run"],
                     program.folder, variables={"CRAWLER_PROGRAM": program.path})
     own = program.folder / "own.js"
-    checks.refused(report(own), "apt install libjs-chart.js", code=69)
+    refused(report(own), "apt install libjs-chart.js", code=69)
     own.write_text("window.Chart = '</script><b>';", encoding="utf-8")
     report(own)
-    check("'<\\/script><b>'" in (program.folder / "run/report.html").read_text(encoding="utf-8"), "the library cannot end its script")
+    expect("'<\\/script><b>'" in (program.folder / "run/report.html").read_text(encoding="utf-8"), "the library cannot end its script")
     program("report", "run")
 
 
@@ -188,7 +186,7 @@ def test_unfinished(program):
     for name in ("killed run", "killed sweep"):
         (program.folder / name / "summary.json").unlink()
         result = program("report", name, "--quiet")
-        check(result.returncode == 0 and not result.stdout and page_data(program.folder / name)["summary"] is None, f"{name} has a report")
+        expect(result.returncode == 0 and not result.stdout and page_data(program.folder / name)["summary"] is None, f"{name} has a report")
 
 
 def test_large(program, browser):
@@ -211,13 +209,13 @@ def test_large(program, browser):
     result = program("report", "large")
     data = page_data(folder)
     names = {one["name"] for one in data["table"]["columns"]}
-    check(result.returncode == 0 and (folder / "report.html").stat().st_size < 1e7 and data["table"]["rows"] == n
-          and {P, CHI, "status", "reason", "displacement", "displacement_error.total"} <= names and data["table"]["left_out"],
-          f"1e5 points: {(folder / 'report.html').stat().st_size} bytes, {len(names)} columns")
+    expect(result.returncode == 0 and (folder / "report.html").stat().st_size < 1e7 and data["table"]["rows"] == n
+           and {P, CHI, "status", "reason", "displacement", "displacement_error.total"} <= names and data["table"]["left_out"],
+           f"1e5 points: {(folder / 'report.html').stat().st_size} bytes, {len(names)} columns")
     browser.open(folder / "report.html")
     drawing, pointing, tip = browser.ask(PAINTING)
-    check(drawing > 1000 > pointing and "Point" in tip and browser.ask(BLANK) == 0,
-          f"{drawing} calls draw the points, {pointing} show one of them: {tip!r}")
+    expect(drawing > 1000 > pointing and "Point" in tip and browser.ask(BLANK) == 0,
+           f"{drawing} calls draw the points, {pointing} show one of them: {tip!r}")
 
 
 # The charts of a page, and the words of a chart's tip.
@@ -268,18 +266,18 @@ def test_in_browser(browser, folder):
             browser.requests.clear()
             browser.open(folder / name / "report.html", width, 900, dark)
             way = f"{name}, {width} pixels, {'dark' if dark else 'light'}"
-            check(not browser.complaints, f"{way}: no complaints {browser.complaints}")
-            check(browser.ask("document.documentElement.scrollWidth") <= width, f"{way}: nothing is cut off")
-            check(browser.ask(BLANK) == 0 and browser.ask("CHARTS.length") > 0, f"{way}: no blank picture")
-            check((browser.ask(BRIGHTNESS) < 60) == dark, f"{way}: colours")
-            check(browser.ask("[...document.querySelectorAll('.stacks')].every(one => one.scrollWidth <= one.parentElement.clientWidth)"), f"{way}: tables of fits are whole")
-            check(browser.ask(CRAMPED) == 0, f"{way}: titles of axes have room")
-        check(browser.ask("window.broken") is None and browser.ask("document.querySelectorAll('img, h1 b').length") == 0,
-              f"{name}: texts stay texts")
-        check(all(url.startswith("file:") for url in browser.requests), f"{name}: nothing is loaded")
-        check(browser.ask("document.querySelector('h1').textContent") == name, f"{name} is the title")
+            expect(not browser.complaints, f"{way}: no complaints {browser.complaints}")
+            expect(browser.ask("document.documentElement.scrollWidth") <= width, f"{way}: nothing is cut off")
+            expect(browser.ask(BLANK) == 0 and browser.ask("CHARTS.length") > 0, f"{way}: no blank picture")
+            expect((browser.ask(BRIGHTNESS) < 60) == dark, f"{way}: colours")
+            expect(browser.ask("[...document.querySelectorAll('.stacks')].every(one => one.scrollWidth <= one.parentElement.clientWidth)"), f"{way}: tables of fits are whole")
+            expect(browser.ask(CRAMPED) == 0, f"{way}: titles of axes have room")
+        expect(browser.ask("window.broken") is None and browser.ask("document.querySelectorAll('img, h1 b').length") == 0,
+               f"{name}: texts stay texts")
+        expect(all(url.startswith("file:") for url in browser.requests), f"{name}: nothing is loaded")
+        expect(browser.ask("document.querySelector('h1').textContent") == name, f"{name} is the title")
         if name == "tradeoff":
-            check(browser.ask("(({x, y}) => x.type === 'logarithmic' && y.type === 'logarithmic')(CHARTS.find(one => one.own.label === 'map of all points').scales)"), "times and errors are logarithmic")
+            expect(browser.ask("(({x, y}) => x.type === 'logarithmic' && y.type === 'logarithmic')(CHARTS.find(one => one.own.label === 'map of all points').scales)"), "times and errors are logarithmic")
 
 
 def in_summary(summary, key):
@@ -294,28 +292,28 @@ def test_run_in_browser(browser, folder):
     browser.open(folder / "run/report.html")
     summary = json_of(folder / "run/summary.json")
     shown = browser.ask(ALL_KNOWN_NUMBERS)
-    check(len(shown) > 40 and all(in_summary(summary, key) == value for key, value in shown), f"{len(shown)} numbers are those of summary.json")
+    expect(len(shown) > 40 and all(in_summary(summary, key) == value for key, value in shown), f"{len(shown)} numbers are those of summary.json")
     text = browser.ask("document.body.innerText")
-    check("retrograde" in text and "What matters" in text and f"crawler {summary['versions']['crawler']}" in text, "gait in words, sensitivities, version")
+    expect("retrograde" in text and "What matters" in text and f"crawler {summary['versions']['crawler']}" in text, "gait in words, sensitivities, version")
     time = "document.querySelector('output').textContent"
     before = browser.ask(time)
     browser.ask("document.querySelector('input[type=range]').focus()")
     browser.key("ArrowRight")
     later = browser.ask(time)
-    check(later != before, f"a key moves the time from {before} to {later}")
+    expect(later != before, f"a key moves the time from {before} to {later}")
     browser.ask("document.querySelector('button.play').focus()")
     browser.key(" ")
     browser.wait_for(f"{time} !== {json.dumps(later)}")
-    check(browser.ask("document.querySelector('button.play').textContent") == "Pause", "the body moves")
+    expect(browser.ask("document.querySelector('button.play').textContent") == "Pause", "the body moves")
     browser.key(" ")
-    check(browser.ask("document.querySelector('button.play').textContent") == "Play", "and stops")
+    expect(browser.ask("document.querySelector('button.play').textContent") == "Play", "and stops")
     x, y, width, height = browser.ask("(() => { const r = CHARTS.find(one => one.own.label === 'kymograph').canvas.getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; })()")
     browser.ask(f"window.scrollTo(0, {y})")
     browser.mouse(x + width / 2, height / 4, click=True)
-    check("stretch" in browser.ask("TIP(CHARTS.find(one => one.own.label === 'kymograph'))"), "the kymograph has numbers")
+    expect("stretch" in browser.ask("TIP(CHARTS.find(one => one.own.label === 'kymograph'))"), "the kymograph has numbers")
     browser.open(folder / "<b>inverted/report.html")
     text = browser.ask("document.body.innerText")
-    check("inverted_inside" in text and "What to do: a property of the model" in text, "a failure comes with advice")
+    expect("inverted_inside" in text and "What to do: a property of the model" in text, "a failure comes with advice")
 
 
 def test_fit_in_browser(browser, folder):
@@ -324,16 +322,16 @@ def test_fit_in_browser(browser, folder):
     summary = json_of(folder / "fit/summary.json")
     shown = browser.ask("[...document.querySelectorAll('td data')].map(one => Number(one.value))")
     for one in summary["variables"].values():
-        check({one["value"], *one["interval_95"]} <= set(shown), f"{one} is shown")
-    check(summary["correlation"][0][1] in shown and all(one["residuals"] in shown for one in summary["starts"]), "correlation and starts")
+        expect({one["value"], *one["interval_95"]} <= set(shown), f"{one} is shown")
+    expect(summary["correlation"][0][1] in shown and all(one["residuals"] in shown for one in summary["starts"]), "correlation and starts")
     captions = browser.ask("[...document.querySelectorAll('figcaption')].map(one => one.textContent)")
-    check(any("540 measured numbers, dots" in text for text in captions) and any("a map" in text for text in captions), f"data and residuals: {captions}")
+    expect(any("540 measured numbers, dots" in text for text in captions) and any("a map" in text for text in captions), f"data and residuals: {captions}")
     browser.open(folder / "comparison/report.html")
     shown = browser.ask("[...document.querySelectorAll('td data')].map(one => Number(one.value))")
     for row in json_of(folder / "comparison/summary.json")["comparison"]:
         fit = json_of(folder / "comparison" / row["folder"] / "summary.json")
-        check({row["aic"], row["bic_less_least"], fit["variables"][P]["value"]} <= set(shown), f"{row} is shown")
-    check(browser.ask(BLANK) == 0 and not browser.complaints, f"bars of the criteria {browser.complaints}")
+        expect({row["aic"], row["bic_less_least"], fit["variables"][P]["value"]} <= set(shown), f"{row} is shown")
+    expect(browser.ask(BLANK) == 0 and not browser.complaints, f"bars of the criteria {browser.complaints}")
 
 
 def test_map_in_browser(browser, folder):
@@ -344,26 +342,26 @@ def test_map_in_browser(browser, folder):
     x, y = browser.ask(f"(() => {{ const c = {chart}, r = c.canvas.getBoundingClientRect(); return [r.x + c.x(0.3), r.y + c.y(2)]; }})()")
     browser.mouse(x, y)
     tip = browser.ask(f"TIP({chart})")
-    check("Point 5" in tip and f"displacement: {float(rows[5]['displacement']):.3f}"[:18] in tip, f"the tip of a point: {tip!r}")
+    expect("Point 5" in tip and f"displacement: {float(rows[5]['displacement']):.3f}"[:18] in tip, f"the tip of a point: {tip!r}")
     browser.mouse(x, y, click=True)
     panel = "document.querySelector('.details')"
-    check("Kymograph" in browser.ask(f"{panel}.innerText") and browser.ask(BLANK) == 0, "a stored point shows its body")
+    expect("Kymograph" in browser.ask(f"{panel}.innerText") and browser.ask(BLANK) == 0, "a stored point shows its body")
     shown = browser.ask(ALL_KNOWN_NUMBERS)
     stored = json_of(folder / "sweep/points/5/summary.json")
-    check(shown and all(in_summary(stored, key) == value for key, value in shown), "its numbers are those of its summary.json")
+    expect(shown and all(in_summary(stored, key) == value for key, value in shown), "its numbers are those of its summary.json")
     browser.ask(f"{chart}.canvas.focus()")
     browser.key("ArrowRight")
     text = browser.ask(f"{panel}.innerText")
-    check("Point 6" in text and f"--set '{P}=2'" in text and f"--set '{CHI}=0.6'" in text and "--output points/6" in text,
-          "a key goes to the next point, which says how to compute it")
+    expect("Point 6" in text and f"--set '{P}=2'" in text and f"--set '{CHI}=0.6'" in text and "--output points/6" in text,
+           "a key goes to the next point, which says how to compute it")
     numbers = dict(browser.ask(ALL_KNOWN_NUMBERS))
-    check(numbers["displacement"] == float(rows[6]["displacement"]), "and has its numbers")
+    expect(numbers["displacement"] == float(rows[6]["displacement"]), "and has its numbers")
     browser.key("ArrowDown")
-    check("Point 2" in browser.ask(f"{panel}.innerText") and "inverted" in browser.ask(f"{panel}.innerText"), "a point that inverted says so")
+    expect("Point 2" in browser.ask(f"{panel}.innerText") and "inverted" in browser.ask(f"{panel}.innerText"), "a point that inverted says so")
     browser.ask("(() => { const up = document.querySelectorAll('select')[1]; up.value = 'displacement'; up.dispatchEvent(new Event('change')); })()")
     browser.ask(f"(() => {{ const colour = document.querySelectorAll('select')[2]; colour.value = '{P}'; colour.dispatchEvent(new Event('change')); }})()")
-    check("lines" in browser.ask("document.querySelector('figcaption').textContent"), "other columns make lines")
-    check(not browser.complaints, f"no complaints {browser.complaints}")
+    expect("lines" in browser.ask("document.querySelector('figcaption').textContent"), "other columns make lines")
+    expect(not browser.complaints, f"no complaints {browser.complaints}")
 
 
 def test_point_command(program, browser):
@@ -373,9 +371,9 @@ def test_point_command(program, browser):
     command = browser.ask("pointCommand({axes: ['%s', '%s'], index: new Column(page.table.columns.find(one => one.name === 'index')),"
                           " columns: columnsOf(page.table.columns)}, 1)" % (P, CHI))
     result = call(["bash", "-c", command.replace("crawler run", f"'{program.path}' run")], program.folder)
-    check(result.returncode == 0 and (folder / "points/1/summary.json").is_file(), f"{command} {result.stderr}")
+    expect(result.returncode == 0 and (folder / "points/1/summary.json").is_file(), f"{command} {result.stderr}")
     program("report", "sweep")
-    check([one["title"] for one in page_data(folder)["runs"]] == ["points/1", "points/5"], "the next report has this point")
+    expect([one["title"] for one in page_data(folder)["runs"]] == ["points/1", "points/5"], "the next report has this point")
 
 
 def main(folder):
@@ -396,5 +394,4 @@ def main(folder):
         test_large(program, browser)
 
 
-if __name__ == "__main__":
-    checks.run((main,))
+checks.run((main,))

@@ -6,17 +6,14 @@
 
 Each kind of run is killed once; tests/long/run_kills.py kills them at many random places.
 """
-import json
 import pathlib
 import random
 import signal
 import subprocess
 import sys
 
-import numpy as np
-
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, Paused, environment  # noqa: E402
+from program import Paused, checks, environment, expect  # noqa: E402
 from run_scenes import SCENES, STATES, Scene  # noqa: E402
 
 CRAWLER, TWO_RANKS = sys.argv[1], [sys.argv[2], "--oversubscribe", "-n", "2"]
@@ -31,8 +28,6 @@ PLACES["lanes"] = (["write:original.prm:KILL", "write:parameters.prm:KILL",  # f
                     "write:restart.dat.new:KILL", "write:restart.dat:KILL", "write:000006.vtu:KILL",
                     "write:kymograph.vts:KILL", "write:summary.json:KILL"], 9)
 NEVER = ["--set", "Time/Checkpoint interval=1e6"]
-checks = Checks()
-expect = checks.expect
 
 
 def killed(scene):
@@ -137,7 +132,7 @@ def folders(scene):
 
 def one_rank(place):
     """All kinds of runs."""
-    scenes = {one: Scene(CRAWLER, place / one.replace(" ", "_"), one, checks) for one in SCENES}
+    scenes = {one: Scene(CRAWLER, place / one.replace(" ", "_"), one) for one in SCENES}
     for scene in scenes.values():
         killed(scene)
     signals_in_pilots(scenes["adaptive"])
@@ -147,8 +142,8 @@ def one_rank(place):
 
 def two_ranks(place):
     """One of them writes what both compute, or they share the cells. One that is killed ends the other, too."""
-    lanes = Scene(CRAWLER, place / "two_lanes", "lanes", checks)
-    shared = Scene(CRAWLER, place / "shared", "petsc", checks, ["Discretization/Share cells=yes"], TWO_RANKS)
+    lanes = Scene(CRAWLER, place / "two_lanes", "lanes")
+    shared = Scene(CRAWLER, place / "shared", "petsc", ["Discretization/Share cells=yes"], TWO_RANKS)
     lanes.before = TWO_RANKS
     for scene, place_of_signal in ((lanes, "step:150:USR1"), (shared, "write:000003.vtu:USR1:0")):
         scene.expect("two", STATES, 5, "signal", stop_at=place_of_signal)
@@ -167,5 +162,4 @@ def two_ranks(place):
            f"SIGUSR1 to mpirun: exit code {process.returncode}, {errors[:500]!r}")
 
 
-if __name__ == "__main__":
-    checks.run((one_rank,), (two_ranks,))
+checks.run((one_rank,), (two_ranks,))

@@ -9,11 +9,9 @@ import pathlib
 import re
 import sys
 
-import h5py
-
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, prm, sets  # noqa: E402
-from tables import h5_columns, json_of, without_columns  # noqa: E402
+from program import call, checks, expect, prm, refused, sets  # noqa: E402
+from tables import answer_in, h5_columns, json_of  # noqa: E402
 
 CRAWLER = pathlib.Path(sys.argv[1]).resolve()
 BASE = prm("Accuracy=1e-4", "Active stress/Optimal wave/Choose wave by=wave speed", "Output/Number of snapshots=5")
@@ -26,8 +24,6 @@ SETS = ("baseline", "avx2", "avx512")
 # What may differ: seconds, moments, the folder's name; in tables, columns and rows of them.
 TIMES = re.compile(rb'(?i)("?[\w. ]*(?:seconds|duration|processor|wall)[\w. ]*"?\s*[:=,]\s*)[-+\d.e]+|\d+(?:\.\d+)? ?(?:s|ms|us|min|h)\b'
                    rb'|\d{4}-\d\d-\d\d[T ][\d:.]+Z?|[\d.]+ points/s|(?<=[_/])(?:first|second)\b')
-checks = Checks()
-check = checks.expect
 
 
 def computed(folder, command, entries, output, instruction_set=None):
@@ -35,42 +31,16 @@ def computed(folder, command, entries, output, instruction_set=None):
                 variables={} if instruction_set is None else {"CRAWLER_INSTRUCTION_SET": instruction_set})
 
 
-def without_seconds(value):
-    """JSON without times and what names the folder."""
-    if isinstance(value, dict):
-        return {key: without_seconds(v) for key, v in value.items() if not re.search("second|command_line|time_per|rate", key)}
-    return [without_seconds(v) for v in value] if isinstance(value, list) else value
-
-
-def content(path):
-    """What of a file must be the same."""
-    if path.suffix == ".h5":
-        found = {}
-
-        def note(name, item):
-            title = bytes(item.attrs["name"]).decode() if "name" in item.attrs else name
-            if isinstance(item, h5py.Dataset) and "second" not in title and "checksum" not in name:
-                found[name] = item[()].tobytes() if item.dtype.kind != "O" else repr(item[()])
-        with h5py.File(path, "r") as file:
-            file.visititems(note)
-        return found
-    if path.suffix == ".json":
-        return without_seconds(json_of(path))
-    if path.suffix == ".csv":
-        return without_columns(path.read_text(encoding="utf-8"), "seconds")
-    return TIMES.sub(b"TIME", path.read_bytes())
-
-
 def files(folder):
-    return {str(path.relative_to(folder)): content(path) for path in sorted(folder.rglob("*")) if path.is_file()}
+    return {name: TIMES.sub(b"TIME", content) if isinstance(content, bytes) else content for name, content in answer_in(folder).items()}
 
 
 def same_files(folder, command, entries):
     results = [computed(folder, command, entries, f"{command}_{name}") for name in ("first", "second")]
     one, two = (files(folder / f"{command}_{name}") for name in ("first", "second"))
     differ = sorted(name for name in one.keys() | two.keys() if one.get(name) != two.get(name))
-    check(all(r.returncode == 0 for r in results) and len(one) > 3 and not differ,
-          f"{command}: {len(one)} files twice the same {differ or ''} {results[0].stderr.strip()}")
+    expect(all(r.returncode == 0 for r in results) and len(one) > 3 and not differ,
+           f"{command}: {len(one)} files twice the same {differ or ''} {results[0].stderr.strip()}")
 
 
 def same_answer(folder):
@@ -85,15 +55,15 @@ def same_answer(folder):
         sweep = computed(folder, "sweep", STUDIES["sweep"], f"sweep_{name}", name)
         rows = h5_columns(folder / f"sweep_{name}" / "results.h5", "results")
         answers[name] = (summary["displacement"], summary["displacement_error"]["total"], rows)
-        check(result.returncode == sweep.returncode == 0, f"{name} is used {result.stderr.strip()}{sweep.stderr.strip()}")
-    check("baseline" in answers, "baseline is there")
+        expect(result.returncode == sweep.returncode == 0, f"{name} is used {result.stderr.strip()}{sweep.stderr.strip()}")
+    expect("baseline" in answers, "baseline is there")
     base = answers["baseline"]
     for name, (value, bound, rows) in answers.items():
         key, error = "displacement", "displacement_error.total"
         apart = abs(value - base[0])
         largest = max(abs(rows[key] - base[2][key]) / (rows[error] + base[2][error]))
-        check(apart <= bound + base[1] and largest <= 1,
-              f"{name}: run differs from baseline by {apart:.1e} (bound {bound:.1e}), a sweep by {largest:.1e} of the bounds")
+        expect(apart <= bound + base[1] and largest <= 1,
+               f"{name}: run differs from baseline by {apart:.1e} (bound {bound:.1e}), a sweep by {largest:.1e} of the bounds")
 
 
 def main(folder):
@@ -102,9 +72,8 @@ def main(folder):
         same_files(folder, command, entries)
     same_answer(folder)
     result = computed(folder, "run", [], "none", "sse9")
-    checks.refused(result, 'CRAWLER_INSTRUCTION_SET is "sse9"', "baseline")
-    check(not (folder / "none").exists(), "an unknown instruction set has written files")
+    refused(result, 'CRAWLER_INSTRUCTION_SET is "sse9"', "baseline")
+    expect(not (folder / "none").exists(), "an unknown instruction set has written files")
 
 
-if __name__ == "__main__":
-    checks.run((main,))
+checks.run((main,))

@@ -12,7 +12,7 @@ import matplotlib.image
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, prm, sets  # noqa: E402
+from program import call, checks, expect, prm, refused, sets  # noqa: E402
 from tables import csv_rows, json_of  # noqa: E402
 
 PLOT = pathlib.Path(__file__).resolve().parents[2] / "contrib/python/crawler/plot" / "sensitivity.py"
@@ -24,8 +24,6 @@ ROBOT = prm("Active stress/Generator=segments", "Active stress/Segments/Number o
 STRAIN = prm("Model=auto", "Accuracy=1e-6", "Active stress/Generator=prescribed strain",
              "Active stress/Prescribed strain/Given by=wave", "Output/Number of snapshots=0")
 K, P, CHI = "Body/Elastic modulus", "Body/Anchoring exponent", "Active stress/Optimal wave/Perturbation parameter"
-checks = Checks()
-expect = checks.expect
 
 
 def crawler(folder, text, *settings, stop_at=None):
@@ -126,7 +124,7 @@ def main(folder):
     expect(np.ptp(picture[..., :3]) > 0.5 and picture.shape[1] > 800, "sensitivity.png is blank")
     _, summary = crawler(folder, WAVE)
     expect(summary["sensitivities"] is None, "sensitivities that nobody wants")
-    checks.refused(call([sys.executable, PLOT, folder]), "Output/Sensitivities")
+    refused(call([sys.executable, PLOT, folder]), "Output/Sensitivities")
 
     phase = "Active stress/Segments/Phase lag"
     _, summary = crawler(folder, ROBOT, "Time/End time=1.3", "Output/Sensitivities=" + phase)
@@ -136,11 +134,11 @@ def main(folder):
     answers_without_adjoint(folder)
     for wrong, words in ((K, "colon"), (K + " : x", "positive number"), ("Accuracy : 1", "are expected"),
                          ("Active stress/Optimal wave/Cosine coefficients : 5 %", "without %")):
-        checks.refused(crawler(folder, WAVE, "Output/Uncertainty=" + wrong)[0], words)
+        refused(crawler(folder, WAVE, "Output/Uncertainty=" + wrong)[0], words)
     for wrong, words in (("Body/Elastic moduls", "Body/Elastic modulus"), ("Accuracy", "are expected"),
                          ("Active stress/Segments/Number of segments", "are expected")):
-        checks.refused(crawler(folder, WAVE, "Output/Sensitivities=" + wrong)[0], words)
-    checks.refused(crawler(folder, WAVE, "Model=kinematic", "Output/Sensitivities=all")[0], "nonlinear")
+        refused(crawler(folder, WAVE, "Output/Sensitivities=" + wrong)[0], words)
+    refused(crawler(folder, WAVE, "Model=kinematic", "Output/Sensitivities=all")[0], "nonlinear")
     with_a_given_strain(folder)
     in_sweeps(folder)
 
@@ -167,5 +165,4 @@ def in_sweeps(folder):
                f"uncertainty in the sweep: {row['uncertainty.displacement']}")
 
 
-if __name__ == "__main__":
-    checks.run((main,))
+checks.run((main,))

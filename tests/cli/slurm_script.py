@@ -9,12 +9,10 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call  # noqa: E402
+from program import call, checks, expect  # noqa: E402
 from tables import json_of  # noqa: E402
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "contrib" / "slurm" / "sweep.sbatch"
-checks = Checks()
-expect = checks.expect
 
 # Runs the program alone, or plays one that ends with CODE after it has made the rows that ROWS says. The table gets the
 # time of a day of its own with each of them: a table without a new row is one whose time is the same.
@@ -134,5 +132,4 @@ def test_program(folder):
     expect(code == 2 and not requeued, f"a bad parameter: {code}, not again {words}")
 
 
-if __name__ == "__main__":
-    checks.run((test_usage, test_codes, test_crashes, test_program))
+checks.run((test_usage, test_codes, test_crashes, test_program))

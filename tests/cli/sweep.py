@@ -14,18 +14,15 @@ import signal
 import subprocess
 import sys
 
-import h5py
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, Paused, call, contents, environment, on_ranks, prm, ranks_that_stop  # noqa: E402
+from program import Paused, call, checks, contents, environment, expect, on_ranks, prm, ranks_that_stop, refused, skip  # noqa: E402
 from tables import csv_rows, h5_columns, json_of, number, same_as_csv, same_columns  # noqa: E402
 
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
 BASE = prm("Accuracy=1e-4", "Active stress/Optimal wave/Choose wave by=wave speed")
 PROGRAM, MPIRUN = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
-checks = Checks()
-expect = checks.expect
 
 
 def write(folder, axes, more="", name="sweep.prm"):
@@ -148,7 +145,7 @@ def test_places_of_files(folder):
         expect(result.returncode == 0 and same_columns(rows, table(study / "from_here"))
                and set(rows["status"]) == {"finished"} and (place / "from_here" / "points" / "3" / "summary.json").exists(),
                f"started in {place.name}: {result.returncode} {result.stderr}")
-    checks.refused(sweep(folder, "from_here", "--resume", file="a_study/sweep.prm"), "Number of snapshots")
+    refused(sweep(folder, "from_here", "--resume", file="a_study/sweep.prm"), "Number of snapshots")
     shutil.copy(study / "values.csv", folder / "other.csv")
     result = sweep(folder, "with_set", "--set", f"Sweep/Axes={P} : column(other.csv, p)", "--set", "Sweep/Keep fields=",
                    file="a_study/sweep.prm")
@@ -204,10 +201,10 @@ def test_time_limits(folder):
            f"--resume computes the rest {rest.stderr}")
 
 
-def refused(folder, output, words, what):
+def cannot_resume(folder, output, words, what):
     """--resume is refused with one sentence that has these words, and the table stays as it is."""
     before = (folder / output / "results.h5").read_bytes()
-    checks.refused(sweep(folder, output, "--resume"), *words)
+    refused(sweep(folder, output, "--resume"), *words)
     expect((folder / output / "results.h5").read_bytes() == before, f"{what}: another table")
 
 
@@ -223,9 +220,9 @@ def test_changed_inputs(folder):
     (folder / "values.csv").write_text("remark,p,chi\n\"a, b\",2.0,0.1\nc,3,0.20\n", encoding="utf-8")
     resumes("axes", "a CSV file with the same values")
     (folder / "values.csv").write_text("p,chi\n2,0.1\n3.5,0.2\n", encoding="utf-8")
-    refused(folder, "axes", (f'{P} of point 1 was "3" and is "3.5"',), "a changed value of a CSV file")
+    cannot_resume(folder, "axes", (f'{P} of point 1 was "3" and is "3.5"',), "a changed value of a CSV file")
     (folder / "values.csv").write_text("p,chi\n2,0.1\n3,0.2\n4,0.2\n", encoding="utf-8")
-    refused(folder, "axes", ("number of points was 2 and is 3",), "another number of values")
+    cannot_resume(folder, "axes", ("number of points was 2 and is 3",), "another number of values")
 
     def scene(name, modulus, more=""):
         (folder / name).write_text(f"{more}\nsubsection Body\n set Elastic modulus = {modulus}\nend\n", encoding="utf-8")
@@ -237,7 +234,7 @@ def test_changed_inputs(folder):
     scene("soft.prm", 5, "# a remark")
     resumes("scenes", "a scene file with another comment")
     scene("stiff.prm", 11)
-    refused(folder, "scenes", ('Body/Elastic modulus in stiff.prm was "10" and is "11"',), "a changed scene file")
+    cannot_resume(folder, "scenes", ('Body/Elastic modulus in stiff.prm was "10" and is "11"',), "a changed scene file")
 
 
 def test_killed_at_files(folder):
@@ -255,7 +252,7 @@ def test_killed_at_files(folder):
         expect(killed.returncode == -signal.SIGKILL and names >= left | {"study.lock"} and place not in names,
                f"killed before {place} has its name: {killed.returncode}, {names}")
         if place in ("original.prm", "results.csv"):
-            checks.refused(sweep(folder, output), "--resume continues")
+            refused(sweep(folder, output), "--resume continues")
         result = sweep(folder, output, "--resume")
         expect(result.returncode == 0 and same_columns(reference, table(output)) and (output / "results.csv").is_file()
                and json_of(output / "summary.json")["status"] == "finished" and not list(output.glob("*.part"))
@@ -288,7 +285,7 @@ def test_two_at_once(folder):
         return process
 
     with Paused(command, "write:summary.json:STOP", folder) as first:
-        checks.refused(call(command, folder), "a run or study is writing to")
+        refused(call(command, folder), "a run or study is writing to")
         with waits() as second:  # noted once; then it ends at once
             while second.poll() is None:
                 second.terminate()
@@ -392,7 +389,7 @@ def test_kills(folder):
     again = sweep(folder, "begun", "--resume")
     expect(again.returncode == 0 and same_columns(before, table(folder / "begun"), but=None),
            "a sweep that is finished stays as it is")
-    checks.refused(sweep(folder, "begun", "--resume", "--set", "Body/Length=2"), 'Body/Length was "1" and is "2"')
+    refused(sweep(folder, "begun", "--resume", "--set", "Body/Length=2"), 'Body/Length was "1" and is "2"')
 
 
 RUNS = ("", "position ", "stretch ", "refined ")
@@ -466,7 +463,7 @@ def test_full_disk(folder):
     disk = folder / "disk"
     disk.mkdir()
     if call(["mount", "-t", "tmpfs", "-o", "size=300k", "tmpfs", disk]).returncode != 0:
-        checks.skip("a full disk: only root can make a small one")
+        skip("a full disk: only root can make a small one")
         return
     try:
         full = sweep(folder, "disk/full")
@@ -527,11 +524,10 @@ def test_bad_input(folder):
     for axes, words in cases.items():
         write(folder, axes)
         result = sweep(folder, "bad")
-        checks.refused(result, *words, "Sweep/Axes")
+        refused(result, *words, "Sweep/Axes")
         expect(result.stderr.strip().isprintable() and not (folder / "bad").exists(), f"\"{axes}\": {result.stderr!r}")
 
 
-if __name__ == "__main__":
-    checks.run((test_bad_input, test_places_of_files, test_rows_that_fail, test_time_limits,
-                test_changed_inputs, test_killed_at_files, test_two_at_once, test_crashes, test_full_disk, test_cross_check,
-                test_what_cannot_be_checked), (test_grid, test_designs, test_signals, test_kills))
+checks.run((test_bad_input, test_places_of_files, test_rows_that_fail, test_time_limits,
+            test_changed_inputs, test_killed_at_files, test_two_at_once, test_crashes, test_full_disk, test_cross_check,
+            test_what_cannot_be_checked), (test_grid, test_designs, test_signals, test_kills))

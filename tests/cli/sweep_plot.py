@@ -17,7 +17,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from pictures import SCRIPTS, draw, words  # noqa: E402
-from program import Checks, call, prm  # noqa: E402
+from program import call, checks, expect, prm, refused  # noqa: E402
 
 SCRIPT = SCRIPTS / "sweep.py"
 CHI, P, K = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent", "Body/Elastic modulus"
@@ -38,8 +38,6 @@ SWEEPS = {
     "failed": (f"{P} : 0, 0.5; {CHI} : 0.1, 0.3, 0.6", "", 1e-2),
     "unfinished": (f"{P} : linspace(2, 4, 5); {CHI} : linspace(0.05, 0.4, 6)", "", 1e-2),
 }
-checks = Checks()
-check = checks.expect
 
 
 def drawn(folder, name, *arguments, alone=False):
@@ -56,19 +54,19 @@ def expect_picture(folder, name, wanted, *arguments, alone=False):
     result = drawn(folder, name, *arguments, alone=alone)
     said = " ".join([name, *arguments])
     if result.returncode != 0:
-        check(False, f"{said}: {result.returncode} {result.stderr.strip()}")
+        expect(False, f"{said}: {result.returncode} {result.stderr.strip()}")
         return []
     image = matplotlib.image.imread(folder / name / "results.png")[:, :, :3]
     texts = words(folder / name / "results.svg")
     missing = [word for word in wanted if not any(word in text for text in texts)]
-    check(result.stderr == "" and min(image.shape[:2]) > 300 and image.std() > 0.02 and not missing,
-          f"{said}: {image.shape[1]} x {image.shape[0]} {result.stderr.strip()} {'without ' + str(missing) if missing else ''}")
+    expect(result.stderr == "" and min(image.shape[:2]) > 300 and image.std() > 0.02 and not missing,
+           f"{said}: {image.shape[1]} x {image.shape[0]} {result.stderr.strip()} {'without ' + str(missing) if missing else ''}")
     return texts
 
 
 def test_pictures(folder):
     texts = expect_picture(folder, "line", ["Perturbation parameter", "displacement $D$ [length]"], alone=True)
-    check("Anchoring exponent" not in texts, "what is no axis is not named")
+    expect("Anchoring exponent" not in texts, "what is no axis is not named")
     expect_picture(folder, "grid", ["Perturbation parameter", "Anchoring exponent", "displacement $D$ [length]"])
     expect_picture(folder, "grid", ["Anchoring exponent = 0", "Anchoring exponent = 2"], "--lines")
     expect_picture(folder, "grid", ["Perturbation parameter", "Anchoring exponent"], "--x", P)
@@ -97,7 +95,7 @@ def test_pictures(folder):
     texts = expect_picture(folder, "unfinished", ["not computed yet"])
     with h5py.File(folder / "unfinished" / "results.h5", "r") as file:
         missing = np.count_nonzero(file["results/status"][:] == b"")
-    check(f"not computed yet: {missing}" in texts and missing == 19, f"{missing} points that are missing are counted")
+    expect(f"not computed yet: {missing}" in texts and missing == 19, f"{missing} points that are missing are counted")
 
 
 def test_titles(folder):
@@ -108,30 +106,30 @@ def test_titles(folder):
         places.setdefault(float(y), []).append((float(x), len(words_)))
     apart = [right[0] - left[0] > 4.5 * left[1]  # a letter is about 4.5 pt wide
              for row in places.values() for left, right in zip(sorted(row), sorted(row)[1:])]
-    check(len(places) == 4 and len(apart) == 12 and all(apart), f"titles of 8 maps lie side by side ({len(places)} rows, {len(apart)} gaps)")
+    expect(len(places) == 4 and len(apart) == 12 and all(apart), f"titles of 8 maps lie side by side ({len(places)} rows, {len(apart)} gaps)")
 
 
 def test_fit(folder):
     """The displacement of small waves grows as chi^2; one that is a power exactly comes out exactly."""
     result = drawn(folder, "log", "--fit", "--where", "modulus=1")
     match = re.search(r"displacement = (\S+) \* \(.*\)\^(\S+)", result.stdout)
-    check(match and abs(float(match[2]) - 2) < 0.01 and abs(float(match[1]) - 0.5) < 0.02,
-          f"displacement = chi^2/2: {result.stdout.splitlines()[0]}")
+    expect(match and abs(float(match[2]) - 2) < 0.01 and abs(float(match[1]) - 0.5) < 0.02,
+           f"displacement = chi^2/2: {result.stdout.splitlines()[0]}")
     shutil.copytree(folder / "log", folder / "power")
     with h5py.File(folder / "power" / "results.h5", "r+") as file:
         group = file["results"]
         group["displacement"][:] = -3 * group[CHI.replace("/", ".")][:] ** -1.5
     result = drawn(folder, "power", "--fit", "--where", "modulus=4")
     lines = result.stdout.splitlines()
-    check("displacement = -3 * " in result.stdout and "^-1.500000" in result.stdout, f"-3 x^-1.5: {lines[0]}")
+    expect("displacement = -3 * " in result.stdout and "^-1.500000" in result.stdout, f"-3 x^-1.5: {lines[0]}")
     texts = expect_picture(folder, "grid", ["Anchoring exponent = 0; -0.", "Anchoring exponent = 1; no power law",
                                             "Anchoring exponent = 2; 0."], "--fit", "--lines", "--value", "gait.speed")
     lines = drawn(folder, "grid", "--fit", "--lines", "--value", "gait.speed").stdout.splitlines()
-    check(texts and [line.rpartition(" at ")[2] for line in lines[:2]] == [f"{P} = 0", f"{P} = 2"] and
-          lines[2].startswith("drawn without a fit") and lines[2].endswith(f": 1 of 3 lines ({P} = 1)"),
-          f"p = 1 does not move: {lines[2]}")
+    expect(texts and [line.rpartition(" at ")[2] for line in lines[:2]] == [f"{P} = 0", f"{P} = 2"] and
+           lines[2].startswith("drawn without a fit") and lines[2].endswith(f": 1 of 3 lines ({P} = 1)"),
+           f"p = 1 does not move: {lines[2]}")
     lines = drawn(folder, "three", "--fit").stdout.splitlines()
-    check(lines[3].endswith(f" at {P} = 3, {K} = 4"), f"small pictures are named: {lines[3]}")
+    expect(lines[3].endswith(f" at {P} = 3, {K} = 4"), f"small pictures are named: {lines[3]}")
 
 
 def test_bad_input(folder):
@@ -160,8 +158,8 @@ def test_bad_input(folder):
              (("line", "--value", "status"), "two axes")]
     for arguments, word in cases:
         result = drawn(folder, *arguments, alone=arguments[0] == "nowhere" or "no/picture.png" in arguments)
-        checks.refused(result, word, code=6 if "no/picture.png" in arguments else 2)
-        check("wrote" not in result.stdout, f"{' '.join(arguments)}: {result.stdout}")
+        refused(result, word, code=6 if "no/picture.png" in arguments else 2)
+        expect("wrote" not in result.stdout, f"{' '.join(arguments)}: {result.stdout}")
 
 
 def test_without_matplotlib(folder):
@@ -171,8 +169,8 @@ def test_without_matplotlib(folder):
     for script in sorted(set(SCRIPT.parent.glob("*.py")) - {SCRIPT.parent / "plotting.py"}):
         arguments = ["grid", "table.csv"] if script.name == "scaling.py" else ["grid"]
         result = call([sys.executable, script, *arguments], folder, variables={"PYTHONPATH": str(folder / "blind")})
-        checks.refused(result, "apt install python3-", code=69)
-        check(os.access(script, os.X_OK), f"{script.name} cannot be called")
+        refused(result, "apt install python3-", code=69)
+        expect(os.access(script, os.X_OK), f"{script.name} cannot be called")
 
 
 def test_columns(folder, program):
@@ -185,9 +183,9 @@ def test_columns(folder, program):
                  for data in file["results"].values() if data.attrs["description"] != b"axis of the sweep"}
         ascii_only = all(data.id.get_type().get_cset() == h5py.h5t.CSET_ASCII for data in file["results"].values()
                          if data.dtype.kind == "S")
-    check(ascii_only, "texts have the label that Octave can read")
+    expect(ascii_only, "texts have the label that Octave can read")
     wrong = sorted(name for name in told.keys() | found.keys() if told.get(name) != found.get(name))
-    check(not wrong and len(found) > 50, f"{len(found)} columns are listed by the program with their units {wrong or ''}")
+    expect(not wrong and len(found) > 50, f"{len(found)} columns are listed by the program with their units {wrong or ''}")
 
 
 def main(folder):
@@ -197,7 +195,7 @@ def main(folder):
     for sweep, (axes, more, accuracy) in SWEEPS.items():
         (folder / f"{sweep}.prm").write_text(BASE.format(axes=axes, more=more, accuracy=accuracy), encoding="utf-8")
         result = call([program, "sweep", f"{sweep}.prm", "--output", sweep], folder)
-        check(result.returncode == 0, f"sweep {sweep}: {result.returncode} {result.stderr}")
+        expect(result.returncode == 0, f"sweep {sweep}: {result.returncode} {result.stderr}")
     with h5py.File(folder / "unfinished" / "results.h5", "r+") as file:  # as if only the first points were computed
         file["results/status"][11:] = b""
         file["results/displacement"][11:] = np.nan
@@ -208,5 +206,4 @@ def main(folder):
     test_columns(folder, program)
 
 
-if __name__ == "__main__":
-    checks.run((main,))
+checks.run((main,))

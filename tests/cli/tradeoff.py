@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import NO_PICTURES, Checks, call, on_ranks, prm, ranks_that_stop, sets  # noqa: E402
+from program import NO_PICTURES, call, checks, expect, on_ranks, prm, ranks_that_stop, refused, sets  # noqa: E402
 from tables import csv_rows, h5_columns, json_of, number, same_as_csv  # noqa: E402
 
 BODY = prm("Active stress/Optimal wave/Perturbation parameter=0.4",
@@ -27,8 +27,6 @@ KEY = ("model", "formulation", "mesh", "engine", "integrator", "degree", "cells"
 DETERMINISTIC = ("status", "reason", "displacement", "error", "shown error", "below bar", "steps")
 REFERENCE = 9.0072529800e-2  # doc/theory.md
 PROGRAM, MPIRUN = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
-checks = Checks()
-check = checks.expect
 
 
 def study(output, *more, ranks=1, stop_at=None, picture=False):
@@ -58,30 +56,30 @@ def tried(summary):
 
 def check_rows(rows, summary):
     """Every setting is one row, with cost and error or a reason."""
-    check(len(answers(rows)) == len(rows) == tried(summary) == summary["points"], f"{len(rows)} different settings")
-    check(len({row["index"] for row in rows}) == len(rows), "each with a number of its own")
+    expect(len(answers(rows)) == len(rows) == tried(summary) == summary["points"], f"{len(rows)} different settings")
+    expect(len({row["index"] for row in rows}) == len(rows), "each with a number of its own")
     reference = summary["reference"]
-    check(abs(reference["displacement"] - REFERENCE) < 1e-11 and reference["relative_bar"] < 1e-10,
-          f"reference {reference}")
+    expect(abs(reference["displacement"] - REFERENCE) < 1e-11 and reference["relative_bar"] < 1e-10,
+           f"reference {reference}")
     finished = [row for row in rows if row["status"] == "finished"]
-    check(all(math.isclose(number(row["error"]), abs(number(row["displacement"]) - reference["displacement"])
-                           / reference["size"], rel_tol=1e-9, abs_tol=1e-16) for row in finished),
-          "errors are distances to the reference")
-    check(all(number(row["shown error"]) == max(number(row["error"]), reference["relative_bar"]) and
-              (row["below bar"] == "true") == (number(row["error"]) < reference["relative_bar"]) for row in finished),
-          "errors are shown at the bar or above")
-    check(all(number(row["seconds"]) > 0 and number(row["memory"]) >= (row["model"] == "nonlinear")
-              and number(row["repetitions"]) >= 1 and number(row["spread"]) >= 0 for row in finished), "all that finished have a cost")
+    expect(all(math.isclose(number(row["error"]), abs(number(row["displacement"]) - reference["displacement"])
+                            / reference["size"], rel_tol=1e-9, abs_tol=1e-16) for row in finished),
+           "errors are distances to the reference")
+    expect(all(number(row["shown error"]) == max(number(row["error"]), reference["relative_bar"]) and
+               (row["below bar"] == "true") == (number(row["error"]) < reference["relative_bar"]) for row in finished),
+           "errors are shown at the bar or above")
+    expect(all(number(row["seconds"]) > 0 and number(row["memory"]) >= (row["model"] == "nonlinear")
+               and number(row["repetitions"]) >= 1 and number(row["spread"]) >= 0 for row in finished), "all that finished have a cost")
     gaps = [row for row in rows if row["status"] != "finished"]
-    check(all(row["reason"] and row["message"] and not row["seconds"] for row in gaps),
-          f"{len(gaps)} gaps have a reason, and no cost")
+    expect(all(row["reason"] and row["message"] and not row["seconds"] for row in gaps),
+           f"{len(gaps)} gaps have a reason, and no cost")
     rungs = {row["model"]: row for row in finished if row["model"] != "nonlinear"}
-    check(abs(number(rungs["perturbation"]["displacement"]) - 0.08) < 1e-12  # chi^2/2
-          and abs(number(rungs["kinematic"]["displacement"]) - 9.372520e-2) < 1e-8, "the rungs are rows, too")
+    expect(abs(number(rungs["perturbation"]["displacement"]) - 0.08) < 1e-12  # chi^2/2
+           and abs(number(rungs["kinematic"]["displacement"]) - 9.372520e-2) < 1e-8, "the rungs are rows, too")
     finished = [row for row in finished if row["model"] == "nonlinear"]
-    check({row["engine"] for row in finished} == {"fused", "petsc", "batch"}
-          and {row["mesh"] for row in finished} == {"uniform", "adaptive"}
-          and {row["formulation"] for row in finished} == {"position", "stretch"}, "all ways have finished")
+    expect({row["engine"] for row in finished} == {"fused", "petsc", "batch"}
+           and {row["mesh"] for row in finished} == {"uniform", "adaptive"}
+           and {row["formulation"] for row in finished} == {"position", "stretch"}, "all ways have finished")
 
 
 def check_pareto(rows, summary):
@@ -93,46 +91,46 @@ def check_pareto(rows, summary):
         for cost, error, on_front in own:
             beaten = any(c <= cost and e <= error and (c, e) != (cost, error) for c, e, _ in own)
             good &= on_front != beaten
-        check(sum(on_front for _, _, on_front in own) > 1, "a front of several")
-    check(good, "the Pareto fronts are what the definition says")
+        expect(sum(on_front for _, _, on_front in own) > 1, "a front of several")
+    expect(good, "the Pareto fronts are what the definition says")
 
 
 def check_hdf5(folder, rows):
     """The same numbers and texts in tradeoff.h5."""
-    check(same_as_csv(h5_columns(folder / "tradeoff.h5", "tradeoff"), rows), "tradeoff.h5 has what tradeoff.csv has")
+    expect(same_as_csv(h5_columns(folder / "tradeoff.h5", "tradeoff"), rows), "tradeoff.h5 has what tradeoff.csv has")
     with h5py.File(folder / "tradeoff.h5") as file:
         group = file["tradeoff"]
-        check(group["seconds"].attrs["unit"] == b"s" and b"subsection Tradeoff" in group.attrs["parameters.prm"]
-              and "version of PETSc" in group.attrs, "tradeoff.h5 knows units and where it comes from")
+        expect(group["seconds"].attrs["unit"] == b"s" and b"subsection Tradeoff" in group.attrs["parameters.prm"]
+               and "version of PETSc" in group.attrs, "tradeoff.h5 knows units and where it comes from")
 
 
 def check_files(folder):
     """The files of a study that is finished."""
     names = {path.name for path in folder.iterdir()}
-    check(names == {"original.prm", "parameters.prm", "log.txt", "tradeoff.csv", "tradeoff.h5", "tradeoff.png",
-                    "tradeoff.svg", "summary.json", "recommendations.prm"}, f"files {sorted(names)}")
-    check((folder / "tradeoff.png").read_bytes()[:4] == b"\x89PNG" and "<svg" in (folder / "tradeoff.svg").read_text(),
-          "pictures are pictures")
+    expect(names == {"original.prm", "parameters.prm", "log.txt", "tradeoff.csv", "tradeoff.h5", "tradeoff.png",
+                     "tradeoff.svg", "summary.json", "recommendations.prm"}, f"files {sorted(names)}")
+    expect((folder / "tradeoff.png").read_bytes()[:4] == b"\x89PNG" and "<svg" in (folder / "tradeoff.svg").read_text(),
+           "pictures are pictures")
 
 
 def check_advice(folder, output, screen):
     """Each recommendation, pasted into the file, reproduces its error."""
     summary = summary_of(output)
     advice = summary["recommendations"]
-    check([item["accuracy"] for item in advice] == [10.0**-k for k in range(2, 2 + len(advice))] and len(advice) >= 5,
-          f"{len(advice)} recommendations")
-    check(all(re.search(rf"^For .*1e-{len(advice) + 1} use .*error", text, re.MULTILINE)
-              for text in (screen, (output / "log.txt").read_text(encoding="utf-8"))), "on the screen and in log.txt")
+    expect([item["accuracy"] for item in advice] == [10.0**-k for k in range(2, 2 + len(advice))] and len(advice) >= 5,
+           f"{len(advice)} recommendations")
+    expect(all(re.search(rf"^For .*1e-{len(advice) + 1} use .*error", text, re.MULTILINE)
+               for text in (screen, (output / "log.txt").read_text(encoding="utf-8"))), "on the screen and in log.txt")
     blocks = (output / "recommendations.prm").read_text(encoding="utf-8")
     for item in {item["setting"]: item for item in advice}.values():
-        check(item["prm"] in blocks, f"recommendations.prm has {item['setting']}")
+        expect(item["prm"] in blocks, f"recommendations.prm has {item['setting']}")
         pathlib.Path(folder, "pasted.prm").write_text(BODY + item["prm"], encoding="utf-8")
         call([PROGRAM, "run", "pasted.prm", "--overwrite", "--quiet", "--set", "Output/Number of snapshots=0"], folder)
         run = summary_of(pathlib.Path(folder, "output-pasted"))
         error = abs(run["displacement"] - summary["reference"]["displacement"]) / summary["reference"]["size"]
-        check(run["status"] == "finished" and error <= item["accuracy"]
-              and math.isclose(error, item["error"], rel_tol=1e-3, abs_tol=1e-12),
-              f"pasted for {item['accuracy']:g}: error {error:.3e}, measured {item['error']:.3e}")
+        expect(run["status"] == "finished" and error <= item["accuracy"]
+               and math.isclose(error, item["error"], rel_tol=1e-3, abs_tol=1e-12),
+               f"pasted for {item['accuracy']:g}: error {error:.3e}, measured {item['error']:.3e}")
 
 
 def written(folder):
@@ -146,15 +144,15 @@ def check_crashes(output, whole):
     """A fault of the program at a setting is noted; one that crashed twice is a row that says so, and the rest goes on."""
     died = study(output, stop_at="row:3:SEGV")
     note = output / "crashes.txt"
-    check(died.returncode == -signal.SIGSEGV and int(note.read_text(encoding="utf-8")) in written(output)
-          and len(written(output)) == 3, f"a crash at the third setting: {died}, {note.read_text(encoding='utf-8')}")
+    expect(died.returncode == -signal.SIGSEGV and int(note.read_text(encoding="utf-8")) in written(output)
+           and len(written(output)) == 3, f"a crash at the third setting: {died}, {note.read_text(encoding='utf-8')}")
     missing = next(row["index"] for row in whole if row["status"] == "finished" and int(row["index"]) not in written(output))
     note.write_text(f"{missing}\n{missing}\n", encoding="utf-8")
     done = study(output, "--resume")
     rows = table(output)
     crashed = [row for row in rows if row["reason"] == "crashed"]
-    check(done.returncode == 0 and [row["index"] for row in crashed] == [missing] and "crashed twice" in crashed[0]["message"]
-          and sum(row["status"] == "finished" for row in rows) > 50, f"a setting that crashed twice: {done}, {crashed}")
+    expect(done.returncode == 0 and [row["index"] for row in crashed] == [missing] and "crashed twice" in crashed[0]["message"]
+           and sum(row["status"] == "finished" for row in rows) > 50, f"a setting that crashed twice: {done}, {crashed}")
 
 
 def check_reference(output):
@@ -163,23 +161,23 @@ def check_reference(output):
     quick = ("--set", "Tradeoff/Models=kinematic")
     stopped = study(output, *quick, stop_at="step:1:TERM")
     summary = summary_of(output)
-    check(stopped.returncode == 5 and summary["status"] == "stopped" and summary["reference"] is None and not table(output),
-          f"stopped in the reference: {stopped}")
+    expect(stopped.returncode == 5 and summary["status"] == "stopped" and summary["reference"] is None and not table(output),
+           f"stopped in the reference: {stopped}")
     done = study(output, *quick, "--resume", picture=True)
-    check(done.returncode == 0 and len(table(output)) == summary["points"] and "nothing to recommend" in done.stdout,
-          f"and goes on: {done}")
+    expect(done.returncode == 0 and len(table(output)) == summary["points"] and "nothing to recommend" in done.stdout,
+           f"and goes on: {done}")
     inverts = study(output, *quick, "--overwrite", "--set", "Active stress/Optimal wave/Perturbation parameter=1.5")
     summary = summary_of(output)
-    check(inverts.returncode == 4 and summary["status"] == "inverted" and "inverted" in summary["message"]
-          and summary["reference"] is None, f"a body that inverts: {inverts}, {summary}")
+    expect(inverts.returncode == 4 and summary["status"] == "inverted" and "inverted" in summary["message"]
+           and summary["reference"] is None, f"a body that inverts: {inverts}, {summary}")
     page = call([PROGRAM, "report", output.name], output.parent)
-    check(page.returncode == 0, f"its page: {page}")
+    expect(page.returncode == 0, f"its page: {page}")
     late = study(output, *quick, "--overwrite", "--set", "Tradeoff/Time limit per run=1e-6")
-    check(late.returncode == 3 and "Time limit per run" in late.stderr, f"no time for a reference: {late}")
+    expect(late.returncode == 3 and "Time limit per run" in late.stderr, f"no time for a reference: {late}")
     small = study(output, *quick, "--overwrite", "--set", "Active stress/Optimal wave/Perturbation parameter=0.01")
     reference = summary_of(output)["reference"]
-    check(small.returncode == 0 and 0 < reference["displacement"] < 1e-4 and reference["size"] == reference["displacement"],
-          f"a small displacement: {small.stderr}, {reference}")
+    expect(small.returncode == 0 and 0 < reference["displacement"] < 1e-4 and reference["size"] == reference["displacement"],
+           f"a small displacement: {small.stderr}, {reference}")
 
 
 def check_strides(folder):
@@ -192,8 +190,8 @@ def check_strides(folder):
     pathlib.Path(folder, "strides.prm").write_text(BODY + advice["prm"], encoding="utf-8")
     call([PROGRAM, "run", "strides.prm", "--quiet", "--output", "pasted", "--set", "Time/End time=3"], folder)
     run, row = summary_of(folder / "pasted"), table(folder / "strides")[0]
-    check(result.returncode == 0 and advice["prm"].startswith("set Model = nonlinear") and run["displacement"] == number(row["displacement"]),
-          f"three strides: {run['displacement']}, {row}")
+    expect(result.returncode == 0 and advice["prm"].startswith("set Model = nonlinear") and run["displacement"] == number(row["displacement"]),
+           f"three strides: {run['displacement']}, {row}")
 
 
 def check_stops(output, expected):
@@ -203,40 +201,40 @@ def check_stops(output, expected):
     """
     killed = study(output, stop_at="row:5:KILL")
     lines = written(output)
-    check(killed.returncode == -signal.SIGKILL and 5 <= len(lines) < len(expected) and not (output / "tradeoff.csv").exists(),
-          f"the only process is killed after {len(lines)} of {len(expected)} settings: {killed}")
-    checks.refused(study(output, "--resume", "--set", "Body/Length=2"), 'Body/Length was "1" and is "2"')
-    checks.refused(study(output), "not empty")
+    expect(killed.returncode == -signal.SIGKILL and 5 <= len(lines) < len(expected) and not (output / "tradeoff.csv").exists(),
+           f"the only process is killed after {len(lines)} of {len(expected)} settings: {killed}")
+    refused(study(output, "--resume", "--set", "Body/Length=2"), 'Body/Length was "1" and is "2"')
+    refused(study(output), "not empty")
     for stop_at, reason, more in (("row:3:TERM", "signal", ()), ("step:1:INT", "signal", ()),
                                   (None, "time_limit", ("--set", "Tradeoff/Time limit=0.001"))):
         stopped = study(output, "--resume", *more, stop_at=stop_at)
         rows, summary = table(output), summary_of(output)
-        check(stopped.returncode == 5 and summary["status"] == "stopped" and summary["reason"] == reason
-              and "--resume continues" in stopped.stderr and len(rows) == tried(summary) < len(expected)
-              and len(rows) >= len(lines) + (3 if reason == "signal" else 0) and answers(rows).items() <= expected.items(),
-              f"stopped by {stop_at}{more} after {len(rows)} settings: {stopped}")
+        expect(stopped.returncode == 5 and summary["status"] == "stopped" and summary["reason"] == reason
+               and "--resume continues" in stopped.stderr and len(rows) == tried(summary) < len(expected)
+               and len(rows) >= len(lines) + (3 if reason == "signal" else 0) and answers(rows).items() <= expected.items(),
+               f"stopped by {stop_at}{more} after {len(rows)} settings: {stopped}")
     before = written(output)
     command = [PROGRAM, "tradeoff", "small.prm", "--output", output.name, "--resume"]
     # Rank 0 waits from its first row on, until mpirun ends it.
     killed = call(ranks_that_stop(MPIRUN, command, "row:1:STOP", "row:5:KILL"), output.parent)
     lines = written(output)
-    check(killed.returncode == 128 + signal.SIGKILL and len(lines) >= len(before) + 5
-          and all(str(lines.get(index)) == str(row) for index, row in before.items()),
-          f"rank 1 of two is killed after {len(lines)} settings, {len(before)} before: {killed}")
+    expect(killed.returncode == 128 + signal.SIGKILL and len(lines) >= len(before) + 5
+           and all(str(lines.get(index)) == str(row) for index, row in before.items()),
+           f"rank 1 of two is killed after {len(lines)} settings, {len(before)} before: {killed}")
     done = study(output, "--resume", "--set", "Tradeoff/Time limit=1e6", ranks=2, picture=True)
-    check(done.returncode == 0 and "are already done" in done.stdout, f"resumed on two ranks {done.stderr}")
+    expect(done.returncode == 0 and "are already done" in done.stdout, f"resumed on two ranks {done.stderr}")
     rows = table(output)
-    check(answers(rows) == expected and len(rows) == len(expected), "the same settings and errors as without a break")
+    expect(answers(rows) == expected and len(rows) == len(expected), "the same settings and errors as without a break")
     after = {int(row["index"]): row for row in rows}
-    check(all(number(after[index]["seconds"]) == row["seconds"] for index, row in lines.items()
-              if row["status"] == "finished"), "what was measured before is kept")
+    expect(all(number(after[index]["seconds"]) == row["seconds"] for index, row in lines.items()
+               if row["status"] == "finished"), "what was measured before is kept")
     check_files(output)
     again = study(output, "--resume")
-    check(again.returncode == 0 and table(output) == rows, "a finished study has nothing to resume")
+    expect(again.returncode == 0 and table(output) == rows, "a finished study has nothing to resume")
     other = output.parent / "other"
     other.mkdir()
     (other / "file").write_text("mine", encoding="utf-8")
-    checks.refused(study(other, "--resume"), "no tradeoff that can be resumed")
+    refused(study(other, "--resume"), "no tradeoff that can be resumed")
 
 
 def check_time_limit(output, expected):
@@ -244,15 +242,15 @@ def check_time_limit(output, expected):
     study(output, stop_at="row:20:TERM")
     result = study(output, "--resume", "--set", "Tradeoff/Time limit per run=1e-6")
     late = [row for row in table(output) if row["reason"] == "time_limit"]
-    check(result.returncode == 0 and len(late) > 50 and all(row["time limit"] == "1e-06" and row["entries"] for row in late)
-          and any("not tried" in row["message"] for row in late), f"settings that took too long: {result}, {late[:2]}")
+    expect(result.returncode == 0 and len(late) > 50 and all(row["time limit"] == "1e-06" and row["entries"] for row in late)
+           and any("not tried" in row["message"] for row in late), f"settings that took too long: {result}, {late[:2]}")
     result = study(output, "--resume")
-    check(result.returncode == 0 and answers(table(output)) == expected, f"and may take longer: {result}")
+    expect(result.returncode == 0 and answers(table(output)) == expected, f"and may take longer: {result}")
     summary = summary_of(output)
-    check("advice" not in summary and not (output / "recommendations.prm").exists(), "without Python there is no advice yet")
+    expect("advice" not in summary and not (output / "recommendations.prm").exists(), "without Python there is no advice yet")
     made = call([PROGRAM, "plot", output.name], output.parent)
-    check(made.returncode == 0 and {**summary_of(output), **summary} == summary_of(output) and (output / "recommendations.prm").exists()
-          and len(summary_of(output)["advice"]) > 4, f"crawler plot makes it: {made}")
+    expect(made.returncode == 0 and {**summary_of(output), **summary} == summary_of(output) and (output / "recommendations.prm").exists()
+           and len(summary_of(output)["advice"]) > 4, f"crawler plot makes it: {made}")
 
 
 def check_lacking_python(output):
@@ -263,8 +261,8 @@ def check_lacking_python(output):
     python.chmod(0o755)
     result = call([PROGRAM, "tradeoff", "small.prm", "--output", output.name, "--set", "Tradeoff/Models=kinematic"], output.parent, None,
                   {"PATH": f"{python.parent}:{os.environ['PATH']}"})
-    check(result.returncode == 0 and result.stdout.count("it has no numpy. Make them later with: crawler plot") == 1
-          and len(table(output)) == summary_of(output)["points"] > 3, f"a Python that lacks something: {result}")
+    expect(result.returncode == 0 and result.stdout.count("it has no numpy. Make them later with: crawler plot") == 1
+           and len(table(output)) == summary_of(output)["points"] > 3, f"a Python that lacks something: {result}")
 
 
 def check_old_folder(output, whole):
@@ -274,7 +272,7 @@ def check_old_folder(output, whole):
         for data in file["tradeoff"].values():
             if data.attrs["name"] == b"entries":
                 data.attrs["name"] = np.bytes_("pareto")
-    checks.refused(study(output, "--resume"), "another version of the program")
+    refused(study(output, "--resume"), "another version of the program")
 
 
 def main(folder):
@@ -283,18 +281,18 @@ def main(folder):
     for ranks in (1, 2):
         output = folder / f"on-{ranks}"
         result = study(output, ranks=ranks, picture=True)
-        check(result.returncode == 0 and not result.stderr, f"exit code {result.returncode} on {ranks} ranks "
-              f"{result.stderr}")
+        expect(result.returncode == 0 and not result.stderr, f"exit code {result.returncode} on {ranks} ranks "
+               f"{result.stderr}")
         rows, summary = table(output), summary_of(output)
         all_answers[ranks] = answers(rows)
-        check(summary["status"] == "finished" and summary["ranks"] == ranks, f"summary {summary}")
+        expect(summary["status"] == "finished" and summary["ranks"] == ranks, f"summary {summary}")
         check_files(output)
         check_rows(rows, summary)
         check_pareto(rows, summary)
         check_hdf5(output, rows)
         if ranks == 1:
             check_advice(folder, output, result.stdout)
-    check(all_answers[1] == all_answers[2], "the same settings and errors on 1 and 2 ranks")
+    expect(all_answers[1] == all_answers[2], "the same settings and errors on 1 and 2 ranks")
     check_reference(folder / "reference")
     check_strides(folder)
     check_crashes(folder / "crashed", table(folder / "on-1"))
@@ -304,5 +302,4 @@ def main(folder):
     check_old_folder(folder / "old", folder / "on-1")
 
 
-if __name__ == "__main__":
-    checks.run((main,))
+checks.run((main,))

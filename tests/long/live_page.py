@@ -20,7 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "contrib/python/crawler/plot")]
 from browser import Browser  # noqa: E402
 from plotting import Kymograph  # noqa: E402
-from program import Checks, call  # noqa: E402
+from program import call, checks, expect  # noqa: E402
 from tables import json_of  # noqa: E402
 
 # Runs the parameter files of a list; of each the answer and the fields that the page shows.
@@ -50,8 +50,6 @@ REFUSED = {"subsection Ground\n  set Profile = 1 + 0.5*sin(6*x)\nend\n": "muPars
            "subsection Discretization\n  set Mesh = adaptive\nend\n": "PETSc",
            "subsection Body\n  set Elastic modulus = -1\nend\n": "a positive number is expected",
            "set Acuracy = 1e-3\n": "Accuracy"}
-checks = Checks()
-check = checks.expect
 
 
 def numbers(json_object, before=""):
@@ -81,14 +79,14 @@ def test_numbers(program, core, texts):
         for number, (name, ours) in enumerate(zip(texts, answers_of(core, [*texts.values()]))):
             path = pathlib.Path(folder, str(number))
             result = call([program, "run", "-", "--quiet", "--output", path], input=texts[name])
-            if check(result.returncode == 0 and "problem" not in ours,
-                     f"{name} is computed by both {result.stderr.strip()} {ours.get('problem', '')}"):
+            if expect(result.returncode == 0 and "problem" not in ours,
+                      f"{name} is computed by both {result.stderr.strip()} {ours.get('problem', '')}"):
                 theirs = dict(numbers(json_of(path / "summary.json")))
                 own = dict(numbers(ours["summary"]))
                 common = {*own} & {*theirs}
                 wrong = [key for key in common if not is_near(key, own[key], theirs[key])]
-                check(len(common) > 25 and {"displacement", "displacement_error.total", "steps"} <= common and not wrong,
-                      f"{name}: {len(common)} numbers {[(key, own[key], theirs[key]) for key in wrong]}")
+                expect(len(common) > 25 and {"displacement", "displacement_error.total", "steps"} <= common and not wrong,
+                       f"{name}: {len(common)} numbers {[(key, own[key], theirs[key]) for key in wrong]}")
                 compare_fields(name, ours, Kymograph(path, *ours["fields"]))
 
 
@@ -97,14 +95,14 @@ def compare_fields(name, ours, theirs):
     for field, values in ours["fields"].items():
         expected = theirs[field]
         difference = np.abs(np.reshape(values, expected.shape) - expected).max()
-        check(difference <= 1e-9 * max(1., np.abs(expected).max()), f"{name}: {field} at {expected.size} points ({difference:.1e})")
+        expect(difference <= 1e-9 * max(1., np.abs(expected).max()), f"{name}: {field} at {expected.size} points ({difference:.1e})")
 
 
 def test_refusals(core):
     """What cannot be computed."""
     for (text, words), answer in zip(REFUSED.items(), answers_of(core, [*REFUSED])):
         problem = answer.get("problem", "it is computed")
-        check(words in problem and not any(answer["fields"].values()), f"refused: {problem}")
+        expect(words in problem and not any(answer["fields"].values()), f"refused: {problem}")
 
 
 def page_of(browser, path, **look):
@@ -132,24 +130,24 @@ def test_presets(browser, page, folder):
     for path in sorted((ROOT / "prm/templates").glob("*.prm")):
         text = path.read_text(encoding="utf-8")
         offered = browser.ask(f"[...document.querySelectorAll('optgroup option')].some(one => one.value === '{path.stem}')")
-        check(offered != any(f"subsection {study}" in text for study in ("Sweep", "Fit", "Optimize", "Table")),
-              f"the template {path.stem} is {'' if offered else 'not '}offered")
+        expect(offered != any(f"subsection {study}" in text for study in ("Sweep", "Fit", "Optimize", "Table")),
+               f"the template {path.stem} is {'' if offered else 'not '}offered")
         if offered:
             choose(browser, path.stem)
             expected, tolerance = map(float, re.search(r"# Expect: displacement (\S+), tolerance (\S+)", text).groups())
             displacement = float(browser.ask(look)[0])
             # Of the larva's steps every third is refused: round-off of exp() decides on which, so its digits are the browser's.
-            check(abs(displacement - expected) <= browser.ask("live.run.summary.displacement_error.total") + tolerance * abs(expected),
-                  f"{path.stem}: the displacement is {displacement}")
+            expect(abs(displacement - expected) <= browser.ask("live.run.summary.displacement_error.total") + tolerance * abs(expected),
+                   f"{path.stem}: the displacement is {displacement}")
             body = [line for line in text.splitlines() if not re.match("# (Expect|Next)|set Accuracy", line)]
-            check("\n".join(body) in browser.ask(look)[1], f"{path.stem}: the file is the template")
+            expect("\n".join(body) in browser.ask(look)[1], f"{path.stem}: the file is the template")
     choose(browser, "earthworm")
     for key, steps in (("Body/Length", 10), ("Body/Anchoring exponent", 3), ("Time/End time", -25)):
         before = browser.ask(look)
         move(browser, key, steps)
-        check(all(one != other for one, other in zip(before[:2], browser.ask(look))), f"numbers and file follow {key}")
+        expect(all(one != other for one, other in zip(before[:2], browser.ask(look))), f"numbers and file follow {key}")
     kept, link = browser.ask(look), browser.ask("live.link.href")
-    check("set Length               = 11.5" in kept[1] and "set End time = 7.07" in kept[1], f"values of sliders are in the file {kept[1]}")
+    expect("set Length               = 11.5" in kept[1] and "set End time = 7.07" in kept[1], f"values of sliders are in the file {kept[1]}")
     browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(folder))
     saved = folder / "crawler.prm"
     saved.unlink(missing_ok=True)
@@ -158,7 +156,7 @@ def test_presets(browser, page, folder):
         browser.settle()
         if saved.exists() and saved.read_text(encoding="utf-8") == kept[1]:
             break
-    check(saved.exists() and saved.read_text(encoding="utf-8") == kept[1], "the file that is downloaded is the one that is shown")
+    expect(saved.exists() and saved.read_text(encoding="utf-8") == kept[1], "the file that is downloaded is the one that is shown")
     choose(browser, "segments")
     browser.ask("live.link.click()")
     browser.settle()
@@ -166,16 +164,16 @@ def test_presets(browser, page, folder):
     browser.ask(f"void (location.href = {json.dumps(link)})")
     browser.wait_for("document.querySelector('select').value === 'earthworm'")
     browser.settle()
-    check(browser.ask(look) == kept and there[2] == "segments", "a link in the open page brings back the sliders")
+    expect(browser.ask(look) == kept and there[2] == "segments", "a link in the open page brings back the sliders")
     browser.ask("void history.back()")
     browser.wait_for("document.querySelector('select').value === 'segments'")
     browser.settle()
-    check(browser.ask(look) == there, "the way back does so, too")
+    expect(browser.ask(look) == there, "the way back does so, too")
     page_of(browser, page, fragment=link.partition("#")[2])
-    check(browser.ask(look) == kept, "a link in a new page, too")
+    expect(browser.ask(look) == kept, "a link in a new page, too")
     page_of(browser, page, fragment="scene=constructor&accuracy=1&p=x&strain=-1e9&speed=")
-    check(browser.ask("[live.scene, live.accuracy, live.values().p, live.values().strain, live.values().speed, live.run.summary.status]")
-          == ["optimal", "1e-3", 2, 0.02, 1, "finished"], "a damaged link is a page at its start")
+    expect(browser.ask("[live.scene, live.accuracy, live.values().p, live.values().strain, live.values().speed, live.run.summary.status]")
+           == ["optimal", "1e-3", 2, 0.02, 1, "finished"], "a damaged link is a page at its start")
 
 
 def test_browser(page, folder):
@@ -190,22 +188,22 @@ def test_browser(page, folder):
         for key in SLIDERS:
             move(browser, key, 2)
             after = browser.ask(look)
-            check(all(one != other for one, other in zip(before, after)), f"numbers, file and pictures follow {key}")
+            expect(all(one != other for one, other in zip(before, after)), f"numbers, file and pictures follow {key}")
             before = after
         for scene in ("wave", "segments", "strain"):
             choose(browser, scene)
-            check(browser.ask("live.run.summary?.status") == "finished", f"{scene} is computed")
+            expect(browser.ask("live.run.summary?.status") == "finished", f"{scene} is computed")
         test_presets(browser, page, folder)
         page_of(browser, page)
         browser.ask("document.querySelector('.play').click()")
         browser.settle()
-        check(browser.ask("live.clock.running"), "the body moves")
+        expect(browser.ask("live.clock.running"), "the body moves")
         for width, dark in ((1200, True), (360, False)):
             page_of(browser, page, width=width, dark=dark)
             browser.picture(folder / f"live_page_{width}.png")
-            check(browser.ask("document.documentElement.scrollWidth <= innerWidth"), f"nothing is cut off at a width of {width}")
-        check(not browser.complaints, f"no complaints {browser.complaints}")
-        check(all(one.startswith(("file:", "data:")) for one in browser.requests), "no network")
+            expect(browser.ask("document.documentElement.scrollWidth <= innerWidth"), f"nothing is cut off at a width of {width}")
+        expect(not browser.complaints, f"no complaints {browser.complaints}")
+        expect(all(one.startswith(("file:", "data:")) for one in browser.requests), "no network")
     return texts
 
 
@@ -218,7 +216,7 @@ def main():
     if built.returncode == 77:
         print(built.stderr)
         sys.exit(77)
-    if check(built.returncode == 0, f"the page is built {built.stdout[-2000:]} {built.stderr}"):
+    if expect(built.returncode == 0, f"the page is built {built.stdout[-2000:]} {built.stderr}"):
         core, page = folder / "crawler_live.js", folder / "crawler_live.html"
         texts = test_browser(page, folder)
         texts["prm/paper/fig_s1.prm"] = (ROOT / "prm/paper/fig_s1.prm").read_text(encoding="utf-8")
@@ -228,5 +226,4 @@ def main():
     checks.end()
 
 
-if __name__ == "__main__":
-    main()
+main()

@@ -12,7 +12,7 @@ import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, Paused, prm  # noqa: E402
+from program import Paused, checks, expect, prm  # noqa: E402
 
 CRAWLER, POINTS = sys.argv[1], int(sys.argv[2])
 PART = float(sys.argv[3]) if len(sys.argv) > 3 else 0.1
@@ -27,7 +27,6 @@ SWEEPS = {
     "PETSc": (WAVE, PART, ["--set", "Time/Engine=petsc", "--set", "Error estimate=false"]),
 }
 ALLOWED = 12.  # MB: what the allocator keeps in reserve differs by so much
-checks = Checks()
 
 
 def largest(process):
@@ -49,9 +48,9 @@ def measure(name, place):
             sizes.append(largest(paused.process))
             if len(sizes) == 2:
                 done = paused.go_on()
-                checks.expect(done.returncode == 0, f"{name}: exit code {done.returncode}, {done.stderr[:300]!r}")
+                expect(done.returncode == 0, f"{name}: exit code {done.returncode}, {done.stderr[:300]!r}")
     print(f"{name}: {n} points, {sizes[0]:.1f} MB after a third of them, {sizes[1]:.1f} MB at the end")
-    checks.expect(sizes[1] <= sizes[0] + ALLOWED, f"{name}: the memory grows from {sizes[0]:.1f} to {sizes[1]:.1f} MB")
+    expect(sizes[1] <= sizes[0] + ALLOWED, f"{name}: the memory grows from {sizes[0]:.1f} to {sizes[1]:.1f} MB")
 
 
 def main(folder):

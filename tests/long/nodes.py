@@ -15,7 +15,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, environment, prm  # noqa: E402
+from program import call, checks, environment, expect, prm  # noqa: E402
 from tables import h5_columns, same_columns  # noqa: E402
 
 PROGRAM, MPIEXEC = str(pathlib.Path(sys.argv[1]).resolve()), shutil.which(sys.argv[2])
@@ -27,8 +27,6 @@ SCENE = prm("Accuracy=1e-7", "Active stress/Optimal wave/Choose wave by=wave spe
             "Sweep/Axes=Body/Anchoring exponent : linspace(-1, 4, 42); Time/End time : 1, 30; "
             "Active stress/Optimal wave/Perturbation parameter : 0.1, 0.2, 0.3, 0.45; Body/Elastic modulus : 1, 3; "
             "Body/Friction profile : 1, 1+0.3*sin(6*s)")
-checks = Checks()
-check = checks.expect
 
 
 def ip(*words, **more):
@@ -130,21 +128,20 @@ def main(folder):
         for k in range(KILLS):
             victim, stop_at = generator.choice(nodes), generator.randint(1, n_rows // (4 * KILLS * NODES * RANKS_OF_NODE))
             process = sweep(folder, nodes, *(["--resume"] if k > 0 else []), stop_at=stop_at)
-            check(wait_for_more_rows(process, folder / "nodes", rows), f"{stop_at} rows of a rank before a node is off")
+            expect(wait_for_more_rows(process, folder / "nodes", rows), f"{stop_at} rows of a rank before a node is off")
             power_off(victim)
             process.communicate()
             killed += 1
             before, rows = rows, finished_rows(folder / "nodes")
-            check(process.returncode != 0 and before < rows, f"node {victim} of {nodes} off: {rows} rows, {before} before")
+            expect(process.returncode != 0 and before < rows, f"node {victim} of {nodes} off: {rows} rows, {before} before")
             nodes = [i for i in range(NODES) if i != victim] if k % 2 == 0 else list(range(NODES))
         process = sweep(folder, nodes, "--resume")
         text, _ = process.communicate()
-        check(process.returncode == 0, f"the last one, on nodes {nodes}: {process.returncode}, {text[-600:]}")
-        check(rows < n_rows, f"{killed} nodes were switched off under way: {rows} of {n_rows} rows before the last start")
-        check(same_columns(reference, table(folder / "nodes")), f"the table is that of one process ({len(nodes) * RANKS_OF_NODE} ranks)")
+        expect(process.returncode == 0, f"the last one, on nodes {nodes}: {process.returncode}, {text[-600:]}")
+        expect(rows < n_rows, f"{killed} nodes were switched off under way: {rows} of {n_rows} rows before the last start")
+        expect(same_columns(reference, table(folder / "nodes")), f"the table is that of one process ({len(nodes) * RANKS_OF_NODE} ranks)")
     finally:
         remove_nodes()
 
 
-if __name__ == "__main__":
-    checks.run((main,))
+checks.run((main,))

@@ -11,14 +11,12 @@ import shutil
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call  # noqa: E402
+from program import call, checks, expect  # noqa: E402
 from tables import csv_rows, json_of  # noqa: E402
 
 PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRIPT = ROOT / "contrib/octave/tutorial.m"
-checks = Checks()
-expect = checks.expect
 
 
 def main(folder):
@@ -49,5 +47,4 @@ def main(folder):
            f"the smallest stretch is {summary['min_stretch']}, read {smallest and smallest[1]}")
 
 
-if __name__ == "__main__":
-    checks.run((main,))
+checks.run((main,))

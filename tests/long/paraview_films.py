@@ -14,12 +14,10 @@ import numpy as np
 from matplotlib.image import imread
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, prm  # noqa: E402
+from program import call, checks, expect, prm  # noqa: E402
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "contrib" / "paraview"
 SCENE = prm("Output/Number of snapshots=4")
-checks = Checks()
-check = checks.expect
 
 
 def draw(folder, screen, script, *arguments):
@@ -53,25 +51,25 @@ def check_all(folder, screen):
         call([sys.argv[1], "run", "scene.prm", "--quiet", "--output", style, "--set", f"Output/Snapshot format={style}"], folder)
         code, text = draw(folder, screen, "movie.py", style, "--time", "0.25", "--output", f"{style}.png", "--size",
                           "800x240")
-        if not check(code == 0, f"{style}: movie.py makes no picture: {code} {text}"):
+        if not expect(code == 0, f"{style}: movie.py makes no picture: {code} {text}"):
             return
     picture = imread(folder / "vtu.png")
     body = coloured(picture)[60:]  # below the words
     columns = np.flatnonzero(body.sum(axis=0) > 10)
-    check(body.sum() > 2000 and abs(columns.mean() - 400) < 40, "the camera follows the coloured body")
+    expect(body.sum() > 2000 and abs(columns.mean() - 400) < 40, "the camera follows the coloured body")
     # ParaView cuts quadrilaterals of a structured and of an unstructured grid into other triangles.
     different = np.abs(picture - imread(folder / "xdmf.png")).max(axis=2) > 0.05
-    check(different.mean() < 1e-3, f"both formats give the same picture: {different.sum()} pixels differ")
+    expect(different.mean() < 1e-3, f"both formats give the same picture: {different.sum()} pixels differ")
     code, text = draw(folder, screen, "movie.py", "vtu", "--output", "film.gif", "--size", "320x120", "--state",
                       "view.pvsm")
-    check(code == 0 and (folder / "view.pvsm").is_file(), f"movie.py makes a film and a state: {text}")
+    expect(code == 0 and (folder / "view.pvsm").is_file(), f"movie.py makes a film and a state: {text}")
     count = call(["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames", "-of", "csv=p=0",
                   "film.gif"], folder)
-    check(count.stdout.strip() == "5", f"the film has 5 frames, not {count.stdout}")
+    expect(count.stdout.strip() == "5", f"the film has 5 frames, not {count.stdout}")
     code, text = draw(folder, screen, "kymograph.py", "vtu")
-    check(code == 0 and coloured(imread(folder / "vtu" / "kymograph.png")).mean() > 0.2, f"a kymograph: {text}")
+    expect(code == 0 and coloured(imread(folder / "vtu" / "kymograph.png")).mean() > 0.2, f"a kymograph: {text}")
     code, text = draw(folder, screen, "movie.py", "nothing")
-    check(code == 2 and "nothing has neither solution.pvd nor solution.xdmf" in text, f"no run: {code} {text}")
+    expect(code == 2 and "nothing has neither solution.pvd nor solution.xdmf" in text, f"no run: {code} {text}")
 
 
 checks.run((main,))

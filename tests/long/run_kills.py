@@ -14,12 +14,11 @@ import signal
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, Places  # noqa: E402
+from program import Places, checks, expect  # noqa: E402
 from run_scenes import SCENES, STATES, Scene  # noqa: E402
 
 FILES = ("restart.dat", "restart.dat.new", "000003.vtu", "line_000007.vtu", "grip_000005.vtu", "kymograph.vts",
          "parameters.prm", "summary.json")
-checks = Checks()
 
 
 def disturb(scene, n, chance, how="KILL"):
@@ -41,10 +40,10 @@ def disturb(scene, n, chance, how="KILL"):
             resumed += scene.went_on("disturbed")
             shutil.rmtree(folder)
         else:
-            checks.expect(done.returncode == ends, f"{scene.name}, {place}:{how}: {done.returncode}, {done.stderr[:300]!r}")
+            expect(done.returncode == ends, f"{scene.name}, {place}:{how}: {done.returncode}, {done.stderr[:300]!r}")
     scene.expect("disturbed", [*STATES, "--resume"], 0)
     scene.compare("disturbed", f"after the last {how}")
-    checks.expect(hits == n, f"{scene.name}: only {hits} of {n} places were reached")
+    expect(hits == n, f"{scene.name}: only {hits} of {n} places were reached")
     return hits, resumed + scene.went_on("disturbed")
 
 
@@ -54,17 +53,16 @@ def main(place):
     print(f"seed {seed}", flush=True)
     resumed = 0
     for one in names:
-        scene = Scene(sys.argv[1], place / one.replace(" ", "_"), one, checks, is_long=True)
+        scene = Scene(sys.argv[1], place / one.replace(" ", "_"), one, is_long=True)
         numbers = disturb(scene, n, chance)
         resumed += numbers[1]
         print(f"{one}: {numbers[0]} kills, {numbers[1]} times on from a state", flush=True)
-    checks.expect(resumed > 0, "no run went on from a state")
+    expect(resumed > 0, "no run went on from a state")
     for one, more in (("lanes", []), ("petsc", ["Discretization/Share cells=yes"])):
         if one in names:
-            scene = Scene(sys.argv[1], place / f"two_{one}", one, checks, more, [sys.argv[2], "--oversubscribe", "-n", "2"])
+            scene = Scene(sys.argv[1], place / f"two_{one}", one, more, [sys.argv[2], "--oversubscribe", "-n", "2"])
             print(f"two ranks, {one}: stopped, and on from a state", *disturb(scene, max(1, n // 10), chance, "USR1"),
                   flush=True)
 
 
-if __name__ == "__main__":
-    checks.run((main,))
+checks.run((main,))

@@ -12,7 +12,7 @@ import sys
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, on_ranks, prm, sets  # noqa: E402
+from program import call, checks, expect, on_ranks, prm, sets  # noqa: E402
 from tables import h5_columns, json_of  # noqa: E402
 
 BLOCK = 50  # points of a sweep
@@ -26,7 +26,6 @@ SCENES = prm("Model=nonlinear", "Active stress/Generator=optimal wave",
 OTHER_FORM = prm("Model=nonlinear", "Accuracy=2e-8", "Body/Elastic modulus=1e-3", "Body/Anchoring exponent=4.5",
                  "Active stress/Generator=optimal wave", "Active stress/Optimal wave/Choose wave by=wave speed",
                  "Active stress/Optimal wave/Wave speed=1.3", "Active stress/Optimal wave/Perturbation parameter=0.25")
-checks = Checks()
 
 
 def check_files(program, folder):
@@ -35,9 +34,9 @@ def check_files(program, folder):
     result = call([program, "run", "other.prm", "--output", "other"], folder)
     summary = json_of(folder / "other" / "summary.json")
     last = np.genfromtxt(folder / "other" / "statistics.csv", delimiter=",", skip_header=1)[-1]
-    checks.expect(result.returncode == 0 and summary["formulation"] == "position" and last[0] > 100
-                  and abs(last[3] - summary["displacement"]) <= summary["displacement_error"]["total"],
-                  f"files of the other form: {result.stderr}, {summary['displacement']}, {last}")
+    expect(result.returncode == 0 and summary["formulation"] == "position" and last[0] > 100
+           and abs(last[3] - summary["displacement"]) <= summary["displacement_error"]["total"],
+           f"files of the other form: {result.stderr}, {summary['displacement']}, {last}")
 
 
 def ratios_of_block(program, mpirun, folder, seed):
@@ -46,13 +45,13 @@ def ratios_of_block(program, mpirun, folder, seed):
     tables = []
     for which, settings in (("answer", ("Accuracy=1e-4",)), ("reference", ("Accuracy=1e-7", "Discretization/Formulation=position"))):
         result = call([*on_ranks(mpirun, 2), program, "sweep", "soft.prm", "--overwrite", "--output", which, *sets(settings)], folder)
-        checks.expect(result.returncode == 0, f"sweep {which}: {result.stderr}")
+        expect(result.returncode == 0, f"sweep {which}: {result.stderr}")
         tables.append(h5_columns(folder / which / "results.h5", "results"))
     both = np.array([all(table["status"][i] == "finished" for table in tables) for i in range(BLOCK)])
     difference = np.abs(tables[0]["displacement"] - tables[1]["displacement"])
     ratio = difference / sum(table["displacement_error.total"] for table in tables)
     for i in np.flatnonzero(both & ~(ratio <= 1.)):
-        checks.expect(False, f"point {i} of seed {seed}: {ratio[i]:.3g} bounds away")
+        expect(False, f"point {i} of seed {seed}: {ratio[i]:.3g} bounds away")
     return ratio[both]
 
 
@@ -62,10 +61,9 @@ def main(folder):
     ratios = []
     for block in range(0, int(number), BLOCK):
         ratios.extend(ratios_of_block(program, mpirun, folder, str(1000 * int(seed) + block // BLOCK)))
-    checks.expect(len(ratios) > 0.5 * int(number), f"only {len(ratios)} points have both answers")
+    expect(len(ratios) > 0.5 * int(number), f"only {len(ratios)} points have both answers")
     print(f"{len(ratios)} of {number} compared; bound over error: median {1. / np.median(ratios):.3g}, "
           f"least {1. / np.max(ratios):.3g}")
 
 
-if __name__ == "__main__":
-    checks.run((main,))
+checks.run((main,))

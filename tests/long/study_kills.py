@@ -19,7 +19,7 @@ import sys
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import PATIENCE, Checks, Places, call, environment, on_ranks, prm  # noqa: E402
+from program import PATIENCE, Places, call, checks, environment, expect, on_ranks, prm  # noqa: E402
 from tables import csv_rows, h5_columns, json_of, same_columns  # noqa: E402
 
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
@@ -39,8 +39,6 @@ if os.WIFSTOPPED(os.waitpid(rank.pid, os.WUNTRACED)[1]):
     os.kill(os.getppid(), int(sys.argv[1]))
     rank.send_signal(signal.SIGCONT)
 """
-checks = Checks()
-expect = checks.expect
 
 
 class Study:
@@ -236,7 +234,6 @@ def test_out_of_memory(folder):
            rows["status"] == ["finished", "failed", "finished"], f"in a sweep it is a row {rows['reason']} {result.stderr}")
 
 
-if __name__ == "__main__":
-    print(f"{N_KILLS} kills, seed {SEED}", flush=True)
-    ctypes.CDLL(None).prctl(36, 1)  # PR_SET_CHILD_SUBREAPER: the ranks of a killed mpirun become children of this process
-    checks.run((test_many_ranks, test_out_of_memory, test_error_bars, test_kills))
+print(f"{N_KILLS} kills, seed {SEED}", flush=True)
+ctypes.CDLL(None).prctl(36, 1)  # PR_SET_CHILD_SUBREAPER: the ranks of a killed mpirun become children of this process
+checks.run((test_many_ranks, test_out_of_memory, test_error_bars, test_kills))

@@ -9,7 +9,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, on_ranks, sets  # noqa: E402
+from program import call, checks, expect, on_ranks, sets  # noqa: E402
 
 TOLERANCE = 1e-10  # relative
 SAME = ("displacement", "stress_power", "dissipation", "elastic_energy", "paper_energy", "positive_power")
@@ -29,8 +29,6 @@ BAD_VALUE = {**WAVE, "Body/Length": -1}
 UNKNOWN = {**WAVE, "Body/Lenght": 1}
 INCONSISTENT = {**WAVE, "Active stress/Optimal wave/Wave speed": 0}  # found while the scene is built
 
-checks = Checks()
-check = checks.expect
 
 
 def run(program, mpirun, folder, ranks, scene):
@@ -48,21 +46,21 @@ def run(program, mpirun, folder, ranks, scene):
 def same_answer(name, scene, ranks, *where):
     """The summary of the scene on one rank and on others."""
     code, one, _ = run(*where, 1, scene)
-    check(code == 0, f"{name}: exit code {code} on 1 rank")
+    expect(code == 0, f"{name}: exit code {code} on 1 rank")
     for n in ranks if code == 0 else ():
         code, many, _ = run(*where, n, scene)
         if code != 0 or many is None:
-            check(False, f"{name}: exit code {code} on {n} ranks")
+            expect(False, f"{name}: exit code {code} on {n} ranks")
             continue
         errors = {key: abs(many[key] - one[key]) / max(abs(one[key]), 1e-3 * abs(one["stress_power"])) for key in SAME}
         for key in PLACES:
             errors[key] = abs(many[key]["value"] - one[key]["value"])
         worst = max(errors, key=errors.get)
-        check(many["ranks"] == n and many["degrees_of_freedom"] == one["degrees_of_freedom"]
-              and many["cells_shared"] == (scene["Discretization/Share cells"] == "yes")
-              and all(error <= TOLERANCE for error in errors.values()),
-              f"{name}: {n} ranks, {many['steps']} steps ({one['steps']} on one), "
-              f"largest difference {errors[worst]:.1e} in {worst}")
+        expect(many["ranks"] == n and many["degrees_of_freedom"] == one["degrees_of_freedom"]
+               and many["cells_shared"] == (scene["Discretization/Share cells"] == "yes")
+               and all(error <= TOLERANCE for error in errors.values()),
+               f"{name}: {n} ranks, {many['steps']} steps ({one['steps']} on one), "
+               f"largest difference {errors[worst]:.1e} in {worst}")
 
 
 def main(folder):
@@ -75,19 +73,18 @@ def main(folder):
     ends = []
     for ranks in (1, 2):
         code, summary, messages = run(*where, ranks, INVERTS)
-        check(code == 4 and len(messages) <= 1, f"inversion: exit code {code} on {ranks} ranks, message {messages}")
-        check(summary is not None and summary["status"] == "inverted" and summary["inversion"] is not None,
-              f"inversion: summary.json of {ranks} ranks says so")
+        expect(code == 4 and len(messages) <= 1, f"inversion: exit code {code} on {ranks} ranks, message {messages}")
+        expect(summary is not None and summary["status"] == "inverted" and summary["inversion"] is not None,
+               f"inversion: summary.json of {ranks} ranks says so")
         ends.append((summary or {}).get("inversion"))
     if None not in ends:
-        check(all(abs(ends[0][key] - ends[1][key]) <= 1e-6 for key in ("s", "t")),
-              f"inversion at the same place: {ends}")
+        expect(all(abs(ends[0][key] - ends[1][key]) <= 1e-6 for key in ("s", "t")),
+               f"inversion at the same place: {ends}")
 
     bad = {"value out of range": BAD_VALUE, "unknown entry": UNKNOWN, "impossible wave": INCONSISTENT}
     for name, scene in bad.items():
         code, _, messages = run(*where, 2, scene)
-        check(code == 2 and len(messages) == 1, f"{name}: exit code {code} on 2 ranks, messages {messages}")
+        expect(code == 2 and len(messages) == 1, f"{name}: exit code {code} on 2 ranks, messages {messages}")
 
 
-if __name__ == "__main__":
-    checks.run((main,))
+checks.run((main,))

@@ -15,7 +15,7 @@ PROGRAM, PACKAGE = (str(pathlib.Path(path).resolve()) for path in sys.argv[1:3])
 sys.path[:0] = [PACKAGE, str(pathlib.Path(__file__).resolve().parents[1] / "support")]
 import crawler  # noqa: E402
 import numpy as np  # noqa: E402
-from program import Checks, call, warnings_of  # noqa: E402
+from program import call, checks, expect, warnings_of  # noqa: E402
 
 FILE = pathlib.Path(__file__).resolve().parents[2] / "prm/paper/fig_s1.prm"
 K = "Body/Elastic modulus"
@@ -23,8 +23,6 @@ LONG = {"Accuracy": 1e-9, "Active stress": {"Generator": "expression",
                                             "Expression": {"Active stress": "0.3*sin(2*pi*(s+t))*cos(0.1*t)"}},
         "Time": {"End time": 10000}}
 INVERTS = {"Active stress": {"Generator": "expression", "Expression": {"Active stress": "3*sin(2*pi*(s+t))"}}}
-checks = Checks()
-expect = checks.expect
 
 
 def python(script, stop_at=None, package=PACKAGE, **variables):
@@ -32,7 +30,7 @@ def python(script, stop_at=None, package=PACKAGE, **variables):
     return call([sys.executable, "-c", script], stop_at=stop_at, variables={"PYTHONPATH": package, **variables})
 
 
-def refused(action, kind, *words):
+def raises(action, kind, *words):
     """The action raises this error, whose text has these words."""
     try:
         action()
@@ -47,18 +45,18 @@ def refused(action, kind, *words):
 def check_errors(folder):
     bad = folder / "bad.prm"
     bad.write_text("subsection Body\n  set Lenght = 2\nend\n")
-    error = refused(lambda: crawler.run(bad), crawler.InputError, f"{bad}, line 2", "Lenght", '"Length"')
+    error = raises(lambda: crawler.run(bad), crawler.InputError, f"{bad}, line 2", "Lenght", '"Length"')
     ended = call([PROGRAM, "check", bad])
     expect(ended.stderr.strip() == f"crawler: {error}", f"the program says {ended.stderr}, Python {error}")
     expect(isinstance(error, ValueError), "InputError is not a ValueError")
-    refused(lambda: crawler.run({"Body": {"Lenght": 2}}), crawler.InputError, "scene, line 2", "Lenght")
-    refused(lambda: crawler.run(FILE, set={K: -1}), crawler.InputError, f'--set "{K}=-1"', "a positive number")
-    refused(lambda: crawler.run(FILE, set={K: [1, 2]}), crawler.InputError, K, "1, 2")
-    refused(lambda: crawler.run(FILE, set={K: None}), crawler.InputError, K, "None", "a number")
-    refused(lambda: crawler.run(FILE, set={"Output/Sensitivities": "a # b"}), crawler.InputError, "comment")
-    refused(lambda: crawler.run("no.prm"), crawler.FileError, "no.prm", "there is no such file")
+    raises(lambda: crawler.run({"Body": {"Lenght": 2}}), crawler.InputError, "scene, line 2", "Lenght")
+    raises(lambda: crawler.run(FILE, set={K: -1}), crawler.InputError, f'--set "{K}=-1"', "a positive number")
+    raises(lambda: crawler.run(FILE, set={K: [1, 2]}), crawler.InputError, K, "1, 2")
+    raises(lambda: crawler.run(FILE, set={K: None}), crawler.InputError, K, "None", "a number")
+    raises(lambda: crawler.run(FILE, set={"Output/Sensitivities": "a # b"}), crawler.InputError, "comment")
+    raises(lambda: crawler.run("no.prm"), crawler.FileError, "no.prm", "there is no such file")
     expect(issubclass(crawler.FileError, OSError), "FileError is not an OSError")
-    refused(lambda: crawler.run(3), crawler.InputError, '"scene" is 3, but a text, a path or a dict is expected')
+    raises(lambda: crawler.run(3), crawler.InputError, '"scene" is 3, but a text, a path or a dict is expected')
     for action, words in ((lambda: crawler.run({3: 2}), "the entry 3 is set"), (lambda: crawler.run(FILE, set={3: 2}), "the entry 3 is set"),
                           (lambda: crawler.run(FILE, set=["a"]), "\"set\" is ['a'], but a dict or None is expected"),
                           (lambda: crawler.run(FILE, fields="yes"), "\"fields\" is 'yes', but True or False or a list"),
@@ -71,30 +69,30 @@ def check_errors(folder):
                           (lambda: crawler.read(None), '"folder" is None'), (lambda: crawler.to_prm("a"), '"scene" is'),
                           (lambda: crawler.plot(folder / "no"), "is not a folder"), (lambda: crawler.plot(folder, kind="map"), '"--kind" is "map"'),
                           (lambda: crawler.report(folder / "no"), "does not exist"), (lambda: crawler.paper(folder / "no"), "no")):
-        refused(action, crawler.InputError, words)
-    refused(lambda: crawler.gradient(FILE, K, of="foo"), crawler.InputError, '"foo"', "displacement, stress_power", "gait.speed")
-    refused(lambda: crawler.run({}), crawler.InputError, "sets nothing")
-    refused(lambda: crawler.run(FILE, elastic_modul=2), crawler.InputError, "elastic_modul", '"elastic_modulus"')
-    refused(lambda: crawler.run(FILE, amplitude=2), crawler.InputError, "amplitude", '"Active stress/', "full name")
+        raises(action, crawler.InputError, words)
+    raises(lambda: crawler.gradient(FILE, K, of="foo"), crawler.InputError, '"foo"', "displacement, stress_power", "gait.speed")
+    raises(lambda: crawler.run({}), crawler.InputError, "sets nothing")
+    raises(lambda: crawler.run(FILE, elastic_modul=2), crawler.InputError, "elastic_modul", '"elastic_modulus"')
+    raises(lambda: crawler.run(FILE, amplitude=2), crawler.InputError, "amplitude", '"Active stress/', "full name")
     for times in ([0, 2], [0.5, 0.5], [-1], [float("nan")]):
-        refused(lambda: crawler.run(FILE, fields=times), crawler.InputError, "times of the fields", "end time 1 ")
-    refused(lambda: crawler.run(FILE, fields=[0.5], output=folder / "x"), crawler.InputError, '"output"')
-    refused(lambda: crawler.run(FILE, output=folder), crawler.InputError, str(folder), "not empty")
-    refused(lambda: crawler.run(FILE, output="/proc/x"), crawler.FileError, "/proc/x")
-    refused(lambda: crawler.sweep(FILE), crawler.InputError, "Sweep/Axes")
-    refused(lambda: crawler.sweep(FILE, {"Body/Lenght": [1]}), crawler.InputError, "Lenght")
-    refused(lambda: crawler.sweep(FILE, {"Body/Friction profile": ['"']}), crawler.InputError, "double quotes")
-    refused(lambda: crawler.batch([FILE, {"Body/Length": -1}]), crawler.InputError, "scenes[1]", "Body/Length")
-    refused(lambda: crawler.run(FILE, set={"Body/Friction profile": [[1, 2], [3, 4]]}), crawler.InputError, "a list in a list")
-    refused(lambda: crawler.batch({"Body/Length": 1}), crawler.InputError, "a list of scenes is expected")
-    refused(lambda: crawler.check(FILE, set={"Model": "linear"}), crawler.InputError, "linear")
-    refused(lambda: crawler.read(folder), crawler.FileError, "summary.json")
-    refused(lambda: crawler.run(FILE, fields=False).gait.spede, AttributeError, "spede", "speed")
+        raises(lambda: crawler.run(FILE, fields=times), crawler.InputError, "times of the fields", "end time 1 ")
+    raises(lambda: crawler.run(FILE, fields=[0.5], output=folder / "x"), crawler.InputError, '"output"')
+    raises(lambda: crawler.run(FILE, output=folder), crawler.InputError, str(folder), "not empty")
+    raises(lambda: crawler.run(FILE, output="/proc/x"), crawler.FileError, "/proc/x")
+    raises(lambda: crawler.sweep(FILE), crawler.InputError, "Sweep/Axes")
+    raises(lambda: crawler.sweep(FILE, {"Body/Lenght": [1]}), crawler.InputError, "Lenght")
+    raises(lambda: crawler.sweep(FILE, {"Body/Friction profile": ['"']}), crawler.InputError, "double quotes")
+    raises(lambda: crawler.batch([FILE, {"Body/Length": -1}]), crawler.InputError, "scenes[1]", "Body/Length")
+    raises(lambda: crawler.run(FILE, set={"Body/Friction profile": [[1, 2], [3, 4]]}), crawler.InputError, "a list in a list")
+    raises(lambda: crawler.batch({"Body/Length": 1}), crawler.InputError, "a list of scenes is expected")
+    raises(lambda: crawler.check(FILE, set={"Model": "linear"}), crawler.InputError, "linear")
+    raises(lambda: crawler.read(folder), crawler.FileError, "summary.json")
+    raises(lambda: crawler.run(FILE, fields=False).gait.spede, AttributeError, "spede", "speed")
     (folder / "summary.json").write_text('{"status": ')
-    refused(lambda: crawler.read(folder), crawler.FileError, "summary.json", "is damaged")
+    raises(lambda: crawler.read(folder), crawler.FileError, "summary.json", "is damaged")
     (folder / "summary.json").write_text('{"status": "finished"}')
     (folder / "kymograph.vts").write_text("<no/>")
-    refused(lambda: crawler.read(folder), crawler.FileError, "kymograph.vts", "not a kymograph")
+    raises(lambda: crawler.read(folder), crawler.FileError, "kymograph.vts", "not a kymograph")
     expect(crawler.check(FILE)["Accuracy"] == 1e-6, "check() gives other entries")
 
 
@@ -114,8 +112,8 @@ def check_pictures(folder):
     made = [*crawler.plot(run), *crawler.plot(run, output=folder / "part.svg", to=0.5), crawler.report(run), *crawler.paper(run, columns=2)]
     names = ["kymograph.png", "part.svg", "report.html", "figure.pdf", "numbers.csv", "numbers.tex"]
     expect([path.name for path in made] == names and all(path.stat().st_size > 100 for path in made), f"files {made}")
-    refused(lambda: crawler.plot(run, output="no/where.png"), crawler.FileError, "no/where.png")
-    refused(lambda: crawler.plot(run, kind="tradeoff"), crawler.InputError, "tradeoff.csv")
+    raises(lambda: crawler.plot(run, output="no/where.png"), crawler.FileError, "no/where.png")
+    raises(lambda: crawler.plot(run, kind="tradeoff"), crawler.InputError, "tradeoff.csv")
     os.environ["CRAWLER_PROGRAM"] = sys.executable  # as commands in this process leave it
     expect(crawler.report(run).exists(), "a report after another command")
     del os.environ["CRAWLER_PROGRAM"]
@@ -136,10 +134,10 @@ def check_ends():
     result = crawler.run(INVERTS)
     expect(result.status == "inverted" and result.inversion.t > 0 and result.reason and result.message, f"{result!r}")
     expect(result.end_time <= result.inversion.t, f"displacement of t = {result.end_time}, inverted at {result.inversion.t}")
-    error = refused(lambda: crawler.run(INVERTS, check=True), crawler.RunFailed, result.reason, "t = ")
+    error = raises(lambda: crawler.run(INVERTS, check=True), crawler.RunFailed, result.reason, "t = ")
     expect(error.result == result or error.result.status == "inverted", "RunFailed has no result")
     expect([one.status for one in crawler.batch([FILE, INVERTS])] == ["finished", "inverted"], "a batch of both")
-    refused(lambda: crawler.batch([FILE, INVERTS], check=True), crawler.RunFailed)
+    raises(lambda: crawler.batch([FILE, INVERTS], check=True), crawler.RunFailed)
     cut = crawler.run(FILE, set={"Time/Wall time limit": 1e-9})
     expect((cut.status, cut.reason) == ("stopped", "time_limit") and "Time/Wall time limit, 1e-09 s" in cut.message, f"{cut!r}: {cut.message}")
     whole = crawler.run(FILE, set={"Time/Wall time limit": 1000})
@@ -280,5 +278,4 @@ def main(folder):
     check_memory()
 
 
-if __name__ == "__main__":
-    checks.run((main,))
+checks.run((main,))

@@ -18,13 +18,11 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks  # noqa: E402
+from program import checks, expect  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PACKAGE = pathlib.Path(sys.argv[1]).resolve()
 LARGEST = 200_000  # bytes of a notebook, with its pictures
-checks = Checks()
-expect = checks.expect
 
 
 def check_document():
@@ -110,5 +108,4 @@ def main(folder):
         check_others(folder)
 
 
-if __name__ == "__main__":
-    checks.run((main,))
+checks.run((main,))

@@ -7,8 +7,6 @@ changes. With the argument "all" that is done in all of them, and each entry is 
 
     python3 entry_effects.py PATH_TO_CRAWLER FOLDER_OF_THE_PACKAGE FOLDER_OF_THE_SOURCE [all]
 """
-import csv
-import json
 import os
 import pathlib
 import re
@@ -21,14 +19,12 @@ import warnings
 PROGRAM, PACKAGE, SOURCE = (str(pathlib.Path(path).resolve()) for path in sys.argv[1:4])
 sys.path[:0] = [PACKAGE, str(pathlib.Path(__file__).resolve().parents[1] / "support")]
 import crawler  # noqa: E402
-from program import NO_PICTURES, Checks, call, warnings_of  # noqa: E402
+from program import NO_PICTURES, call, checks, expect, warnings_of  # noqa: E402
+from tables import answer_in  # noqa: E402
 
-checks = Checks()
-expect = checks.expect
 FILES = pathlib.Path(tempfile.mkdtemp())
 # What a run says of itself, not of the crawler.
-NO_ANSWER = {"original.prm", "parameters.prm", "log.txt"}
-COST = re.compile("second|cost_|speedup|command_line|memory")
+NO_ANSWER = ("log.txt", ".prm", ".png")
 
 M, D, T, OUT = "Active stress/", "Discretization/", "Time/", "Output/"
 BODY, GROUND = "Body/", "Ground/"
@@ -242,31 +238,6 @@ LIMITS = {D + "Smallest cell", OUT + "Ledger tolerance", TABLE + "Outside in s",
 WHAT_IT_SWITCHES_TO = {TRAVEL + "Given by": {TRAVEL + "Frequency": "1.5"}, OPTIMAL + "Root": {OPTIMAL + "Root index": "2"}}
 
 
-def without_cost(data):
-    if isinstance(data, dict):
-        return {name: without_cost(value) for name, value in data.items() if not COST.search(name)}
-    return data
-
-
-def answer_in(folder):
-    """The files of a folder, but for what says when and how fast they were made."""
-    answer = {}
-    for file in sorted(folder.rglob("*")):
-        name = str(file.relative_to(folder))
-        if file.name in NO_ANSWER or not file.is_file():
-            continue
-        if file.name == "summary.json":
-            answer[name] = without_cost(json.loads(file.read_text()))
-        elif file.suffix == ".csv":
-            with open(file, newline="") as lines:
-                rows = list(csv.reader(line for line in lines if not line.startswith("#")))
-            kept = [i for i, column in enumerate(rows[0]) if not COST.search(column)]
-            answer[name] = [[row[i] for i in kept if i < len(row)] for row in rows]
-        else:
-            answer[name] = file.read_bytes() if file.suffix in (".vtu", ".pvd", ".vts", ".dat") else True
-    return answer
-
-
 def outcome(scene, command="run"):
     """The answer (a sentence, if the scene is refused), and the notes on entries without an effect."""
     folder = pathlib.Path(tempfile.mkdtemp(dir=FILES)) / "out"
@@ -280,14 +251,14 @@ def outcome(scene, command="run"):
             except KeyboardInterrupt:  # before there were files
                 return "stopped", []
         log = (folder / "log.txt").read_text().splitlines()
-        return answer_in(folder), [line for line in log if "has no effect" in line]
+        return answer_in(folder, *NO_ANSWER), [line for line in log if "has no effect" in line]
     file = folder.parent / "scene.prm"
     file.write_text(crawler.to_prm(scene))
     ended = call([PROGRAM, command, file, "--output", folder], variables={} if command == "fit" else NO_PICTURES)
     expect(0 <= ended.returncode < 100, f"{command} of {scene} ends with {ended.returncode}: {ended.stderr}")
     if ended.returncode == 2:
         return ended.stderr, []
-    return answer_in(folder), [line for line in ended.stdout.splitlines() if "has no effect" in line]
+    return answer_in(folder, *NO_ANSWER), [line for line in ended.stdout.splitlines() if "has no effect" in line]
 
 
 def in_a_sum(scene):
@@ -453,11 +424,10 @@ def check_commas():
     expect("Coefficients: sine 0, 5; cosine 0, 0" in ended.stdout, f"the coefficients are not told: {ended.stdout}")
 
 
-if __name__ == "__main__":
-    write_files()
-    check_channels()
-    check_commas()
-    check_pairs()
-    check_idle(each=sys.argv[4:] == ["all"])
-    shutil.rmtree(FILES)
-    checks.end()
+write_files()
+check_channels()
+check_commas()
+check_pairs()
+check_idle(each=sys.argv[4:] == ["all"])
+shutil.rmtree(FILES)
+checks.end()

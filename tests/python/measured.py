@@ -449,5 +449,4 @@ class Trackers(unittest.TestCase):
         self.assertEqual(read(text.replace("t,x0", "t,nose", 1), quantity="markers").names[-1], "nose")
 
 
-if __name__ == "__main__":
-    unittest.main()
+unittest.main()

@@ -15,7 +15,7 @@ import numpy as np
 PROGRAM, PACKAGE = (str(pathlib.Path(path).resolve()) for path in sys.argv[1:3])
 sys.path[:0] = [PACKAGE, str(pathlib.Path(__file__).resolve().parents[1] / "support")]
 import crawler  # noqa: E402
-from program import Checks, call, sets  # noqa: E402
+from program import call, checks, expect, sets  # noqa: E402
 
 PRM = pathlib.Path(__file__).resolve().parents[2] / "prm"
 K, P = "Body/Elastic modulus", "Body/Anchoring exponent"
@@ -36,8 +36,6 @@ RUNS = {
     "adaptive": (WAVE, {"Discretization/Mesh": "adaptive"}),
     "inverted": (INVERTS, {}),
 }
-checks = Checks()
-expect = checks.expect
 
 
 def program(*arguments, text=None):
@@ -204,5 +202,4 @@ def main(folder):
     expect(not list(empty.iterdir()), f"files were written: {list(empty.iterdir())}")
 
 
-if __name__ == "__main__":
-    checks.run((main,))
+checks.run((main,))

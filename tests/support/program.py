@@ -63,6 +63,10 @@ class Checks:
         sys.exit(1 if self.failures or self.n == 0 else 0)
 
 
+checks = Checks()  # of the script
+expect, refused, skip = checks.expect, checks.refused, checks.skip
+
+
 def environment(stop_at=None, **more):
     """Environment of the program: one thread, Open MPI as root, and the place of the stop, if any."""
     return {**ENVIRONMENT, **({"CRAWLER_STOP_AT": stop_at} if stop_at else {}), **more}

@@ -2,14 +2,10 @@
 """Runs that are disturbed and go on with --resume: the possible scenes of a run, and whether its files are those of an
 undisturbed run.
 """
-import json
-import pathlib
 import shutil
 
-import h5py
-import numpy as np
-
-from program import call, prm, sets
+from program import call, expect, prm, sets
+from tables import answer_in, json_of
 
 WAVE = prm("Accuracy=1e-7", "Body/Anchoring exponent=2", "Active stress/Generator=expression",
            "Active stress/Expression/Active stress=0.15*sin(2*pi*(s+t))", "Output/Number of snapshots=10")
@@ -56,9 +52,9 @@ STARTS_ANEW = {"bdf"}
 class Scene:
     """Scene in a folder of its own, with the files of an undisturbed run in "whole"."""
 
-    def __init__(self, program, place, name, checks, extra=(), before=(), is_long=False):
+    def __init__(self, program, place, name, extra=(), before=(), is_long=False):
         text, long, short = SCENES[name]
-        self.program, self.place, self.name, self.checks, self.before = program, place, name, checks, before
+        self.program, self.place, self.name, self.before = program, place, name, before
         self.file = place / "scene.prm"
         self.entries = [*(long if is_long else short), *extra]
         place.mkdir()
@@ -76,8 +72,8 @@ class Scene:
     def expect(self, folder, options, code, *words, stop_at=None):
         """Runs it and expects this end and these words."""
         done = self.run(folder, options, stop_at)
-        self.checks.expect(done.returncode == code and all(word in done.stderr for word in words),
-                           f"{self.name}, {options}, stopped at {stop_at}: exit code {done.returncode}, {done.stderr[:500]!r}")
+        expect(done.returncode == code and all(word in done.stderr for word in words),
+               f"{self.name}, {options}, stopped at {stop_at}: exit code {done.returncode}, {done.stderr[:500]!r}")
         return done
 
     def copy(self, folder, other):
@@ -93,36 +89,12 @@ class Scene:
         """Compares all files of two folders, except times and identifiers of a run."""
         one, two = self.place / folder, self.place / other
         if self.name in STARTS_ANEW:
-            ends = [json.loads((place / "summary.json").read_text(encoding="utf-8")) for place in (one, two)]
-            self.checks.expect(abs(ends[0]["displacement"] - ends[1]["displacement"]) <= ends[1]["displacement_error"]["total"],
-                               f"{self.name}, {what}: the displacement is another one after a resume")
+            ends = [json_of(place / "summary.json") for place in (one, two)]
+            expect(abs(ends[0]["displacement"] - ends[1]["displacement"]) <= ends[1]["displacement_error"]["total"],
+                   f"{self.name}, {what}: the displacement is another one after a resume")
             return
-        own = {"log.txt", "restart.dat", "restart.old.dat", "original.prm", "parameters.prm"}
-        names = [{str(file.relative_to(place)) for file in place.rglob("*") if file.is_file()} - own for place in (one, two)]
-        self.checks.expect(names[0] == names[1] and "summary.json" in names[0],
-                           f"{self.name}, {what}: other files after a resume: {sorted(names[0] ^ names[1])[:5]}")
-        for name in sorted(names[0] & names[1]):
-            self.checks.expect(same_content(one / name, two / name), f"{self.name}, {what}: {name} is another one")
-
-
-def same_content(one, two):
-    """Returns True if two files are the same except for times, the command and the number of ranks."""
-    if one.name == "summary.json":
-        return plain(json.loads(one.read_text(encoding="utf-8"))) == plain(json.loads(two.read_text(encoding="utf-8")))
-    if one.suffix == ".h5":
-        return same_data(one, two)
-    return pathlib.Path(one).read_bytes() == pathlib.Path(two).read_bytes()
-
-
-def plain(summary):
-    """Summary without times, the command and the number of ranks."""
-    return {key: value for key, value in summary.items() if key not in ("seconds", "command_line", "versions", "ranks")}
-
-
-def same_data(one, two):
-    """Returns True if all numbers of two HDF5 files are the same."""
-    with h5py.File(one) as first, h5py.File(two) as second:
-        names = []
-        first.visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
-        return bool(names) and all(name in second and np.array_equal(first[name][()], second[name][()], equal_nan=True)
-                                   for name in names)
+        ours, others = (answer_in(place, "log.txt", "restart.dat", "restart.old.dat", "original.prm", "parameters.prm") for place in (one, two))
+        expect(ours.keys() == others.keys() and "summary.json" in ours,
+               f"{self.name}, {what}: other files after a resume: {sorted(ours.keys() ^ others.keys())[:5]}")
+        for name in ours.keys() & others.keys():
+            expect(ours[name] == others[name], f"{self.name}, {what}: {name} is another one")

@@ -4,8 +4,12 @@ import csv
 import json
 import math
 import pathlib
+import re
 
 import h5py
+
+# Keys and columns that tell how a result was made, which may be different for the same result.
+COST = re.compile("second|cost_|speedup|command_line|memory|versions|ranks|checksum")
 
 
 def json_of(file):
@@ -23,6 +27,37 @@ def without_columns(text, *words):
     rows = list(csv.reader(text.splitlines()))
     kept = [i for i, name in enumerate(rows[0]) if not any(word in name for word in words)]
     return [[row[i] for i in kept if i < len(row)] for row in rows]
+
+
+def answer_in(folder, *but):
+    """What a command has computed: contents of all files of a folder, by their names, without COST. Not of files whose
+    names end so."""
+    return {str(file.relative_to(folder)): _answer(file) for file in sorted(pathlib.Path(folder).rglob("*"))
+            if file.is_file() and not file.name.endswith(but)}
+
+
+def _answer(file):
+    if file.suffix == ".json":
+        return _without_cost(json_of(file))
+    if file.suffix == ".csv":
+        return without_columns(file.read_text(encoding="utf-8"), *COST.pattern.split("|"))
+    if file.suffix != ".h5":
+        return file.read_bytes()
+    found = {}
+
+    def note(name, item):
+        title = bytes(item.attrs["name"]).decode() if "name" in item.attrs else name
+        if isinstance(item, h5py.Dataset) and not COST.search(title) and not COST.search(name):
+            found[name] = item[()].tobytes() if item.dtype.kind != "O" else repr(item[()])
+    with h5py.File(file, "r") as whole:
+        whole.visititems(note)
+    return found
+
+
+def _without_cost(value):
+    if isinstance(value, dict):
+        return {key: _without_cost(one) for key, one in value.items() if not COST.search(key)}
+    return [_without_cost(one) for one in value] if isinstance(value, list) else value
 
 
 def h5_columns(file, group):

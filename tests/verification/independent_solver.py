@@ -10,7 +10,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-import program as started  # noqa: E402
+from program import call, checks, expect, prm  # noqa: E402
 from tables import json_of  # noqa: E402
 
 REFERENCE = pathlib.Path(__file__).resolve().parents[2] / "contrib/reference/crawler_reference.py"
@@ -28,11 +28,10 @@ SCENES = {
     "a = 2, two harmonics, sines and cosines": (2, 1.5, 2, 0.6, 1.2, (0.1, -1.3, (1, 0.5), (-0.4, 0.3))),
     "a = -1.5, formula": (-1.5, 1, 1, 1, 1, "0.2*(1-cos(2*pi*t))*(sin(2*pi*(s+t))+s^2)"),
 }
-checks = started.Checks()
 
 
-def call(*arguments):
-    done = started.call(arguments)
+def printed(*arguments):
+    done = call(arguments)
     if done.returncode != 0:
         sys.exit(f"{' '.join(arguments)}\nexits with {done.returncode}:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
     return done.stdout
@@ -50,7 +49,7 @@ def reference(exponent, length, modulus, friction, end_time, stress):
     if not isinstance(stress, str):
         for name, coefficients in zip(("--sine", "--cosine"), stress[2:]):
             arguments += [name, *map(str, coefficients)]
-    return json.loads(call(sys.executable, str(REFERENCE), *arguments))
+    return json.loads(printed(sys.executable, str(REFERENCE), *arguments))
 
 
 def parameter_file(exponent, length, modulus, friction, end_time, stress):
@@ -63,10 +62,10 @@ def parameter_file(exponent, length, modulus, friction, end_time, stress):
                      "Optimal wave/Choose wave by=wave speed", f"Optimal wave/Wave speed={speed}",
                      f"Optimal wave/Sine coefficients={', '.join(map(str, sine))}",
                      f"Optimal wave/Cosine coefficients={', '.join(map(str, cosine))}"]
-    return started.prm(f"Accuracy={ACCURACY}", f"Body/Length={length}", f"Body/Elastic modulus={modulus}",
-                       f"Body/Friction coefficient={friction}", f"Body/Anchoring exponent={1 - exponent}",
-                       *("Active stress/" + entry for entry in generator), f"Time/End time={end_time}",
-                       "Output/Number of snapshots=0", "Output/Statistics=false")
+    return prm(f"Accuracy={ACCURACY}", f"Body/Length={length}", f"Body/Elastic modulus={modulus}",
+               f"Body/Friction coefficient={friction}", f"Body/Anchoring exponent={1 - exponent}",
+               *("Active stress/" + entry for entry in generator), f"Time/End time={end_time}",
+               "Output/Number of snapshots=0", "Output/Statistics=false")
 
 
 def crawler(folder, *scene):
@@ -75,8 +74,8 @@ def crawler(folder, *scene):
     file.write_text(parameter_file(*scene))
     summaries = []
     for cells in ("automatic", CELLS_FOR_EXTREMES):
-        call(sys.argv[1], "run", str(file), "--quiet", "--output", str(output), "--overwrite",
-             "--set", f"Discretization/Number of cells={cells}")
+        printed(sys.argv[1], "run", str(file), "--quiet", "--output", str(output), "--overwrite",
+                "--set", f"Discretization/Number of cells={cells}")
         summaries.append(json_of(output / "summary.json"))
     automatic, fine = summaries
     return {name: fine[name]["value"] if name.endswith("_stretch") else automatic[name] for name in TOLERANCE}
@@ -92,8 +91,7 @@ def main(folder):
             text = (f"{quantity:<13} {ours[quantity]:>15.10g}, reference {theirs[quantity]:>15.10g} +- {own_error:.0e}, "
                     f"difference {difference:.1e} of at most {tolerance:g}")
             print(f"  {text}", flush=True)
-            checks.expect(difference <= tolerance and own_error <= 0.2 * tolerance, text)
+            expect(difference <= tolerance and own_error <= 0.2 * tolerance, text)
 
 
-if __name__ == "__main__":
-    checks.run((main,))
+checks.run((main,))

@@ -14,7 +14,7 @@ import sys
 from scipy.stats import binom
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, sets  # noqa: E402
+from program import call, checks, expect, sets  # noqa: E402
 from tables import csv_rows  # noqa: E402
 
 BODY = "Body/Anchoring exponent : uniform(1.5, 4); Body/Elastic modulus : "
@@ -36,7 +36,6 @@ SCENES = {  # settings, axes
     "pulses": (["Active stress/Generator=pulse", "Time/End time=2"], BODY + "loguniform(0.7, 10)"),
 }
 ACCURACIES = ("1e-3", "1e-4", "1e-6")
-checks = Checks()
 
 
 def sweep(program, folder, settings, axes, points, seed, accuracy, more=()):
@@ -44,7 +43,7 @@ def sweep(program, folder, settings, axes, points, seed, accuracy, more=()):
             f"  set Seed = {seed}\n  set Axes = {axes}\nend\n")
     (folder / "sweep.prm").write_text(text, encoding="utf-8")
     done = call([program, "sweep", "sweep.prm", "--output", "out", "--overwrite", "--quiet", *sets([*settings, *more])], folder)
-    checks.expect(done.returncode == 0, f"the sweep over {axes}: {done.stderr}")
+    expect(done.returncode == 0, f"the sweep over {axes}: {done.stderr}")
     return csv_rows(folder / "out" / "results.csv")
 
 
@@ -76,10 +75,9 @@ def main(folder):
         covered = sum(ratio >= 1 for ratio in ratios) / len(ratios)
         largest = max(error / size for _, error, size in rows if size > 0)
         print(f"{number:40s} {len(rows):7d} {100 * covered:7.2f} % {ratios[len(ratios) // 2]:10.3g} {ratios[0]:8.2g} {largest:23.1e}")
-        checks.expect(sum(ratio < 1 for ratio in ratios) <= binom.ppf(0.99, len(rows), 0.01), f"{number}: 99 % are wanted")
-        checks.expect(len(rows) >= points, f"{number}: {len(rows)} were judged")
-    checks.expect(len(judged) >= 17, f"{len(judged)} numbers have error bounds, 17 are expected")
+        expect(sum(ratio < 1 for ratio in ratios) <= binom.ppf(0.99, len(rows), 0.01), f"{number}: 99 % are wanted")
+        expect(len(rows) >= points, f"{number}: {len(rows)} were judged")
+    expect(len(judged) >= 17, f"{len(judged)} numbers have error bounds, 17 are expected")
 
 
-if __name__ == "__main__":
-    checks.run((main,))
+checks.run((main,))

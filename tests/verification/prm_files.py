@@ -14,14 +14,13 @@ import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call  # noqa: E402
+from program import call, checks, expect  # noqa: E402
 from tables import json_of  # noqa: E402
 
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / "prm"
 GENERATED = FOLDER / "default.prm"  # the listing of all entries; it must run, but expects nothing
 FEW_SNAPSHOTS = ("--set", "Output/Number of snapshots=4")
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-checks = Checks()
 
 
 class Problem(Exception):
@@ -93,8 +92,7 @@ def main(folder):
             check(sys.argv[1], path, folder, row)
         except (Problem, OSError, ValueError) as problem:
             found = problem
-        checks.expect(found is None, f"{path.relative_to(FOLDER)}: {found}")
+        expect(found is None, f"{path.relative_to(FOLDER)}: {found}")
 
 
-if __name__ == "__main__":
-    checks.run((main,))
+checks.run((main,))

@@ -11,11 +11,10 @@ import statistics
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call  # noqa: E402
+from program import call, checks, expect  # noqa: E402
 from tables import json_of  # noqa: E402
 
 ACCURACIES = (1e-3, 1e-4, 1e-6)
-checks = Checks()
 
 
 def sensitivities(program, file, accuracy, folder):
@@ -46,9 +45,9 @@ def main(folder):
                     continue
                 true, of_true = exact[entry, number]
                 ratios[number].append(abs(value - true) / error)
-                checks.expect(abs(value - true) <= error + of_true,
-                              f"{file}, Accuracy {accuracy}: d({number})/d({entry}) = {value} +- {error}, "
-                              f"but {true} +- {of_true} at Accuracy {reference}")
+                expect(abs(value - true) <= error + of_true,
+                       f"{file}, Accuracy {accuracy}: d({number})/d({entry}) = {value} +- {error}, "
+                       f"but {true} +- {of_true} at Accuracy {reference}")
     for number, list_of_one in ratios.items():
         print(f"{number}: {len(list_of_one)} derivatives, true error/bound {statistics.median(list_of_one):.2g} in the "
               f"median, {max(list_of_one):.2g} at most")

@@ -218,8 +218,7 @@ def optimize(scene: Scene, variables: Mapping[str, tuple[float, float]] | None =
     (Optimize/Variables). objective="speed", starts=8, work=0.1, ... are entries of section Optimize. output: a folder for
     the files of `crawler optimize`. Raises InputError and FileError; a failed search has status and reason.
     """
-    own = {_keyword(entry): entry for entry in entries() if entry.startswith("Optimize/")}
-    overrides = _overrides({**(set or {}), **{own[name]: keywords.pop(name) for name in list(keywords) if name in own}}, keywords)
+    overrides = _overrides(set, keywords, "Optimize/")
     if variables is not None:
         overrides.append(f"Optimize/Variables={_ranges(variables)}")
     source = _source(scene, overrides)
@@ -245,12 +244,11 @@ def fit(scene: Scene, data: Union[str, os.PathLike, "Samples", Sequence, None] =
     Fit.variables has, for each, value, deviation, intervals and numerical error; Fit.undetermined the combinations that
     the data do not determine. Raises InputError, FileError, and RuntimeError where the fit fails.
     """
-    own = {_keyword(entry): entry for entry in entries() if entry.startswith("Fit/")}
     for option, _, _ in importlib.import_module(".measured.options", __name__).READING:
         if (name := option.replace("-", "_")) in keywords:
             raise InputError(f'"{name}" is for the reading of a file: data = measured.read_samples(NAME, {name}=...) is expected (the entry of a table: '
                              "set={...} with its full name)")
-    overrides = _overrides({**(set or {}), **{own[name]: keywords.pop(name) for name in list(keywords) if name in own}}, keywords)
+    overrides = _overrides(set, keywords, "Fit/")
     if variables is not None:
         overrides.append(f"Fit/Variables={_ranges(variables)}")
     fitting = importlib.import_module(".fitting", __name__)
@@ -343,11 +341,12 @@ def _axis(values, name):
     return ", ".join(f'"{text}"' if re.search("[,;:]", text) else text for text in texts)
 
 
-def _full_name(name):
-    """Entry with this full name, or the only one with this keyword."""
+def _full_name(name, section=""):
+    """Entry with this full name, or the only one with this keyword, if there are several that in a section."""
     if "/" in name or name in entries() or name == "File":
         return name
     found = [entry for entry in entries() if _keyword(entry) == name]
+    found = [entry for entry in found if section and entry.startswith(section)] or found
     if len(found) == 1:
         return found[0]
     if found:
@@ -361,8 +360,8 @@ def _keyword(entry):
     return entry.split("/")[-1].lower().replace(" ", "_").replace("-", "_")
 
 
-def _overrides(settings, keywords):
-    pairs = [*_flat(settings or {}), *((_full_name(name), value) for name, value in keywords.items())]
+def _overrides(settings, keywords, section=""):
+    pairs = [*_flat(settings or {}), *((_full_name(name, section), value) for name, value in keywords.items())]
     return [f"{name}={_text(value, name)}" for name, value in pairs]
 
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // The generator "prescribed strain": its stress, its three sources of strain, and what it refuses; and the pieces that
-// it is made of (Gauss panels, splines, derivatives of formulas).
+// it is made of (Gauss panels, splines).
 #include "../../support/complaint.h"
 #include "../../support/grid_text.h"
 #include "../../support/run_text.h"
@@ -12,7 +12,6 @@
 #include <crawler/base/cubic_spline.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/gauss_panels.h>
-#include <crawler/formula/formula_gradient.h>
 #include <crawler/scene/active_stress/prescribed_strain.h>
 
 using namespace crawler;
@@ -75,36 +74,6 @@ TEST(GaussPanels, AreExactForPolynomials)
     GaussPanels::Places(panels, places).running_integral(g, at);
     for (std::size_t i = 0; i < places.size(); ++i)
       EXPECT_NEAR(at[i], (std::pow(places[i], 8) - std::pow(0.5, 8)) / 8., 1e-12);
-  }
-}
-
-/// Every operator and function, against central differences.
-TEST(FormulaRate, IsTheDerivative)
-{
-  for (const std::string text : {"s*t + t^2 - 3*t/(s+2) + -t",
-                                 "sin(t*s) + cos(3*t) + tan(t/3)",
-                                 "asin(t/2) - acos(t*s/3) + atan(t) + atan2(t, s+1)",
-                                 "sinh(t) + cosh(s*t) + tanh(t-s) + asinh(t) + acosh(t+2) + atanh(t/3)",
-                                 "log(t+1) + ln(t+s+1) + log2(t+1) + log10(t+2) + exp(-t^2) + sqrt(t+s+1)",
-                                 "abs(t-2) + abs(t) + sign(t)*t + floor(7*t) + ceil(t) + rint(9*t)",
-                                 "t^3 + t^4 + 2*t+1 + s^t + t^s + pow(t, 2.5) + 2^t",
-                                 "mod(3*t, 0.7) + erf(t) + erfc(t*s)",
-                                 "min(t, s, 2) + max(t*s, 0.1) + sum(t, s, t^2) + avg(t, 3*t)",
-                                 "t > 0.3 ? sin(t) : cos(t)",
-                                 "(t > 0.9 || s < 0.1) && t < 2 ? t^2 : (t == 3 ? 1 : t*s)"})
-  {
-    const auto formula = std::make_shared<const Formula>(text, Formula::Constants{});
-    const auto points  = equal_parts(0.15, 0.85, 99);
-    FormulaAtPoints values(formula, points);
-    std::vector<double> before(points.size()), after(points.size()), derivative(points.size());
-    const double t = 0.4123, h = 1e-5;
-    values.values(t - h, before);
-    values.values(t + h, after);
-    std::vector<double> m(points.size());
-    FormulaGradient(formula).evaluate(
-      std::array<std::span<const double>, 2>{{points, {&t, 1}}}, m, std::array<std::span<double>, 2>{{{}, derivative}});
-    for (std::size_t i = 0; i < points.size(); ++i)
-      EXPECT_NEAR(derivative[i], (after[i] - before[i]) / (2. * h), 1e-7) << text << " at s = " << points[i];
   }
 }
 

@@ -40,5 +40,4 @@ def main():
     return 1 if bad or len(objects) < 2 else 0
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+sys.exit(main())

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// The block-tridiagonal elimination against a dense solution, also on several ranks and with more ranks than cells.
+// The block-tridiagonal elimination against the sum of all cells, also on several ranks and with more ranks than cells.
 #include "../../support/test.h"
 
 #include <crawler/mesh/block_tridiagonal_matrix.h>
-
-#include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/vector.h>
 
 using namespace crawler;
 
@@ -37,7 +34,7 @@ namespace
   }
 } // namespace
 
-TEST(BlockTridiagonalMatrix, AgreesWithADenseMatrix)
+TEST(BlockTridiagonalMatrix, IsTheSumOfItsCells)
 {
   for (const unsigned int q : {1u, 2u, 3u, 5u, 8u})
     for (const unsigned int n_cells : {1u, 2u, 3u, 7u, 20u})
@@ -49,28 +46,26 @@ TEST(BlockTridiagonalMatrix, AgreesWithADenseMatrix)
       fill(matrix, d, first_cell);
 
       const unsigned int N = n_cells * q + 1;
-      dealii::FullMatrix<double> dense(N, N);
+      std::vector<double> x(N), b(N);
+      for (unsigned int i = 0; i < N; ++i)
+        x[i] = scattered(1000 + i);
       for (unsigned int c = 0; c < n_cells; ++c)
         for (unsigned int i = 0; i <= q; ++i)
           for (unsigned int j = 0; j <= q; ++j)
-            dense(c * q + i, c * q + j) += entry(c, i, j, q + 1);
-      dealii::Vector<double> x(N), b(N);
-      for (unsigned int i = 0; i < N; ++i)
-        x(i) = scattered(1000 + i);
-      dense.vmult(b, x);
+            b[c * q + i] += entry(c, i, j, q + 1) * x[c * q + j];
 
       const std::size_t first = first_cell * q + (d.has_left_neighbour() ? 1 : 0);
       std::vector<double> own(d.n_owned()), result(d.n_owned());
       for (std::size_t i = 0; i < own.size(); ++i)
-        own[i] = x(first + i);
+        own[i] = x[first + i];
       matrix.multiply(own, result);
       for (std::size_t i = 0; i < own.size(); ++i)
-        EXPECT_NEAR(result[i], b(first + i), 1e-12 * N) << "multiply, degree " << q << ", cells " << n_cells;
+        EXPECT_NEAR(result[i], b[first + i], 1e-12 * N) << "multiply, degree " << q << ", cells " << n_cells;
 
       ASSERT_TRUE(matrix.factorize());
       matrix.solve(result, result);
       for (std::size_t i = 0; i < own.size(); ++i)
-        EXPECT_NEAR(result[i], x(first + i), 1e-12) << "solve, degree " << q << ", cells " << n_cells;
+        EXPECT_NEAR(result[i], x[first + i], 1e-12) << "solve, degree " << q << ", cells " << n_cells;
     }
 }
 

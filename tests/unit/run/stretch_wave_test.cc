@@ -119,24 +119,6 @@ namespace
     EXPECT_FALSE(wave_of([](double, double) { return 0.1; }));
   }
 
-  /// Steps along the body and in time have no derivatives. The speed of N segments is that of a line through their
-  /// steps, which is less steep by 1/N^2.
-  TEST(StretchWave, OfSegmentsThatSwitchHasTheirSpeed)
-  {
-    for (const unsigned int n : {8, 16, 32, 64})
-      for (const double gap : {0., 0.5})
-        for (const double duty : {0.2, 0.5, 0.7})
-          for (const double waves : {-1.6, -1., 0.5, 1., 2.})
-          {
-            const auto wave      = wave_of(segments(n, waves / n, duty, gap));
-            const double pitches = n + (n - 1) * gap, speed = (1. + gap) / pitches * n / waves;
-            ASSERT_TRUE(wave);
-            EXPECT_NEAR(wave->speed, speed, (0.015 + 2. / (n * n)) * std::abs(speed))
-              << n << ' ' << gap << ' ' << waves;
-            EXPECT_GT(wave->coherence, 0.35);
-          }
-  }
-
   /// What is seen of lags beyond half a period runs the other way, and of half a period nothing runs.
   TEST(StretchWave, OfLargeLagsIsTheOneThatIsSeen)
   {

@@ -151,6 +151,8 @@ TEST(Segments, Saturation)
     EXPECT_EQ(value(saturated, 0.5, t), std::min(value(whole, 0.5, t), 2.));
   for (const double y : {1e-6, 0.2, 0.5, 0.9})
     EXPECT_NEAR(smooth_step(smooth_step_inverse(y)), y, 1e-14);
+  for (const double x : {-1., 0., 1e-200, 1. - 1e-16, 1., 2.})
+    EXPECT_NEAR(smooth_step_rate(x), 0., 1e-100) << x;
 }
 
 /// Against central differences away from the jumps, with a ramp; and there is no period then.

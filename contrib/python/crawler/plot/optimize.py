@@ -17,8 +17,8 @@ and matplotlib.
 import collections
 import math
 
-from plotting import (COLOURS, NAMES, Kymograph, Parameters, InputError, draw_field, existing, need, number, parser, picture_of,
-                      read_rows, read_summary, run_script, save)
+from plotting import (COLOURS, NAMES, Kymograph, InputError, draw_field, existing, need, number, parameters, parser,
+                      picture_of, read_rows, read_summary, run_script, save)
 
 need("numpy", "matplotlib")
 import matplotlib.pyplot as plt
@@ -55,13 +55,13 @@ class Optimisation:
         self.folder = folder
         rows = read_rows(existing(folder / "results.csv", expected))
         summary = read_summary(folder, expected)
-        parameters = Parameters(existing(folder / "parameters.prm", expected))
+        entries = parameters(existing(folder / "parameters.prm", expected))
         if "optimize" not in summary or (rows and "violation" not in rows[0]):
             raise InputError(f"{folder} has no optimisation; {expected} is expected")
         self.optima = summary["optimize"]["optima"]
         self.objective = summary["optimize"]["objective"]
-        self.direction = parameters.values.get("Optimize/Direction")
-        admissible = max(ADMISSIBLE, number(parameters.values["Optimize/Tolerance"]))
+        self.direction = entries.get("Optimize/Direction")
+        admissible = max(ADMISSIBLE, number(entries["Optimize/Tolerance"]))
         # Pairs (evaluation, objective) by (case, start), and the number of evaluations.
         self.starts, self.excessive, self.lengths = (collections.defaultdict(kind) for kind in (list, list, int))
         for row in rows:

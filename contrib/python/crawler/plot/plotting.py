@@ -94,27 +94,16 @@ def results():
     return crawler.results
 
 
-class Parameters:
-    """Entries of a file parameters.prm, by their full names, e.g. "Body/Length"."""
-
-    def __init__(self, path):
-        entries = results().entries_of(path.read_text(encoding="utf-8"))
-        self.path, self.values, self.units = path, *({name: entry[part] for name, entry in entries.items()}
-                                                     for part in ("value", "unit"))
-
-    def number(self, name):
-        """Value of an entry."""
-        try:
-            return float(self.values[name])
-        except (KeyError, ValueError):
-            raise InputError(f"{self.path} has no number {name}") from None
+def parameters(path):
+    """Values of a file parameters.prm, by the full names of entries, e.g. "Body/Length"."""
+    return results().parameters_of(path.read_text(encoding="utf-8"))
 
 
 def unit_names(folder):
     """Names of the user for length, time and force in a study (section Units); these words where unknown."""
     path = folder / "parameters.prm"
-    known = Parameters(path).values if path.is_file() else {}
-    names = {word: known.get(f"Units/{word.capitalize()}", word) for word in ("length", "time", "force")}
+    known = parameters(path) if path.is_file() else {}
+    names = {word: str(known.get(f"Units/{word.capitalize()}", word)) for word in ("length", "time", "force")}
     return names if all(word == name for word, name in names.items()) else \
         {**names, "energy": f"{names['force']} {names['length']}"}
 
@@ -137,8 +126,10 @@ class Kymograph:
     def __init__(self, folder, *names):
         what = "the output folder of a run that was not stopped, with Output/Kymograph = true and snapshots,"
         path = existing(folder / "kymograph.vts", what)
-        self.folder, parameters = folder, Parameters(existing(folder / "parameters.prm", what))
-        self.length, self.duration = (parameters.number(name) for name in ("Body/Length", "Time/End time"))
+        self.folder, entries = folder, parameters(existing(folder / "parameters.prm", what))
+        self.length, self.duration = (entries.get(name) for name in ("Body/Length", "Time/End time"))
+        if not isinstance(self.length, (int, float)) or not isinstance(self.duration, (int, float)):
+            raise InputError(f"{folder / 'parameters.prm'} has no number Body/Length or no number Time/End time")
         try:
             arrays = results().read_kymograph(path)
             self.fields = {name: arrays[name] for name in names}

@@ -3,7 +3,6 @@
 
 #include <crawler/base/exceptions.h>
 #include <crawler/studies/core/form.h>
-#include <crawler/studies/tradeoff/tradeoff_reference.h>
 #include <crawler/studies/tradeoff/tradeoff_settings.h>
 
 using namespace crawler;
@@ -137,15 +136,4 @@ TEST(TradeoffSetting, IsAListOfOverrides)
   EXPECT_EQ(values_of(other.file, other.parameters).time.initial_step, 0.3);
   setting.not_offered = "a reason";
   EXPECT_TRUE(overrides(setting, other.parameters, 1.).empty());
-}
-
-TEST(TradeoffReference, AsJsonAndBack)
-{
-  TradeoffReference reference;
-  reference.bar                = 1. / 3.;
-  reference.check              = {"another", 1. + 1e-15, 1e-9};
-  const TradeoffReference read = nlohmann::json::parse(nlohmann::json(reference).dump());
-  EXPECT_EQ(read.bar, reference.bar);
-  EXPECT_EQ(read.check.method, "another");
-  EXPECT_EQ(read.check.displacement, reference.check.displacement);
 }
