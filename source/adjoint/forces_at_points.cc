@@ -40,7 +40,9 @@ namespace crawler
       at_.w[p]    = 1. + at_.e[p];
       at_.rate[p] = at.rate[p] / (longer_[p] * slower);
     }
-    go_to(in_time_.image(piece), in_time_(piece, at.t));
+    piece_ = in_time_.image(piece);
+    at_.t  = in_time_(piece, at.t);
+    go_to(piece_, at_.t);
     sliding_->evaluate(at_.u, at_.v);
     scene_.friction->values(at_.w, g_);
   }
@@ -91,6 +93,7 @@ namespace crawler
     }
     if (is_end)
       add(right, edges.back(), 1.);
+    go_to(piece_, at_.t);
     return sum;
   }
 

@@ -88,7 +88,8 @@ namespace crawler
     std::vector<double> longer_;
     std::optional<BodyForceAtPoints> body_;
     std::optional<SlidingAtPoints> sliding_;
-    StateAtPoints at_;
+    StateAtPoints at_;      ///< the state in this body, at the time of this scene
+    std::size_t piece_ = 0; ///< of the active stress there
     std::vector<double> g_, w_dg_;
   };
 } // namespace crawler
