@@ -46,16 +46,16 @@ namespace crawler
     class Chooser
     {
     public:
-      Chooser(MPI_Comm communicator, const RunParameters &parameters, const Scene &scene, const KeepGoing &keep_going)
-        : pilots_(communicator, parameters, scene, keep_going)
-        , own_(parameters.discretization)
-        , time_(parameters.time)
-        , accuracy_(parameters.accuracy)
-        , has_own_steps_(parameters.time.tolerance || parameters.time.step_control == StepControl::fixed)
+      explicit Chooser(const Problem &problem)
+        : pilots_(problem)
+        , own_(problem.parameters.discretization)
+        , time_(problem.parameters.time)
+        , accuracy_(problem.parameters.accuracy)
+        , has_own_steps_(time_.tolerance || time_.step_control == StepControl::fixed)
       {
         Numerics &n      = choice_.numerics;
         n.degree         = own_.degree.value_or(automatic_degree);
-        n.initial_step   = time_.initial_step.value_or(multistep_start * scene.end_time);
+        n.initial_step   = time_.initial_step.value_or(multistep_start * problem.scene.end_time);
         n.step_limits    = pilots_.scales.step_limits;
         n.min_event      = pilots_.scales.jumps_move ? 0. : min_event * pilots_.scales.stress;
         choice_.is_rough = !pilots_.scales.is_smooth;
@@ -298,26 +298,24 @@ namespace crawler
   } // namespace
 
   std::optional<NumericsChoice>
-  choose_numerics(MPI_Comm communicator,
-                  const RunParameters &parameters,
-                  const Scene &scene,
-                  const KeepGoing &keep_going)
+  choose_numerics(const Problem &problem)
   {
+    const Scene &scene = problem.scene;
     try
     {
-      if (const auto end = end_of_first_strides(parameters, scene))
+      if (const auto end = end_of_first_strides(problem.parameters, scene))
       {
-        if (may_settle(parameters, scene))
+        if (may_settle(problem.parameters, scene))
           try
           {
-            return Chooser(communicator, parameters, scene, keep_going).choose(/*must_settle=*/true);
+            return Chooser(problem).choose(/*must_settle=*/true);
           }
           catch (const PilotsUnsettled &) // coarse steps keep cycles from repeating
           {
           }
         Scene beginning       = scene;
         beginning.end_time    = *end;
-        NumericsChoice choice = Chooser(communicator, parameters, beginning, keep_going).choose();
+        NumericsChoice choice = Chooser({problem.parameters, beginning, problem.keep_going, problem.ranks}).choose();
         if (std::isfinite(choice.wanted_error) || choice.is_of_several_runs())
         {
           choice.numerics.step_limits = stress_scales(scene).step_limits;
@@ -328,7 +326,7 @@ namespace crawler
           return choice;
         }
       }
-      return Chooser(communicator, parameters, scene, keep_going).choose();
+      return Chooser(problem).choose();
     }
     catch (const PilotsInterrupted &)
     {

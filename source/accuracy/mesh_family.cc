@@ -50,20 +50,16 @@ namespace crawler
     class Family
     {
     public:
-      Family(const RunParameters &parameters,
-             const Scene &scene,
-             const NumericsChoice &choice,
-             const Simulation::Options &options,
-             const KeepGoing &keep_going)
-        : parameters_(parameters)
-        , scene_(scene)
+      Family(const Problem &problem, const NumericsChoice &choice, const Simulation::Options &options)
+        : problem_(problem)
+        , parameters_(problem.parameters)
+        , scene_(problem.scene)
         , options_(options)
-        , keep_going_(keep_going)
       {
         answer_.choice          = choice;
         options_.resolution     = ResolutionWish::size; // the size of the deformation
         options_.energy_balance = true;                 // works tell whether displacements agree by chance
-        options_.cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false); // these runs write none
+        options_.cycles         = cycle_wish(parameters_, scene_, /*has_pictures=*/false); // these runs write none
         if (options_.cycles)
           options_.cycles->accuracy *= 0.1; // displacements are compared
       }
@@ -131,7 +127,7 @@ namespace crawler
       run(const Numerics &numerics)
       {
         ++n_runs_;
-        return Simulation(MPI_COMM_SELF, scene_, parameters_.time, numerics).run({}, options_, {}, keep_going_);
+        return Simulation(MPI_COMM_SELF, scene_, parameters_.time, numerics).run({}, options_, {}, problem_.keep_going);
       }
 
       static bool
@@ -491,10 +487,10 @@ namespace crawler
         return answer_;
       }
 
+      const Problem &problem_;
       const RunParameters &parameters_;
       const Scene &scene_;
       Simulation::Options options_;
-      const KeepGoing &keep_going_;
       Answer answer_;
       SimulationResult latest_, extrapolated_;
       std::vector<Level> levels_;       ///< levels that agree
@@ -506,13 +502,9 @@ namespace crawler
   } // namespace
 
   Answer
-  answer_of_family(const RunParameters &parameters,
-                   const Scene &scene,
-                   const NumericsChoice &choice,
-                   const Simulation::Options &options,
-                   const KeepGoing &keep_going)
+  answer_of_family(const Problem &problem, const NumericsChoice &choice, const Simulation::Options &options)
   {
-    Answer answer = Family(parameters, scene, choice, options, keep_going).compute();
+    Answer answer = Family(problem, choice, options).compute();
     if (!options.energy_balance) // not requested
     {
       answer.result.energy_balance.reset();

@@ -29,13 +29,12 @@ namespace crawler
     class Fronts
     {
     public:
-      Fronts(const RunParameters &parameters, const Scene &scene, const AnswerOf &answer_of)
-        : parameters_(parameters)
-        , scene_(scene)
+      Fronts(const Problem &problem, const std::function<Answer(const Problem &)> &answer_of)
+        : problem_(problem)
         , answer_of_(answer_of)
+        , parameters_(problem.parameters)
       {
-        parameters_.accuracy       = std::clamp(part_of_runs * parameters.accuracy, min_accuracy, largest_accuracy);
-        wanted_part_               = parameters.accuracy;
+        parameters_.accuracy = std::clamp(part_of_runs * problem.parameters.accuracy, min_accuracy, largest_accuracy);
         parameters_.error_estimate = true; // the fronts are chosen by it
       }
 
@@ -44,7 +43,8 @@ namespace crawler
       {
         for (double part = first_part; part >= last_part && n_steps_ <= max_steps; part *= 0.5)
         {
-          Answer next         = answer_of_(parameters_, *with_fronts(scene_, part));
+          const Scene scene   = *with_fronts(problem_.scene, part);
+          Answer next         = answer_of_({parameters_, scene, problem_.keep_going});
           const bool inverted = next.result.time.status == Status::inverted;
           const bool is_known = next.result.error && std::isfinite(next.result.error->total);
           const bool stopped  = next.result.time.status == Status::stopped;
@@ -93,7 +93,8 @@ namespace crawler
         if (second)
           answer_.result.inversion_error = 2. * std::abs(t - *inversion_);
         inversion_ = t;
-        return second && *answer_.result.inversion_error <= std::max(wanted_part_, settled_inversion) * t;
+        return second &&
+               *answer_.result.inversion_error <= std::max(problem_.parameters.accuracy, settled_inversion) * t;
       }
 
       double
@@ -101,7 +102,7 @@ namespace crawler
       {
         const SimulationResult &result = answer_.result;
         const double size              = std::max(std::abs(result.displacement), displacement_floor * result.largest_u);
-        return wanted_part_ * size;
+        return problem_.parameters.accuracy * size;
       }
 
       /// Extrapolated results of the levels from @p first on.
@@ -116,7 +117,7 @@ namespace crawler
           results.push_back(&levels_[i].result);
         }
         const std::vector<double> weights = weights_at_zero(widths);
-        SimulationResult sum              = combined(scene_, results, weights);
+        SimulationResult sum              = combined(problem_.scene, results, weights);
         for (const auto extreme : {&SimulationResult::min_stretch, &SimulationResult::max_stretch})
         {
           double value = 0.;
@@ -172,21 +173,20 @@ namespace crawler
         fails_accuracy(result, wanted(), "steeper fronts have no answer");
       }
 
+      const Problem &problem_;
+      const std::function<Answer(const Problem &)> &answer_of_;
       RunParameters parameters_; ///< parameters of the runs
-      const Scene &scene_;
-      const AnswerOf &answer_of_;
       Answer answer_;
       std::vector<Level> levels_;
       std::optional<double> inversion_; ///< time of inversion of the previous fronts
       std::optional<double> before_;    ///< displacement extrapolated to fewer widths
-      double wanted_part_    = 0.;
       unsigned long n_steps_ = 0;
     };
   } // namespace
 
   Answer
-  answer_of_fronts(const RunParameters &parameters, const Scene &scene, const AnswerOf &answer_of)
+  answer_of_fronts(const Problem &problem, const std::function<Answer(const Problem &)> &answer_of)
   {
-    return Fronts(parameters, scene, answer_of).compute();
+    return Fronts(problem, answer_of).compute();
   }
 } // namespace crawler

@@ -16,14 +16,8 @@ namespace crawler
     constexpr double one_step_start = 1e-2;
   } // namespace
 
-  Pilots::Pilots(const MPI_Comm own_communicator,
-                 const RunParameters &own_parameters,
-                 const Scene &own_scene,
-                 const KeepGoing &own_keep_going)
-    : communicator(own_communicator)
-    , keep_going(own_keep_going)
-    , parameters(own_parameters)
-    , scene(own_scene)
+  Pilots::Pilots(const Problem &problem)
+    : Problem(problem)
     , scales(stress_scales(scene))
     , time(parameters.time)
     , cycles(cycle_wish(parameters, scene, /*has_pictures=*/false))
@@ -43,7 +37,7 @@ namespace crawler
     TimeParameters own = time;
     if (must_settle)
       own.max_steps = std::min(own.max_steps, max_settling_steps);
-    Simulation simulation(communicator, scene, own, numerics);
+    Simulation simulation(ranks, scene, own, numerics);
     ++n;
     SimulationResult result =
       simulation.run({}, {.energy_balance = false, .resolution = resolution, .cycles = cycles}, {}, keep_going);

@@ -19,7 +19,7 @@
 #include "anything.h"
 
 #include <crawler/accuracy/answer.h>
-#include <crawler/accuracy/graded_choice.h>
+#include <crawler/accuracy/mesh_choices.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/mpi_session.h>
 #include <crawler/run/self_check.h>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/accuracy/answer.h>
 #include <crawler/accuracy/stress_scales.h>
-#include <crawler/run/run_parameters.h>
-#include <crawler/run/simulation.h>
 
 #include <optional>
 #include <string>
@@ -28,10 +27,10 @@ namespace crawler
   {
   };
 
-  /// Pilot runs of a scene, coarse and with loose tolerances, and what the last one that counts has measured.
-  struct Pilots
+  /// Problem with its pilot runs, coarse and with loose tolerances, and what the last one that counts has measured.
+  struct Pilots : Problem
   {
-    Pilots(MPI_Comm communicator, const RunParameters &parameters, const Scene &scene, const KeepGoing &keep_going);
+    explicit Pilots(const Problem &problem);
 
     /// Runs the scene (collective). Throws PilotsInterrupted, and PilotsUnsettled if it must settle.
     SimulationResult
@@ -87,10 +86,6 @@ namespace crawler
     double
     first_step(const Numerics &numerics) const;
 
-    const MPI_Comm communicator;
-    const KeepGoing &keep_going;
-    const RunParameters &parameters;
-    const Scene &scene;
     const StressScales scales;
     TimeParameters time;
     std::optional<CycleWish> cycles;

@@ -189,7 +189,7 @@ TEST(MeshFamily, IsChosenWhereTheStretchIsSmallOrTheBodySoft)
 {
   const auto form = [](const Settings &settings) {
     const Parameters parameters = test::parameters_with(settings);
-    return choose_numerics(MPI_COMM_SELF, parameters, parameters.create_scene())->numerics.formulation;
+    return choose_numerics({parameters, parameters.create_scene()})->numerics.formulation;
   };
   EXPECT_EQ(form(test::wave(-1., 0.2)), Formulation::position);
   EXPECT_EQ(form(test::wave(1., 0.2, -1.)), Formulation::position);
@@ -208,14 +208,13 @@ TEST(MeshFamily, NumbersNeedFewerCyclesThanFiles)
 {
   const Parameters parameters = test::parameters_with(test::set("p = 2; k = 0.5; T = 20; Accuracy = 1e-2; segments"));
   const Scene scene           = parameters.create_scene();
-  const auto choice           = choose_numerics(MPI_COMM_SELF, parameters, scene);
+  const auto choice           = choose_numerics({parameters, scene});
   ASSERT_TRUE(choice && choice->is_family);
   SimulationResult files;
   const auto simulate = [&](const NumericsChoice &chosen) {
     return files = Simulation(MPI_COMM_SELF, scene, parameters.time, chosen.numerics).run({}, {});
   };
-  const SimulationResult numbers =
-    run_to_accuracy(MPI_COMM_SELF, parameters, scene, *choice, simulate, {}, /*writes=*/true, {}).result;
+  const SimulationResult numbers = run_to_accuracy({parameters, scene}, *choice, simulate, {}, /*writes=*/true).result;
   EXPECT_EQ(files.time.time, scene.end_time);
   EXPECT_FALSE(files.cycles);
   EXPECT_TRUE(numbers.cycles);
@@ -227,11 +226,11 @@ TEST(MeshFamily, CanBeStopped)
 {
   const Parameters parameters = test::parameters_with(test::with(test::wave(-1., 0.4), stretch));
   const Scene scene           = parameters.create_scene();
-  const auto choice           = choose_numerics(MPI_COMM_SELF, parameters, scene);
+  const auto choice           = choose_numerics({parameters, scene});
   ASSERT_TRUE(choice && choice->is_family);
   unsigned int n_steps  = 0;
   const auto keep_going = [&]() { return ++n_steps < 100; };
-  const Answer answer   = answer_of_family(parameters, scene, *choice, {}, keep_going);
+  const Answer answer   = answer_of_family({parameters, scene, keep_going}, *choice, {});
   EXPECT_EQ(answer.result.time.status, Status::stopped);
   EXPECT_EQ(n_steps, 100u);
 }
