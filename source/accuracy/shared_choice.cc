@@ -4,7 +4,7 @@
 #include <crawler/accuracy/shared_choice.h>
 #include <crawler/accuracy/stress_scales.h>
 #include <crawler/run/batch.h>
-#include <crawler/run/stress_watch.h>
+#include <crawler/run/step_limiter.h>
 #include <crawler/time/integrators.h>
 
 #include <algorithm>
