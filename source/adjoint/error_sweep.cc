@@ -36,24 +36,6 @@ namespace crawler
       }
     };
 
-    /// Adds the bubbles of all cells, @p c [cell][function], at the points of the cells.
-    void
-    add_bubbles(const Bubbles &bubbles,
-                const CellPoints &cells,
-                const LaneSetup &setup,
-                const double *c,
-                std::vector<double> &values,
-                std::vector<double> &slopes)
-    {
-      for (std::size_t p = 0; p < cells.size(); ++p)
-        for (unsigned int j = 0; j < Bubbles::n; ++j)
-        {
-          const std::size_t cell = cells.cell_of(p), row = p % cells.per_cell * Bubbles::n + j;
-          values[p] += c[cell * Bubbles::n + j] * bubbles.values[row];
-          slopes[p] += c[cell * Bubbles::n + j] * bubbles.slopes[row] / setup.sizes[cell];
-        }
-    }
-
     /// One backward sweep.
     class ErrorSweep
     {
@@ -132,6 +114,19 @@ namespace crawler
         look_at_bubbles(step, mu.data(), n, of_cells);
       }
 
+      /// Adds the bubbles of all cells, @p c [cell][function], at the points of the cells.
+      void
+      add_bubbles(const double *c, std::vector<double> &values, std::vector<double> &slopes) const
+      {
+        for (std::size_t p = 0; p < fine_.size(); ++p)
+          for (unsigned int j = 0; j < Bubbles::n; ++j)
+          {
+            const std::size_t cell = fine_.cell_of(p), row = p % fine_.per_cell * Bubbles::n + j;
+            values[p] += c[cell * Bubbles::n + j] * bubbles_.values[row];
+            slopes[p] += c[cell * Bubbles::n + j] * bubbles_.slopes[row] / setup_.sizes[cell];
+          }
+      }
+
       /// States of all stages with the contribution of the bubbles @p c [stage][cell][function].
       std::vector<StateAtPoints>
       with_bubbles(const std::vector<double> &c, const double h) const
@@ -144,8 +139,8 @@ namespace crawler
           for (unsigned int j = 0; j < tableau_.n; ++j)
             for (std::size_t b = 0; b < n_bubbles(); ++b)
               rate[b] += slopes_[i * tableau_.n + j] / h * c[j * n_bubbles() + b];
-          add_bubbles(bubbles_, fine_, setup_, c.data() + i * n_bubbles(), states[i].u, states[i].e);
-          add_bubbles(bubbles_, fine_, setup_, rate.data(), states[i].v, states[i].rate);
+          add_bubbles(c.data() + i * n_bubbles(), states[i].u, states[i].e);
+          add_bubbles(rate.data(), states[i].v, states[i].rate);
           for (std::size_t p = 0; p < states[i].e.size(); ++p)
             states[i].w[p] = 1. + states[i].e[p];
         }
