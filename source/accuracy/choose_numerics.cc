@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/choose_numerics.h>
-#include <crawler/accuracy/form_choice.h>
 #include <crawler/accuracy/mesh_choices.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/plain_numbers.h>
@@ -39,6 +38,9 @@ namespace crawler
     /// have their numerics chosen by those strides. Strides are slow to repeat below this stiffness, in natural units
     /// of a stride.
     constexpr double first_strides = 3., long_run = 4., min_settling_stiffness = 0.02;
+    /// Lengths of the active stress on the body, and Accuracy, beyond which many cells of the position form are cheaper
+    /// than the stretch form.
+    constexpr double max_lengths = 30., min_steep_accuracy = 1e-7;
     /// Relative error that very soft bodies may have on adaptive meshes, whatever Accuracy is.
     constexpr double soft_error = 3e-3;
 
@@ -106,12 +108,13 @@ namespace crawler
             space_over_time_ = *ratio;
             return true;
           }
-        const bool may_be_stretch = may_be_stretch_form(pilots_.parameters, scene);
-        if (may_be_stretch && is_soft(pilots_.stiffness(), scene.friction_exponent(), accuracy_))
+        const bool may_be_stretch = may_be_stretch_form(pilots_);
+        if (may_be_stretch && pilots_.is_soft())
           return false;
         // Solutions unresolved by few cells are steep, not fine, if the active stress is smooth: fronts of friction.
         const bool may_be_steep = may_be_stretch && scene.friction_exponent() < 0. &&
-                                  is_cheaper_than_many_cells(scene.body.length / pilots_.scales.length, accuracy_);
+                                  scene.body.length / pilots_.scales.length < max_lengths &&
+                                  accuracy_ >= min_steep_accuracy;
         bool enough = false;
         if (own_.mesh != MeshKind::adaptive)
         {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/choose_numerics.h>
 #include <crawler/accuracy/error_estimate.h>
-#include <crawler/accuracy/form_choice.h>
 #include <crawler/accuracy/mesh_family.h>
 #include <crawler/accuracy/moving_fronts.h>
+#include <crawler/accuracy/pilots.h>
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
@@ -96,42 +96,17 @@ namespace crawler
       return run_to_accuracy(alone, choice, simulate, own, /*writes=*/false);
     }
 
-    /// Answer of the position form where the meshes of the stretch form, which has few digits, do not meet Accuracy: a
-    /// uniform mesh may meet it, or come nearer. Nothing if it gives no displacement with a bound.
+    /// Answer of one form where the other one, which the rule chose, has none that is as accurate as wanted. Nothing
+    /// without numerics, or if its mesh would be adaptive.
     std::optional<Answer>
-    answer_of_position_form(const Problem &problem, const Simulation::Options &options)
+    answer_in_form(const FormulationEntry form, const Problem &problem, const Simulation::Options &options)
     {
-      if (problem.parameters.discretization.formulation != FormulationEntry::automatic)
-        return std::nullopt;
       RunParameters own              = problem.parameters;
-      own.discretization.formulation = FormulationEntry::position;
+      own.discretization.formulation = form;
       const Problem other{own, problem.scene, problem.keep_going};
       const auto choice = choose_numerics(other);
-      if (!choice || choice->numerics.mesh.tolerance > 0.)
-        return std::nullopt;
-      Answer answer = answer_with(*choice, other, options);
-      if (!answer.result.error || !std::isfinite(answer.result.error->total))
-        return std::nullopt;
-      return answer;
-    }
-
-    /// Answer of the stretch form where the position form fails shortly before an end inverts, since the stretch nearby
-    /// is tiny. Nothing if it gives no answer either.
-    std::optional<Answer>
-    answer_of_stretch_form(const Problem &problem, const Simulation::Options &options)
-    {
-      if (!may_be_stretch_form(problem.parameters, problem.scene))
-        return std::nullopt;
-      RunParameters own              = problem.parameters;
-      own.discretization.formulation = FormulationEntry::stretch;
-      const Problem other{own, problem.scene, problem.keep_going};
-      const auto choice = choose_numerics(other);
-      if (!choice)
-        return std::nullopt;
-      Answer answer = answer_of_family(other, *choice, options);
-      if (answer.result.time.status == Status::failed)
-        return std::nullopt;
-      return answer;
+      return choice && choice->numerics.mesh.tolerance == 0. ? std::optional(answer_with(*choice, other, options))
+                                                             : std::nullopt;
     }
 
     /// Answer with the files of one more run. Its output times change its steps a little; the numbers are those to
@@ -290,18 +265,21 @@ namespace crawler
       double error_before_      = std::numeric_limits<double>::infinity(); ///< of the try before
     };
 
-    /// Answer of the family, or of the position form if that alone meets Accuracy, or comes nearer to it.
+    /// Answer of the family, or of the position form if that alone meets Accuracy, or comes nearer to it: meshes of the
+    /// stretch form have few digits.
     Answer
     better_of_both_forms(const Problem &problem, const NumericsChoice &choice, const Simulation::Options &options)
     {
       Answer answer = answer_of_family(problem, choice, options);
-      if (answer.result.time.reason != accuracy_not_met)
+      if (answer.result.time.reason != accuracy_not_met ||
+          problem.parameters.discretization.formulation != FormulationEntry::automatic)
         return answer;
       try
       {
-        auto other = answer_of_position_form(problem, options);
-        if (other && (other->result.time.status == Status::finished || !answer.result.error ||
-                      other->result.error->total < answer.result.error->total))
+        auto other = answer_in_form(FormulationEntry::position, problem, options);
+        if (other && other->result.error && std::isfinite(other->result.error->total) &&
+            (other->result.time.status == Status::finished || !answer.result.error ||
+             other->result.error->total < answer.result.error->total))
           return std::move(*other);
       }
       catch (...) // the earlier answer stays
@@ -327,8 +305,11 @@ namespace crawler
     if (choice.is_family)
       return in_files(better_of_both_forms(problem, choice, options));
     Answer answer = Tries(problem, choice, simulate).answer();
-    if (is_for_finer_numerics(answer.result.time) && !choice.is_users && size_of(problem.ranks) == 1)
-      if (auto other = answer_of_stretch_form(problem, options))
+    // The position form may fail shortly before an end inverts, since the stretch nearby is tiny.
+    if (is_for_finer_numerics(answer.result.time) && !choice.is_users && size_of(problem.ranks) == 1 &&
+        may_be_stretch_form(problem))
+      if (auto other = answer_in_form(FormulationEntry::stretch, problem, options);
+          other && other->result.time.status != Status::failed)
         return in_files(std::move(*other));
     return answer;
   }

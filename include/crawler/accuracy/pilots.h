@@ -17,6 +17,10 @@ namespace crawler
     inline constexpr double multistep_start = 1e-5;
   } // namespace mesh_choice
 
+  /// True if the user's settings leave the form open, and the stretch form can compute the scene.
+  bool
+  may_be_stretch_form(const Problem &problem);
+
   /// Exception for a stop that was requested during the pilots.
   struct PilotsInterrupted
   {
@@ -62,6 +66,10 @@ namespace crawler
     /// Stiffness k T/(g L^2) for the largest friction g of the last pilot, which determines thin layers.
     double
     stiffness_over_friction() const;
+
+    /// True if the body is so soft that its thin layers are for the stretch form. Steep friction makes them thinner.
+    bool
+    is_soft() const;
 
     /// True if the user's settings leave the form open and the last pilot came near an emptied state.
     bool

@@ -195,6 +195,12 @@ TEST(MeshFamily, IsChosenWhereTheStretchIsSmallOrTheBodySoft)
   EXPECT_EQ(form(test::wave(1., 0.2, -1.)), Formulation::position);
   EXPECT_EQ(form(test::wave(-1., 0.6)), Formulation::stretch);
   EXPECT_EQ(form(test::wave(-1., 0.2, 1., 1., 1e-5)), Formulation::stretch);
+  // The stretch form is of second order, so digits are dearer there.
+  EXPECT_EQ(form(test::with(test::wave(-1., 0.2, 1., 1., 1e-5), "Accuracy = 1e-9")), Formulation::position);
+  // Steep friction makes thinner layers; friction that vanishes with the stretch holds nothing, so nothing is lost.
+  EXPECT_EQ(form(test::wave(-1., 0.1, 1., 1., 0.01)), Formulation::position);
+  EXPECT_EQ(form(test::wave(-7., 0.1, 1., 1., 0.01)), Formulation::stretch);
+  EXPECT_EQ(form(test::wave(0.5, 0.6)), Formulation::position);
   // What the user has chosen, and what only the other form has.
   EXPECT_EQ(form(test::with(test::wave(-1., 0.6), {{"Discretization/Formulation", "position"}})),
             Formulation::position);
