@@ -416,18 +416,6 @@ namespace crawler
         }
       }
 
-      std::vector<double>
-      errors_of_numbers() const
-      {
-        std::vector<const SimulationResult *> meshes;
-        for (const Level &level : levels_)
-          meshes.push_back(&level.result);
-        std::vector<double> errors = errors_of_extrapolation(extrapolated_, meshes, min_part * parameters_.accuracy);
-        for (std::size_t i = 0; i < errors.size(); ++i)
-          errors[i] += time_errors_.empty() ? std::numeric_limits<double>::quiet_NaN() : time_errors_[i];
-        return errors;
-      }
-
       /// True if the mesh is good enough with the largest error in time that is admissible; that on the coarsest mesh
       /// does not count here.
       bool
@@ -457,7 +445,12 @@ namespace crawler
                                  .space = std::max(space_error_, floor),
                                  .time  = time_error_ + cycles,
                                  .model = 0.};
-          result.errors       = errors_of_numbers();
+          std::vector<const SimulationResult *> meshes;
+          for (const Level &level : levels_)
+            meshes.push_back(&level.result);
+          result.errors = errors_of_extrapolation(extrapolated_, meshes, min_part * parameters_.accuracy);
+          for (std::size_t i = 0; i < result.errors.size(); ++i)
+            result.errors[i] += time_errors_.empty() ? std::numeric_limits<double>::quiet_NaN() : time_errors_[i];
           add_errors_of_cycles(result, size_);
           if (!std::isfinite(space_error_))
             result.error = DisplacementError();
@@ -467,10 +460,10 @@ namespace crawler
         {
           result = extrapolated_;
           if (std::isfinite(space_error_)) // Accuracy, relative to the duration, does not bind an early one
-            result.inversion_error =
+            result.inversion->error =
               std::max(space_error_, min_part * std::min(wanted(), believed * latest_.inversion->t)) + time_error_;
           end_before_inversion(result);
-          if (!(result.inversion_error.value_or(HUGE_VAL) <= believed * latest_.inversion->t))
+          if (!(result.inversion->error.value_or(HUGE_VAL) <= believed * latest_.inversion->t))
           {
             result.time.status  = Status::failed;
             result.time.reason  = "under_resolved";
@@ -480,8 +473,6 @@ namespace crawler
                                               latest_.inversion->t,
                                               latest_.mesh ? latest_.mesh->n_cells : 0);
             result.inversion.reset();
-            result.inverted_places.reset();
-            result.inversion_error.reset();
           }
         }
         return answer_;

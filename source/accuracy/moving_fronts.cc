@@ -91,10 +91,10 @@ namespace crawler
         const double t    = answer_.result.inversion->t;
         const bool second = inversion_.has_value();
         if (second)
-          answer_.result.inversion_error = 2. * std::abs(t - *inversion_);
+          answer_.result.inversion->error = 2. * std::abs(t - *inversion_);
         inversion_ = t;
         return second &&
-               *answer_.result.inversion_error <= std::max(problem_.parameters.accuracy, settled_inversion) * t;
+               *answer_.result.inversion->error <= std::max(problem_.parameters.accuracy, settled_inversion) * t;
       }
 
       double
@@ -105,7 +105,7 @@ namespace crawler
         return problem_.parameters.accuracy * size;
       }
 
-      /// Extrapolated results of the levels from @p first on.
+      /// Extrapolated results of the levels from @p first on; their errors add up to that in time.
       SimulationResult
       extrapolated(const std::size_t first) const
       {
@@ -126,6 +126,9 @@ namespace crawler
           if (value > 0.)
             (sum.*extreme).value = value;
         }
+        sum.error = {.time = 0.};
+        for (std::size_t i = 0; i < results.size(); ++i)
+          sum.error->time += std::abs(weights[i]) * results[i]->error->total;
         return sum;
       }
 
@@ -135,13 +138,7 @@ namespace crawler
         const SimulationResult &steepest = levels_.back().result;
         SimulationResult result          = extrapolated(0);
         const SimulationResult other     = extrapolated(1);
-        std::vector<double> widths;
-        for (const Level &level : levels_)
-          widths.push_back(level.width);
-        const std::vector<double> weights = weights_at_zero(widths);
-        double time                       = 0.;
-        for (std::size_t i = 0; i < levels_.size(); ++i)
-          time += std::abs(weights[i]) * levels_[i].result.error->total;
+        const double time                = result.error->time;
         // Extrapolations of fewer widths sometimes agree too well: the previous answer counts, too.
         result.error.emplace();
         if (before_)

@@ -121,9 +121,7 @@ namespace crawler
         answer.result = files;
       else if (files.inversion && answer.result.inversion)
       {
-        files.inversion       = answer.result.inversion;
-        files.inverted_places = answer.result.inverted_places;
-        files.inversion_error = answer.result.inversion_error;
+        files.inversion = answer.result.inversion;
         end_before_inversion(files);
         answer.result = files;
       }

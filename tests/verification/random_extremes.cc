@@ -241,7 +241,7 @@ namespace
     const SimulationResult &result = own.computed.result;
     const bool has_bound           = result.error && std::isfinite(result.error->total);
     if (row.status == "inverted")
-      row.bound = result.inversion_error.value_or(0.);
+      row.bound = result.inversion->error.value_or(0.);
     else if (has_bound)
       row.bound = result.error->total;
     row.verdict = "not compared";

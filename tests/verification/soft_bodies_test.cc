@@ -133,7 +133,7 @@ TEST(SoftBodies, InversionsOnCoarseMeshesAreNotBelieved)
 {
   const SimulationResult result = answer_to(set(two_harmonics_that_invert + "; Accuracy = 1e-2"));
   if (result.inversion)
-    EXPECT_NEAR(result.inversion->t, 0.68988, result.inversion_error.value_or(0.));
+    EXPECT_NEAR(result.inversion->t, 0.68988, result.inversion->error.value_or(0.));
   else
     EXPECT_EQ(result.time.reason, "under_resolved");
 }

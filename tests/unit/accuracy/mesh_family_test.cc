@@ -140,11 +140,11 @@ TEST(MeshFamily, TimeOfAnInversion)
     EXPECT_EQ(result.time.status, Status::inverted);
     EXPECT_EQ(result.time.reason, "inverted_inside");
     EXPECT_EQ(result.formulation, Formulation::stretch);
-    ASSERT_TRUE(result.inversion && result.inversion_error && result.inverted_places);
-    EXPECT_NEAR(result.inversion->t, 0.322123, *result.inversion_error + 0.5e-6);
-    EXPECT_LE(*result.inversion_error, 1.001 * accuracy);
-    EXPECT_LE(result.inverted_places->first, result.inversion->s);
-    EXPECT_GE(result.inverted_places->second, result.inversion->s);
+    ASSERT_TRUE(result.inversion && result.inversion->error && result.inversion->places);
+    EXPECT_NEAR(result.inversion->t, 0.322123, *result.inversion->error + 0.5e-6);
+    EXPECT_LE(*result.inversion->error, 1.001 * accuracy);
+    EXPECT_LE(result.inversion->places->first, result.inversion->s);
+    EXPECT_GE(result.inversion->places->second, result.inversion->s);
   }
 }
 
