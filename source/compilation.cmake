@@ -11,8 +11,8 @@ set(CRAWLER_READING "$<$<CONFIG:Release>:-Og;-fno-unroll-loops;-fno-unroll-all-l
 # Sources of one room are compiled some at a time, which takes half the time; those with options of their own stay alone,
 # and so do those whose names for inner things are those of their neighbours.
 function(crawler_compile_together)
-  set(alone accuracy/choose_numerics accuracy/graded_choice accuracy/mesh_family accuracy/moving_fronts
-    accuracy/shared_choice)
+  set(alone accuracy/choose_numerics accuracy/graded_choice accuracy/mesh_choices accuracy/mesh_family
+    accuracy/moving_fronts accuracy/shared_choice)
   set(together 8)
   foreach(source ${ARGN})
     get_filename_component(source ${source} ABSOLUTE)

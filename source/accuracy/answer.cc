@@ -13,8 +13,8 @@ namespace crawler
   {
     const double later  = std::max(result.time.time - result.inversion->t, 0.);
     result.inversion->t = std::max(result.inversion->t, result.time.time);
-    if (result.inversion_error)
-      *result.inversion_error += later;
+    if (result.inversion->error)
+      *result.inversion->error += later;
     result.time.message = fmt::format("the body inverted: its stretch reached 0 at s = {:.6g}, t = {:.9g}; the model "
                                       "ends there",
                                       result.inversion->s,

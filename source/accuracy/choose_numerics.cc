@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/choose_numerics.h>
-#include <crawler/accuracy/form_choice.h>
 #include <crawler/accuracy/mesh_choices.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/plain_numbers.h>
@@ -39,6 +38,9 @@ namespace crawler
     /// have their numerics chosen by those strides. Strides are slow to repeat below this stiffness, in natural units
     /// of a stride.
     constexpr double first_strides = 3., long_run = 4., min_settling_stiffness = 0.02;
+    /// Lengths of the active stress on the body, and Accuracy, beyond which many cells of the position form are cheaper
+    /// than the stretch form.
+    constexpr double max_lengths = 30., min_steep_accuracy = 1e-7;
     /// Relative error that very soft bodies may have on adaptive meshes, whatever Accuracy is.
     constexpr double soft_error = 3e-3;
 
@@ -46,16 +48,16 @@ namespace crawler
     class Chooser
     {
     public:
-      Chooser(MPI_Comm communicator, const RunParameters &parameters, const Scene &scene, const KeepGoing &keep_going)
-        : pilots_(communicator, parameters, scene, keep_going)
-        , own_(parameters.discretization)
-        , time_(parameters.time)
-        , accuracy_(parameters.accuracy)
-        , has_own_steps_(parameters.time.tolerance || parameters.time.step_control == StepControl::fixed)
+      explicit Chooser(const Problem &problem)
+        : pilots_(problem)
+        , own_(problem.parameters.discretization)
+        , time_(problem.parameters.time)
+        , accuracy_(problem.parameters.accuracy)
+        , has_own_steps_(time_.tolerance || time_.step_control == StepControl::fixed)
       {
         Numerics &n      = choice_.numerics;
         n.degree         = own_.degree.value_or(automatic_degree);
-        n.initial_step   = time_.initial_step.value_or(multistep_start * scene.end_time);
+        n.initial_step   = time_.initial_step.value_or(multistep_start * problem.scene.end_time);
         n.step_limits    = pilots_.scales.step_limits;
         n.min_event      = pilots_.scales.jumps_move ? 0. : min_event * pilots_.scales.stress;
         choice_.is_rough = !pilots_.scales.is_smooth;
@@ -106,12 +108,13 @@ namespace crawler
             space_over_time_ = *ratio;
             return true;
           }
-        const bool may_be_stretch = may_be_stretch_form(pilots_.parameters, scene);
-        if (may_be_stretch && is_soft(pilots_.stiffness(), scene.friction_exponent(), accuracy_))
+        const bool may_be_stretch = may_be_stretch_form(pilots_);
+        if (may_be_stretch && pilots_.is_soft())
           return false;
         // Solutions unresolved by few cells are steep, not fine, if the active stress is smooth: fronts of friction.
         const bool may_be_steep = may_be_stretch && scene.friction_exponent() < 0. &&
-                                  is_cheaper_than_many_cells(scene.body.length / pilots_.scales.length, accuracy_);
+                                  scene.body.length / pilots_.scales.length < max_lengths &&
+                                  accuracy_ >= min_steep_accuracy;
         bool enough = false;
         if (own_.mesh != MeshKind::adaptive)
         {
@@ -298,26 +301,24 @@ namespace crawler
   } // namespace
 
   std::optional<NumericsChoice>
-  choose_numerics(MPI_Comm communicator,
-                  const RunParameters &parameters,
-                  const Scene &scene,
-                  const KeepGoing &keep_going)
+  choose_numerics(const Problem &problem)
   {
+    const Scene &scene = problem.scene;
     try
     {
-      if (const auto end = end_of_first_strides(parameters, scene))
+      if (const auto end = end_of_first_strides(problem.parameters, scene))
       {
-        if (may_settle(parameters, scene))
+        if (may_settle(problem.parameters, scene))
           try
           {
-            return Chooser(communicator, parameters, scene, keep_going).choose(/*must_settle=*/true);
+            return Chooser(problem).choose(/*must_settle=*/true);
           }
           catch (const PilotsUnsettled &) // coarse steps keep cycles from repeating
           {
           }
         Scene beginning       = scene;
         beginning.end_time    = *end;
-        NumericsChoice choice = Chooser(communicator, parameters, beginning, keep_going).choose();
+        NumericsChoice choice = Chooser({problem.parameters, beginning, problem.keep_going, problem.ranks}).choose();
         if (std::isfinite(choice.wanted_error) || choice.is_of_several_runs())
         {
           choice.numerics.step_limits = stress_scales(scene).step_limits;
@@ -328,7 +329,7 @@ namespace crawler
           return choice;
         }
       }
-      return Chooser(communicator, parameters, scene, keep_going).choose();
+      return Chooser(problem).choose();
     }
     catch (const PilotsInterrupted &)
     {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/finer_run_errors.h>
-#include <crawler/accuracy/graded_choice.h>
+#include <crawler/accuracy/mesh_choices.h>
+#include <crawler/adjoint/error_sweep.h>
 #include <crawler/base/communication.h>
 #include <crawler/run/batch.h>
 #include <crawler/run/gait_efficiency.h>
@@ -12,9 +13,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 namespace crawler
@@ -62,51 +63,22 @@ namespace crawler
         limit.longest *= std::min(1., std::pow(factor, steps_over_tolerances));
     }
 
+    /// Numerics with more cells, by this factor, or a smaller tolerance of an adaptive mesh, and smaller steps.
     Numerics
-    finer(const NumericsChoice &choice, const std::string &integrator, const Scene &scene)
+    made_finer(Numerics n, const Scene &scene, const double cells, const double mesh_tolerance, const double steps)
     {
-      Numerics n           = choice.numerics;
-      const bool predicted = is_predicted(choice, scene);
-      // Kinks move through cells and steps where the friction switches its direction: errors fall by low powers. A
-      // displacement of 0 does not tell the error of the works. Inside soft bodies layers are as thin as at their ends.
-      const bool is_soft = scene.body.elastic_modulus / natural_units(scene).force < soft;
-      const bool much_finer =
-        !predicted || choice.is_steep || is_soft || scene.ground.direction.is_uneven() || scene.keeps_its_centre();
       if (n.mesh.tolerance > 0.)
-      {
-        n.mesh.tolerance *= finer_mesh_tolerance;
-        // Adaptive meshes of two tolerances may have the same cells where they matter; halved cells differ.
-        if (!predicted)
-          n.n_cells *= 2;
-      }
+        n.mesh.tolerance *= mesh_tolerance;
       else if (n.formulation == Formulation::stretch)
         n.parts *= 2; // one family of meshes
       else
       {
-        const bool many     = much_finer || choice.is_rough;
-        const double factor = many ? more_cells_without_rule : more_cells;
-        n.n_cells           = finer_n_cells(factor, n.n_cells, scene.breaks_in_space().size(), n.grading);
-        if (many) // kinks are not at the same places of cells twice
+        n.n_cells = finer_n_cells(cells, n.n_cells, scene.breaks_in_space().size(), n.grading);
+        if (cells >= more_cells_without_rule) // kinks are not at the same places of cells twice
           ++n.n_cells;
       }
-      change_steps(n,
-                   much_finer                      ? finer_tolerance_without_rule
-                   : integrator == best_integrator ? finer_tolerance
-                                                   : finer_tolerance_than_others);
-      n.integrator = best_integrator;
-      // Layers that neither mesh resolves would be missed by the difference.
-      if (predicted && is_soft && n.mesh.tolerance == 0. && n.grading.levels == 0)
-      {
-        const double k      = scene.body.elastic_modulus / natural_units(scene).force;
-        const double levels = std::log(layer_cells * k * n.n_cells) / std::log(layer_ratio);
-        n.grading      = {static_cast<unsigned int>(std::clamp(std::ceil(levels), 1., max_layer_levels)), layer_ratio};
-        n.initial_step = std::max(n.initial_step, first_step * scene.end_time);
-        return n;
-      }
-      if (n.grading.levels > 0)
-        return with_finer_grading(scene, n);
-      n.initial_step = std::max(n.initial_step, first_step * scene.end_time);
-      return n;
+      change_steps(n, steps);
+      return n.grading.levels > 0 ? with_finer_grading(scene, n) : n;
     }
 
     /// Sets the errors of efficiencies, which are relative to a limit by the extreme stretches.
@@ -124,11 +96,11 @@ namespace crawler
     }
 
     Simulation::Options
-    options_of_finer_run(const SimulationResult &result, const std::optional<CycleWish> &cycles)
+    options_of_finer_run(const Problem &problem, const SimulationResult &result)
     {
       using Wish = Simulation::GaitWish;
       return {.energy_balance = result.energy_balance.has_value(),
-              .cycles         = cycles,
+              .cycles         = cycle_wish(problem.parameters, problem.scene, /*has_pictures=*/false),
               .gait           = !result.gait               ? Wish::none
                                 : result.gait->is_declared ? Wish::declared
                                                            : Wish::any};
@@ -137,15 +109,11 @@ namespace crawler
     /// Runs with more cells and its own steps: where no rule predicts the error this separates the two parts of the
     /// error, since their sum may be small by chance.
     SimulationResult
-    run_on_finer_mesh(MPI_Comm communicator,
-                      const RunParameters &parameters,
-                      const Scene &scene,
-                      const NumericsChoice &choice,
-                      const SimulationResult &result,
-                      const KeepGoing &keep_going)
+    run_on_finer_mesh(const Problem &problem, const NumericsChoice &choice, const SimulationResult &result)
     {
-      Numerics numerics         = choice.numerics;
-      const Numerics finer_mesh = finer(choice, parameters.time.integrator, scene);
+      const auto &[parameters, scene, keep_going, ranks] = problem;
+      Numerics numerics                                  = choice.numerics;
+      const Numerics finer_mesh = numerics_of_finer_run(choice, parameters.time, scene, /*cycles_repeat=*/false);
       numerics.n_cells          = finer_mesh.n_cells;
       numerics.parts            = finer_mesh.parts;
       numerics.mesh.tolerance   = finer_mesh.mesh.tolerance;
@@ -153,29 +121,22 @@ namespace crawler
       TimeParameters time       = parameters.time;
       time.petsc_prefix         = time_of_finer_run(time).petsc_prefix;
       time.max_steps            = time_of_finer_run(time).max_steps; // the limit is for the run itself
-      const auto cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false);
-      return Simulation(communicator, scene, time, numerics)
-        .run({}, options_of_finer_run(result, cycles), {}, keep_going);
+      return Simulation(ranks, scene, time, numerics).run({}, options_of_finer_run(problem, result), {}, keep_going);
     }
 
     /// Result of the finer run, which may be unfinished.
     SimulationResult
-    finer_run(MPI_Comm communicator,
-              const RunParameters &parameters,
-              const Scene &scene,
-              const NumericsChoice &choice,
-              const SimulationResult &result,
-              const KeepGoing &keep_going)
+    finer_run(const Problem &problem, const NumericsChoice &choice, const SimulationResult &result)
     {
-      const TimeParameters time = time_of_finer_run(parameters.time);
-      const Numerics numerics   = numerics_of_finer_run(choice, parameters.time, scene, result.cycles.has_value());
-      const auto cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false);
-      const auto options        = options_of_finer_run(result, cycles);
+      const auto &[parameters, scene, keep_going, ranks] = problem;
+      const TimeParameters time                          = time_of_finer_run(parameters.time);
+      const Numerics numerics = numerics_of_finer_run(choice, parameters.time, scene, result.cycles.has_value());
+      const auto options      = options_of_finer_run(problem, result);
       // Fused engine for most runs, so that nothing else has to be built. A long one is left to a simulation, which can
       // be stopped and continued.
       constexpr double much_work = 1e8; // unknowns times steps: about a minute
       const double work          = result.mesh ? static_cast<double>(result.mesh->n_unknowns) * result.time.steps : 0.;
-      if (work < much_work && size_of(communicator) == 1 && batch_method(scene, time, numerics))
+      if (work < much_work && size_of(ranks) == 1 && batch_method(scene, time, numerics))
       {
         const BatchRun run = {&scene, &time, &numerics};
         if (auto finer = run_batch({&run, 1}, options, keep_going, single_engine()).front())
@@ -183,7 +144,7 @@ namespace crawler
         if (!keep_going())
           return {};
       }
-      return Simulation(communicator, scene, time, numerics).run({}, options, {}, keep_going);
+      return Simulation(ranks, scene, time, numerics).run({}, options, {}, keep_going);
     }
   } // namespace
 
@@ -191,14 +152,7 @@ namespace crawler
   refined(const NumericsChoice &choice, const Scene &scene, const double cells)
   {
     NumericsChoice next = choice;
-    Numerics &n         = next.numerics;
-    if (n.mesh.tolerance > 0.)
-      n.mesh.tolerance *= refined_tolerance;
-    else
-      n.n_cells = finer_n_cells(cells, n.n_cells, scene.breaks_in_space().size(), n.grading);
-    change_steps(n, refined_tolerance);
-    if (n.grading.levels > 0)
-      n = with_finer_grading(scene, n);
+    next.numerics       = made_finer(choice.numerics, scene, cells, refined_tolerance, refined_tolerance);
     return next;
   }
 
@@ -220,21 +174,48 @@ namespace crawler
                         const Scene &scene,
                         const bool cycles_repeat)
   {
-    Numerics numerics =
-      finer(choice, time.integrator == "automatic" ? choice.numerics.integrator : time.integrator, scene);
+    const bool predicted = is_predicted(choice, scene), is_adaptive = choice.numerics.mesh.tolerance > 0.;
+    const bool is_by_best =
+      (time.integrator == "automatic" ? choice.numerics.integrator : time.integrator) == best_integrator;
+    // Kinks move through cells and steps where the friction switches its direction: errors fall by low powers. A
+    // displacement of 0 does not tell the error of the works. Inside soft bodies layers are as thin as at their ends.
+    const double k     = scene.body.elastic_modulus / natural_units(scene).force;
+    const bool is_soft = k < soft;
+    const bool much_finer =
+      !predicted || choice.is_steep || is_soft || scene.ground.direction.is_uneven() || scene.keeps_its_centre();
+    Numerics n   = made_finer(choice.numerics,
+                            scene,
+                            much_finer || choice.is_rough ? more_cells_without_rule : more_cells,
+                            finer_mesh_tolerance,
+                            much_finer   ? finer_tolerance_without_rule
+                              : is_by_best ? finer_tolerance
+                                           : finer_tolerance_than_others);
+    n.integrator = best_integrator;
+    // Adaptive meshes of two tolerances may have the same cells where they matter; halved cells differ.
+    if (is_adaptive && !predicted)
+      n.n_cells *= 2;
+    if (n.grading.levels == 0)
+      n.initial_step = std::max(n.initial_step, first_step * scene.end_time);
+    // Layers that neither mesh resolves would be missed by the difference.
+    if (predicted && is_soft && !is_adaptive && n.grading.levels == 0)
+    {
+      const double levels = std::log(layer_cells * k * n.n_cells) / std::log(layer_ratio);
+      n.grading = {static_cast<unsigned int>(std::clamp(std::ceil(levels), 1., max_layer_levels)), layer_ratio};
+    }
     if (cycles_repeat)
-      change_steps(numerics, finer_tolerance_of_cycles);
-    return numerics;
+      change_steps(n, finer_tolerance_of_cycles);
+    return n;
   }
 
   void
-  set_errors(const NumericsChoice &choice,
+  set_errors(const Problem &problem,
+             const NumericsChoice &choice,
              SimulationResult &result,
              const SimulationResult *const finer,
-             const RunParameters &parameters,
-             const Scene &scene,
              const SimulationResult *const finer_mesh)
   {
+    const double accuracy    = problem.parameters.accuracy;
+    const Scene &scene       = problem.scene;
     DisplacementError &error = result.error.emplace();
     double total             = choice.measured_error.value_or(choice.wanted_error);
     std::optional<double> space; // part of the total, if it was measured
@@ -264,17 +245,16 @@ namespace crawler
         total =
           factor * std::abs(finer->displacement - result.displacement) + (predicted ? part * choice.wanted_error : 0.);
       total         = std::max(total, choice.min_error);
-      result.errors = number_errors(result, finer_mesh ? *finer_mesh : *finer, factor, part * parameters.accuracy);
+      result.errors = number_errors(result, finer_mesh ? *finer_mesh : *finer, factor, part * accuracy);
       if (finer_mesh != nullptr)
       {
         const auto in_time = number_errors(*finer_mesh, *finer, factor, 0.);
         for (std::size_t i = 0; i < in_time.size(); ++i)
           result.errors[i] += in_time[i];
       }
-      add_errors_of_cycles(
-        result,
-        std::max(std::abs(result.displacement),
-                 std::isfinite(choice.wanted_error) ? choice.wanted_error / parameters.accuracy : 0.));
+      add_errors_of_cycles(result,
+                           std::max(std::abs(result.displacement),
+                                    std::isfinite(choice.wanted_error) ? choice.wanted_error / accuracy : 0.));
       if (scene.keeps_its_centre()) // few steps suffice except for the kinks of positive power
         set_error_bound(result, "positive_power", std::numeric_limits<double>::quiet_NaN());
       set_errors_of_efficiencies(scene, result);
@@ -296,33 +276,66 @@ namespace crawler
   }
 
   void
-  estimate_errors(MPI_Comm communicator,
-                  const RunParameters &parameters,
-                  const Scene &scene,
-                  const NumericsChoice &choice,
-                  SimulationResult &result,
-                  const KeepGoing &keep_going)
+  estimate_errors(const Problem &problem, const NumericsChoice &choice, SimulationResult &result)
   {
     if (choice.measured_error)
-      set_errors(choice, result, nullptr, parameters, scene);
-    else
     {
-      // Failures of the finer run do not affect the answer.
-      SimulationResult finer, finer_mesh;
-      const bool predicted = is_predicted(choice, scene);
-      try
-      {
-        finer = finer_run(communicator, parameters, scene, choice, result, keep_going);
-        if (!predicted && finer.time.status == Status::finished)
-          finer_mesh = run_on_finer_mesh(communicator, parameters, scene, choice, result, keep_going);
-      }
-      catch (...)
-      {
-        finer.time = failure_of(std::current_exception());
-        if (size_of(communicator) > 1) // the other ranks may be waiting
-          throw;
-      }
-      set_errors(choice, result, &finer, parameters, scene, predicted ? nullptr : &finer_mesh);
+      set_errors(problem, choice, result, nullptr);
+      return;
     }
+    // Failures of the finer run do not affect the answer.
+    SimulationResult finer, finer_mesh;
+    const bool predicted = is_predicted(choice, problem.scene);
+    try
+    {
+      finer = finer_run(problem, choice, result);
+      if (!predicted && finer.time.status == Status::finished)
+        finer_mesh = run_on_finer_mesh(problem, choice, result);
+    }
+    catch (...)
+    {
+      finer.time = failure_of(std::current_exception());
+      if (size_of(problem.ranks) > 1) // the other ranks may be waiting
+        throw;
+    }
+    set_errors(problem, choice, result, &finer, predicted ? nullptr : &finer_mesh);
+  }
+
+  void
+  sweep_error(const Problem &problem, const NumericsChoice &choice, SimulationResult &result)
+  {
+    const auto &[parameters, scene, keep_going, ranks] = problem;
+    constexpr double max_work                          = 5e4; // steps times cells: about a second
+    if (result.time.status != Status::finished || !result.error || !std::isfinite(result.error->total) ||
+        result.cycles || scene.ground.direction.is_uneven() || // moving kinks have no higher orders
+        !RecordedRun::is_possible(scene, parameters.time, choice.numerics) ||
+        static_cast<double>(result.time.steps) * result.most_cells > max_work)
+      return;
+    DisplacementError &error = *result.error;
+    try
+    {
+      const RecordedRun run(scene, parameters.time, choice.numerics, keep_going);
+      const auto swept = sweep_errors(run);
+      if (!swept || !swept->is_good())
+        return;
+      const double value = run.displacement + swept->time + swept->space;
+      const double bound = std::max(swept->bound_of_corrected(), displacement_round_off * scene.body.length);
+      const double found = std::abs(result.displacement - value);
+      if (bound < found) // otherwise it may be the sweep's own error
+        error.total = std::max(error.total, found);
+      if (bound < error.total)
+        result.corrected = {value, bound};
+      const double all = swept->time_sum + swept->space_sum;
+      if (all > 0.)
+      {
+        error.space = error.total * swept->space_sum / all;
+        error.time  = error.total - error.space;
+      }
+    }
+    catch (const std::runtime_error &) // the answer and its bound stay
+    {
+    }
+    if (std::isfinite(choice.wanted_error) && fails_accuracy(result, choice.wanted_error, ""))
+      result.time.message = "by the adjoint, " + result.time.message;
   }
 } // namespace crawler

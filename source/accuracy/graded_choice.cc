@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/accuracy/graded_choice.h>
 #include <crawler/accuracy/mesh_choices.h>
 
 #include <algorithm>

@@ -50,20 +50,16 @@ namespace crawler
     class Family
     {
     public:
-      Family(const RunParameters &parameters,
-             const Scene &scene,
-             const NumericsChoice &choice,
-             const Simulation::Options &options,
-             const KeepGoing &keep_going)
-        : parameters_(parameters)
-        , scene_(scene)
+      Family(const Problem &problem, const NumericsChoice &choice, const Simulation::Options &options)
+        : problem_(problem)
+        , parameters_(problem.parameters)
+        , scene_(problem.scene)
         , options_(options)
-        , keep_going_(keep_going)
       {
         answer_.choice          = choice;
         options_.resolution     = ResolutionWish::size; // the size of the deformation
         options_.energy_balance = true;                 // works tell whether displacements agree by chance
-        options_.cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false); // these runs write none
+        options_.cycles         = cycle_wish(parameters_, scene_, /*has_pictures=*/false); // these runs write none
         if (options_.cycles)
           options_.cycles->accuracy *= 0.1; // displacements are compared
       }
@@ -131,7 +127,7 @@ namespace crawler
       run(const Numerics &numerics)
       {
         ++n_runs_;
-        return Simulation(MPI_COMM_SELF, scene_, parameters_.time, numerics).run({}, options_, {}, keep_going_);
+        return Simulation(MPI_COMM_SELF, scene_, parameters_.time, numerics).run({}, options_, {}, problem_.keep_going);
       }
 
       static bool
@@ -420,18 +416,6 @@ namespace crawler
         }
       }
 
-      std::vector<double>
-      errors_of_numbers() const
-      {
-        std::vector<const SimulationResult *> meshes;
-        for (const Level &level : levels_)
-          meshes.push_back(&level.result);
-        std::vector<double> errors = errors_of_extrapolation(extrapolated_, meshes, min_part * parameters_.accuracy);
-        for (std::size_t i = 0; i < errors.size(); ++i)
-          errors[i] += time_errors_.empty() ? std::numeric_limits<double>::quiet_NaN() : time_errors_[i];
-        return errors;
-      }
-
       /// True if the mesh is good enough with the largest error in time that is admissible; that on the coarsest mesh
       /// does not count here.
       bool
@@ -461,7 +445,12 @@ namespace crawler
                                  .space = std::max(space_error_, floor),
                                  .time  = time_error_ + cycles,
                                  .model = 0.};
-          result.errors       = errors_of_numbers();
+          std::vector<const SimulationResult *> meshes;
+          for (const Level &level : levels_)
+            meshes.push_back(&level.result);
+          result.errors = errors_of_extrapolation(extrapolated_, meshes, min_part * parameters_.accuracy);
+          for (std::size_t i = 0; i < result.errors.size(); ++i)
+            result.errors[i] += time_errors_.empty() ? std::numeric_limits<double>::quiet_NaN() : time_errors_[i];
           add_errors_of_cycles(result, size_);
           if (!std::isfinite(space_error_))
             result.error = DisplacementError();
@@ -471,10 +460,10 @@ namespace crawler
         {
           result = extrapolated_;
           if (std::isfinite(space_error_)) // Accuracy, relative to the duration, does not bind an early one
-            result.inversion_error =
+            result.inversion->error =
               std::max(space_error_, min_part * std::min(wanted(), believed * latest_.inversion->t)) + time_error_;
           end_before_inversion(result);
-          if (!(result.inversion_error.value_or(HUGE_VAL) <= believed * latest_.inversion->t))
+          if (!(result.inversion->error.value_or(HUGE_VAL) <= believed * latest_.inversion->t))
           {
             result.time.status  = Status::failed;
             result.time.reason  = "under_resolved";
@@ -484,17 +473,15 @@ namespace crawler
                                               latest_.inversion->t,
                                               latest_.mesh ? latest_.mesh->n_cells : 0);
             result.inversion.reset();
-            result.inverted_places.reset();
-            result.inversion_error.reset();
           }
         }
         return answer_;
       }
 
+      const Problem &problem_;
       const RunParameters &parameters_;
       const Scene &scene_;
       Simulation::Options options_;
-      const KeepGoing &keep_going_;
       Answer answer_;
       SimulationResult latest_, extrapolated_;
       std::vector<Level> levels_;       ///< levels that agree
@@ -506,13 +493,9 @@ namespace crawler
   } // namespace
 
   Answer
-  answer_of_family(const RunParameters &parameters,
-                   const Scene &scene,
-                   const NumericsChoice &choice,
-                   const Simulation::Options &options,
-                   const KeepGoing &keep_going)
+  answer_of_family(const Problem &problem, const NumericsChoice &choice, const Simulation::Options &options)
   {
-    Answer answer = Family(parameters, scene, choice, options, keep_going).compute();
+    Answer answer = Family(problem, choice, options).compute();
     if (!options.energy_balance) // not requested
     {
       answer.result.energy_balance.reset();

@@ -66,30 +66,12 @@ namespace crawler
           "Model");
     }
 
-    /// Approximate level that was tried.
+    /// Approximate level to try.
     struct Candidate
     {
       Model model;
-      bool known;
       double error, displacement; ///< in natural units
-
-      double
-      relative() const
-      {
-        return error / std::abs(displacement);
-      }
-      bool
-      meets(const double accuracy, const double share) const
-      {
-        return known && error <= share * std::max(accuracy * std::abs(displacement), floor);
-      }
-      std::string
-      in_words() const
-      {
-        if (!known)
-          return "an error that is not known";
-        return fmt::format("an error of {:.2g}", relative());
-      }
+      double share;               ///< share of the model in the error
     };
 
     ModelChoice
@@ -105,19 +87,23 @@ namespace crawler
       std::vector<Candidate> candidates;
       if (levels.wave())
         candidates.push_back(
-          {Model::perturbation, errors.known, errors.perturbation, perturbation::displacement(*levels.wave(), 1.)});
-      candidates.push_back({Model::kinematic, errors.known, errors.kinematic, errors.displacement});
+          {Model::perturbation, errors.perturbation, perturbation::displacement(*levels.wave(), 1.), 1.});
+      candidates.push_back({Model::kinematic, errors.kinematic, errors.displacement, model_share});
       std::string tried;
-      for (const Candidate &candidate : candidates)
+      for (const auto &[model, error, displacement, share] : candidates)
       {
-        if (candidate.meets(accuracy, candidate.model == Model::kinematic ? model_share : 1.))
-          return {candidate.model,
+        const std::string relative = fmt::format("{:.2g}", error / std::abs(displacement));
+        if (errors.known && error <= share * std::max(accuracy * std::abs(displacement), floor))
+          return {model,
                   fmt::format("Model {}: its estimated error{} is below {}",
-                              word_of(candidate.model),
-                              candidate.error <= floor ? "" : fmt::format(" {:.2g}", candidate.relative()),
-                              candidate.error <= floor ? fmt::format("{:g} of the length", floor)
-                                                       : fmt::format("Accuracy {:g}", accuracy))};
-        tried += fmt::format("{}{} {}, ", word_of(candidate.model), tried.empty() ? " has" : "", candidate.in_words());
+                              word_of(model),
+                              error <= floor ? "" : " " + relative,
+                              error <= floor ? fmt::format("{:g} of the length", floor)
+                                             : fmt::format("Accuracy {:g}", accuracy))};
+        tried += fmt::format("{}{} an error {}, ",
+                             word_of(model),
+                             tried.empty() ? " has" : "",
+                             errors.known ? "of " + relative : "that is not known");
       }
       return {Model::nonlinear, fmt::format("Model nonlinear: {}Accuracy is {:g}", tried, accuracy)};
     }

@@ -29,13 +29,12 @@ namespace crawler
     class Fronts
     {
     public:
-      Fronts(const RunParameters &parameters, const Scene &scene, const AnswerOf &answer_of)
-        : parameters_(parameters)
-        , scene_(scene)
+      Fronts(const Problem &problem, const std::function<Answer(const Problem &)> &answer_of)
+        : problem_(problem)
         , answer_of_(answer_of)
+        , parameters_(problem.parameters)
       {
-        parameters_.accuracy       = std::clamp(part_of_runs * parameters.accuracy, min_accuracy, largest_accuracy);
-        wanted_part_               = parameters.accuracy;
+        parameters_.accuracy = std::clamp(part_of_runs * problem.parameters.accuracy, min_accuracy, largest_accuracy);
         parameters_.error_estimate = true; // the fronts are chosen by it
       }
 
@@ -44,7 +43,8 @@ namespace crawler
       {
         for (double part = first_part; part >= last_part && n_steps_ <= max_steps; part *= 0.5)
         {
-          Answer next         = answer_of_(parameters_, *with_fronts(scene_, part));
+          const Scene scene   = *with_fronts(problem_.scene, part);
+          Answer next         = answer_of_({parameters_, scene, problem_.keep_going});
           const bool inverted = next.result.time.status == Status::inverted;
           const bool is_known = next.result.error && std::isfinite(next.result.error->total);
           const bool stopped  = next.result.time.status == Status::stopped;
@@ -91,9 +91,10 @@ namespace crawler
         const double t    = answer_.result.inversion->t;
         const bool second = inversion_.has_value();
         if (second)
-          answer_.result.inversion_error = 2. * std::abs(t - *inversion_);
+          answer_.result.inversion->error = 2. * std::abs(t - *inversion_);
         inversion_ = t;
-        return second && *answer_.result.inversion_error <= std::max(wanted_part_, settled_inversion) * t;
+        return second &&
+               *answer_.result.inversion->error <= std::max(problem_.parameters.accuracy, settled_inversion) * t;
       }
 
       double
@@ -101,10 +102,10 @@ namespace crawler
       {
         const SimulationResult &result = answer_.result;
         const double size              = std::max(std::abs(result.displacement), displacement_floor * result.largest_u);
-        return wanted_part_ * size;
+        return problem_.parameters.accuracy * size;
       }
 
-      /// Extrapolated results of the levels from @p first on.
+      /// Extrapolated results of the levels from @p first on; their errors add up to that in time.
       SimulationResult
       extrapolated(const std::size_t first) const
       {
@@ -116,7 +117,7 @@ namespace crawler
           results.push_back(&levels_[i].result);
         }
         const std::vector<double> weights = weights_at_zero(widths);
-        SimulationResult sum              = combined(scene_, results, weights);
+        SimulationResult sum              = combined(problem_.scene, results, weights);
         for (const auto extreme : {&SimulationResult::min_stretch, &SimulationResult::max_stretch})
         {
           double value = 0.;
@@ -125,6 +126,9 @@ namespace crawler
           if (value > 0.)
             (sum.*extreme).value = value;
         }
+        sum.error = {.time = 0.};
+        for (std::size_t i = 0; i < results.size(); ++i)
+          sum.error->time += std::abs(weights[i]) * results[i]->error->total;
         return sum;
       }
 
@@ -134,13 +138,7 @@ namespace crawler
         const SimulationResult &steepest = levels_.back().result;
         SimulationResult result          = extrapolated(0);
         const SimulationResult other     = extrapolated(1);
-        std::vector<double> widths;
-        for (const Level &level : levels_)
-          widths.push_back(level.width);
-        const std::vector<double> weights = weights_at_zero(widths);
-        double time                       = 0.;
-        for (std::size_t i = 0; i < levels_.size(); ++i)
-          time += std::abs(weights[i]) * levels_[i].result.error->total;
+        const double time                = result.error->time;
         // Extrapolations of fewer widths sometimes agree too well: the previous answer counts, too.
         result.error.emplace();
         if (before_)
@@ -172,21 +170,20 @@ namespace crawler
         fails_accuracy(result, wanted(), "steeper fronts have no answer");
       }
 
+      const Problem &problem_;
+      const std::function<Answer(const Problem &)> &answer_of_;
       RunParameters parameters_; ///< parameters of the runs
-      const Scene &scene_;
-      const AnswerOf &answer_of_;
       Answer answer_;
       std::vector<Level> levels_;
       std::optional<double> inversion_; ///< time of inversion of the previous fronts
       std::optional<double> before_;    ///< displacement extrapolated to fewer widths
-      double wanted_part_    = 0.;
       unsigned long n_steps_ = 0;
     };
   } // namespace
 
   Answer
-  answer_of_fronts(const RunParameters &parameters, const Scene &scene, const AnswerOf &answer_of)
+  answer_of_fronts(const Problem &problem, const std::function<Answer(const Problem &)> &answer_of)
   {
-    return Fronts(parameters, scene, answer_of).compute();
+    return Fronts(problem, answer_of).compute();
   }
 } // namespace crawler

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/accuracy/form_choice.h>
 #include <crawler/accuracy/pilots.h>
+#include <crawler/equation/stretch_form.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,16 +14,36 @@ namespace crawler
     constexpr double pilot_accuracy = 1e-2;
     /// First step of methods that start with their full order, relative to the duration.
     constexpr double one_step_start = 1e-2;
+
+    // Constants measured by tests/benchmark/stretch_table.cc; doc/numerics.md, "Which form". The position form is of
+    // high order where the body deforms smoothly, the stretch form of second order everywhere: so limits fall with
+    // Accuracy.
+    /// Limits at low accuracy, the Accuracy below which they fall, and the powers by which they do.
+    constexpr double softest = 1e-3, emptied = 0.06, emptied_if_it_inverts = 3e-3, moderate = 1e-5;
+    constexpr double softness_power = 0.5, stretch_power = 0.35;
+
+    double
+    falling(const double limit, const double accuracy, const double power)
+    {
+      return limit * std::pow(std::min(1., accuracy / moderate), power);
+    }
   } // namespace
 
-  Pilots::Pilots(const MPI_Comm own_communicator,
-                 const RunParameters &own_parameters,
-                 const Scene &own_scene,
-                 const KeepGoing &own_keep_going)
-    : communicator(own_communicator)
-    , keep_going(own_keep_going)
-    , parameters(own_parameters)
-    , scene(own_scene)
+  bool
+  may_be_stretch_form(const Problem &problem)
+  {
+    const DiscretizationParameters &own = problem.parameters.discretization;
+    const TimeParameters &time          = problem.parameters.time;
+    // Meshes of the stretch form are as fine as the displacement requires.
+    return !problem.scene.keeps_its_centre() && own.formulation == FormulationEntry::automatic &&
+           own.mesh == MeshKind::automatic && !own.degree && !own.n_cells && !time.tolerance &&
+           time.step_control == StepControl::adaptive && time.engine == Engine::automatic &&
+           (time.integrator == "automatic" || time.integrator.starts_with("radau")) &&
+           reason_against_stretch_form(problem.scene).empty();
+  }
+
+  Pilots::Pilots(const Problem &problem)
+    : Problem(problem)
     , scales(stress_scales(scene))
     , time(parameters.time)
     , cycles(cycle_wish(parameters, scene, /*has_pictures=*/false))
@@ -43,7 +63,7 @@ namespace crawler
     TimeParameters own = time;
     if (must_settle)
       own.max_steps = std::min(own.max_steps, max_settling_steps);
-    Simulation simulation(communicator, scene, own, numerics);
+    Simulation simulation(ranks, scene, own, numerics);
     ++n;
     SimulationResult result =
       simulation.run({}, {.energy_balance = false, .resolution = resolution, .cycles = cycles}, {}, keep_going);
@@ -103,12 +123,22 @@ namespace crawler
   }
 
   bool
+  Pilots::is_soft() const
+  {
+    const double a = scene.friction_exponent();
+    return stiffness() < falling(softest, parameters.accuracy, softness_power) * std::max(1., a * a);
+  }
+
+  bool
   Pilots::is_for_stretch() const
   {
-    // Stretch form has few digits; so for a smaller Accuracy only where the position form cannot go on.
-    return may_be_stretch_form(parameters, scene) && last.time.reason != "inverted_at_end" &&
+    const double a = scene.friction_exponent();
+    // Contracted regions slide easily for a >= 0. The stretch form has few digits; so for a smaller Accuracy only where
+    // the position form cannot go on.
+    return a < 0. && may_be_stretch_form(*this) && last.time.reason != "inverted_at_end" &&
            (parameters.accuracy >= 1e-7 || !finished()) &&
-           empties(last.min_stretch.value, scene.friction_exponent(), parameters.accuracy);
+           last.min_stretch.value <
+             falling(a > -1. ? emptied_if_it_inverts : emptied, parameters.accuracy, stretch_power);
   }
 
   double

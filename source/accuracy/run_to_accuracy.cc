@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/choose_numerics.h>
 #include <crawler/accuracy/error_estimate.h>
-#include <crawler/accuracy/form_choice.h>
 #include <crawler/accuracy/mesh_family.h>
 #include <crawler/accuracy/moving_fronts.h>
+#include <crawler/accuracy/pilots.h>
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
@@ -29,24 +29,19 @@ namespace crawler
      * that is lost inside: finer runs must lose it, too, at nearly the same time.
      */
     void
-    confirm_inversion(MPI_Comm communicator,
-                      const RunParameters &parameters,
-                      const Scene &scene,
-                      const NumericsChoice &choice,
-                      SimulationResult &result,
-                      const KeepGoing &keep_going)
+    confirm_inversion(const Problem &problem, const NumericsChoice &choice, SimulationResult &result)
     {
       constexpr unsigned int max_runs = 4;
       constexpr double same           = 0.02; // relative
-      const TimeParameters time       = time_of_finer_run(parameters.time);
+      const TimeParameters time       = time_of_finer_run(problem.parameters.time);
       NumericsChoice finer            = choice;
       const Extreme lost              = *result.inversion;
       std::string found;
       for (unsigned int i = 0; i < max_runs; ++i)
       {
-        finer.numerics = numerics_of_finer_run(finer, time, scene, /*cycles_repeat=*/false);
+        finer.numerics = numerics_of_finer_run(finer, time, problem.scene, /*cycles_repeat=*/false);
         const SimulationResult check =
-          Simulation(communicator, scene, time, finer.numerics).run({}, {}, {}, keep_going);
+          Simulation(problem.ranks, problem.scene, time, finer.numerics).run({}, {}, {}, problem.keep_going);
         if (check.time.status == Status::stopped)
           return;
         const double before = result.inversion->t;
@@ -89,67 +84,29 @@ namespace crawler
 
     /// Answer on one rank, without files.
     Answer
-    answer_with(const NumericsChoice &choice,
-                const RunParameters &parameters,
-                const Scene &scene,
-                const Simulation::Options &options,
-                const KeepGoing &keep_going)
+    answer_with(const NumericsChoice &choice, const Problem &problem, const Simulation::Options &options)
     {
+      const Problem alone{problem.parameters, problem.scene, problem.keep_going};
       Simulation::Options own = options;
-      own.cycles              = cycle_wish(parameters, scene, /*has_pictures=*/false);
-      return run_to_accuracy(
-        MPI_COMM_SELF,
-        parameters,
-        scene,
-        choice,
-        [&](const NumericsChoice &next) {
-          return Simulation(MPI_COMM_SELF, scene, parameters.time, next.numerics).run({}, own, {}, keep_going);
-        },
-        own,
-        /*writes=*/false,
-        keep_going);
+      own.cycles              = cycle_wish(alone.parameters, alone.scene, /*has_pictures=*/false);
+      const auto simulate     = [&](const NumericsChoice &next) {
+        return Simulation(MPI_COMM_SELF, alone.scene, alone.parameters.time, next.numerics)
+          .run({}, own, {}, alone.keep_going);
+      };
+      return run_to_accuracy(alone, choice, simulate, own, /*writes=*/false);
     }
 
-    /// Answer of the position form where the meshes of the stretch form, which has few digits, do not meet Accuracy: a
-    /// uniform mesh may meet it, or come nearer. Nothing if it gives no displacement with a bound.
+    /// Answer of one form where the other one, which the rule chose, has none that is as accurate as wanted. Nothing
+    /// without numerics, or if its mesh would be adaptive.
     std::optional<Answer>
-    answer_of_position_form(const RunParameters &parameters,
-                            const Scene &scene,
-                            const Simulation::Options &options,
-                            const KeepGoing &keep_going)
+    answer_in_form(const FormulationEntry form, const Problem &problem, const Simulation::Options &options)
     {
-      if (parameters.discretization.formulation != FormulationEntry::automatic)
-        return std::nullopt;
-      RunParameters own              = parameters;
-      own.discretization.formulation = FormulationEntry::position;
-      const auto choice              = choose_numerics(MPI_COMM_SELF, own, scene, keep_going);
-      if (!choice || choice->numerics.mesh.tolerance > 0.)
-        return std::nullopt;
-      Answer answer = answer_with(*choice, own, scene, options, keep_going);
-      if (!answer.result.error || !std::isfinite(answer.result.error->total))
-        return std::nullopt;
-      return answer;
-    }
-
-    /// Answer of the stretch form where the position form fails shortly before an end inverts, since the stretch nearby
-    /// is tiny. Nothing if it gives no answer either.
-    std::optional<Answer>
-    answer_of_stretch_form(const RunParameters &parameters,
-                           const Scene &scene,
-                           const Simulation::Options &options,
-                           const KeepGoing &keep_going)
-    {
-      if (!may_be_stretch_form(parameters, scene))
-        return std::nullopt;
-      RunParameters other              = parameters;
-      other.discretization.formulation = FormulationEntry::stretch;
-      const auto choice                = choose_numerics(MPI_COMM_SELF, other, scene, keep_going);
-      if (!choice)
-        return std::nullopt;
-      Answer answer = answer_of_family(other, scene, *choice, options, keep_going);
-      if (answer.result.time.status == Status::failed)
-        return std::nullopt;
-      return answer;
+      RunParameters own              = problem.parameters;
+      own.discretization.formulation = form;
+      const Problem other{own, problem.scene, problem.keep_going};
+      const auto choice = choose_numerics(other);
+      return choice && choice->numerics.mesh.tolerance == 0. ? std::optional(answer_with(*choice, other, options))
+                                                             : std::nullopt;
     }
 
     /// Answer with the files of one more run. Its output times change its steps a little; the numbers are those to
@@ -164,9 +121,7 @@ namespace crawler
         answer.result = files;
       else if (files.inversion && answer.result.inversion)
       {
-        files.inversion       = answer.result.inversion;
-        files.inverted_places = answer.result.inverted_places;
-        files.inversion_error = answer.result.inversion_error;
+        files.inversion = answer.result.inversion;
         end_before_inversion(files);
         answer.result = files;
       }
@@ -176,19 +131,13 @@ namespace crawler
   } // namespace
 
   Answer
-  answer_in_memory(const RunParameters &parameters,
-                   const Scene &scene,
-                   const Simulation::Options &options,
-                   const KeepGoing &keep_going)
+  answer_in_memory(const Problem &problem, const Simulation::Options &options)
   {
-    const auto choice = choose_numerics(MPI_COMM_SELF, parameters, scene, keep_going);
-    if (!choice)
-    {
-      Answer answer;
-      answer.result.time.status = Status::stopped;
-      return answer;
-    }
-    return answer_with(*choice, parameters, scene, options, keep_going);
+    if (const auto choice = choose_numerics({problem.parameters, problem.scene, problem.keep_going}))
+      return answer_with(*choice, problem, options);
+    Answer answer;
+    answer.result.time.status = Status::stopped;
+    return answer;
   }
 
   namespace
@@ -197,18 +146,12 @@ namespace crawler
     class Tries
     {
     public:
-      Tries(MPI_Comm communicator,
-            const RunParameters &parameters,
-            const Scene &scene,
+      Tries(const Problem &problem,
             const NumericsChoice &choice,
-            const std::function<SimulationResult(const NumericsChoice &)> &simulate,
-            const KeepGoing &keep_going)
-        : communicator_(communicator)
-        , parameters_(parameters)
-        , scene_(scene)
+            const std::function<SimulationResult(const NumericsChoice &)> &simulate)
+        : problem_(problem)
         , first_(choice)
         , simulate_(simulate)
-        , keep_going_(keep_going)
       {
         answer_.choice = choice;
       }
@@ -220,9 +163,9 @@ namespace crawler
         do
         {
           if (result_.time.status == Status::finished)
-            answer_.choice.set_size(result_.displacement, parameters_.accuracy);
+            answer_.choice.set_size(result_.displacement, problem_.parameters.accuracy);
           if (result_.time.status == Status::inverted && result_.time.reason == "inverted_inside" && first_.is_users)
-            confirm_inversion(communicator_, parameters_, scene_, first_, result_, keep_going_);
+            confirm_inversion(problem_, first_, result_);
         } while (tries_again());
         result_.refinements      = refinements_;
         result_.estimate_seconds = estimate_seconds_;
@@ -240,12 +183,15 @@ namespace crawler
           make_finer(refined_cells);
           return true;
         }
-        if (!parameters_.error_estimate || result_.time.status != Status::finished)
+        if (!problem_.parameters.error_estimate || result_.time.status != Status::finished)
           return false;
         const Stopwatch watch;
-        estimate_errors(communicator_, parameters_, scene_, answer_.choice, result_, keep_going_);
+        estimate_errors(problem_, answer_.choice, result_);
         estimate_seconds_ += watch.seconds();
-        if (is_good() && (closes() || std::isnan(wanted())))
+        // Where the energy balance does not close a finer run is tried, too; the self-check judges the last one.
+        const bool closes = !result_.energy_balance || result_.energy_balance->residual() <=
+                                                         energy_balance_tolerance(result_, problem_.parameters);
+        if (is_good() && (closes || std::isnan(wanted())))
           return false;
         std::string problem;
         if (has_tries() && first_.min_error <= wanted())
@@ -261,11 +207,15 @@ namespace crawler
           catch (...) // the earlier answer stays
           {
             problem = "; the next try failed: " + failure_of(std::current_exception()).message;
-            if (size_of(communicator_) > 1) // the other ranks may be waiting
+            if (size_of(problem_.ranks) > 1) // the other ranks may be waiting
               throw;
           }
-        if (!is_good())
-          name_shortfall(problem);
+        if (is_good())
+          return false;
+        fails_accuracy(result_, wanted(), "a finer run did not finish");
+        result_.time.message += problem;
+        if (!answer_.choice.advice.empty())
+          result_.time.message += "; " + answer_.choice.advice;
         return false;
       }
 
@@ -283,7 +233,7 @@ namespace crawler
       void
       make_finer(const double cells)
       {
-        const NumericsChoice next = refined(answer_.choice, scene_, cells);
+        const NumericsChoice next = refined(answer_.choice, problem_.scene, cells);
         result_                   = simulate_(next);
         answer_.choice            = next;
         ++refinements_;
@@ -299,33 +249,13 @@ namespace crawler
       is_good() const
       {
         const double total = result_.error->total;
-        const bool stopped = std::isnan(total) && !keep_going_();
+        const bool stopped = std::isnan(total) && !problem_.keep_going();
         return std::isnan(wanted()) || total <= wanted() || stopped;
       }
 
-      /// True if the energy balance closes. If not, a finer run is tried, too; the self-check judges the last one.
-      bool
-      closes() const
-      {
-        return !result_.energy_balance ||
-               result_.energy_balance->residual() <= energy_balance_tolerance(result_, parameters_);
-      }
-
-      void
-      name_shortfall(const std::string &problem)
-      {
-        fails_accuracy(result_, wanted(), "a finer run did not finish");
-        result_.time.message += problem;
-        if (!answer_.choice.advice.empty())
-          result_.time.message += "; " + answer_.choice.advice;
-      }
-
-      MPI_Comm communicator_;
-      const RunParameters &parameters_;
-      const Scene &scene_;
+      const Problem &problem_;
       const NumericsChoice &first_;
       const std::function<SimulationResult(const NumericsChoice &)> &simulate_;
-      const KeepGoing &keep_going_;
       Answer answer_;
       SimulationResult &result_ = answer_.result;
       unsigned int refinements_ = 0;
@@ -333,22 +263,21 @@ namespace crawler
       double error_before_      = std::numeric_limits<double>::infinity(); ///< of the try before
     };
 
-    /// Answer of the family, or of the position form if that alone meets Accuracy, or comes nearer to it.
+    /// Answer of the family, or of the position form if that alone meets Accuracy, or comes nearer to it: meshes of the
+    /// stretch form have few digits.
     Answer
-    better_of_both_forms(const RunParameters &parameters,
-                         const Scene &scene,
-                         const NumericsChoice &choice,
-                         const Simulation::Options &options,
-                         const KeepGoing &keep_going)
+    better_of_both_forms(const Problem &problem, const NumericsChoice &choice, const Simulation::Options &options)
     {
-      Answer answer = answer_of_family(parameters, scene, choice, options, keep_going);
-      if (answer.result.time.reason != accuracy_not_met)
+      Answer answer = answer_of_family(problem, choice, options);
+      if (answer.result.time.reason != accuracy_not_met ||
+          problem.parameters.discretization.formulation != FormulationEntry::automatic)
         return answer;
       try
       {
-        auto other = answer_of_position_form(parameters, scene, options, keep_going);
-        if (other && (other->result.time.status == Status::finished || !answer.result.error ||
-                      other->result.error->total < answer.result.error->total))
+        auto other = answer_in_form(FormulationEntry::position, problem, options);
+        if (other && other->result.error && std::isfinite(other->result.error->total) &&
+            (other->result.time.status == Status::finished || !answer.result.error ||
+             other->result.error->total < answer.result.error->total))
           return std::move(*other);
       }
       catch (...) // the earlier answer stays
@@ -361,26 +290,24 @@ namespace crawler
   } // namespace
 
   Answer
-  run_to_accuracy(MPI_Comm communicator,
-                  const RunParameters &parameters,
-                  const Scene &scene,
+  run_to_accuracy(const Problem &problem,
                   const NumericsChoice &choice,
                   const std::function<SimulationResult(const NumericsChoice &)> &simulate,
                   const Simulation::Options &options,
-                  const bool writes,
-                  const KeepGoing &keep_going)
+                  const bool writes)
   {
     const auto in_files = [&](Answer answer) { return writes ? with_files(std::move(answer), simulate) : answer; };
     if (choice.has_fronts)
       return in_files(
-        answer_of_fronts(parameters, scene, [&](const RunParameters &its_parameters, const Scene &its_scene) {
-          return answer_in_memory(its_parameters, its_scene, options, keep_going);
-        }));
+        answer_of_fronts(problem, [&](const Problem &other) { return answer_in_memory(other, options); }));
     if (choice.is_family)
-      return in_files(better_of_both_forms(parameters, scene, choice, options, keep_going));
-    Answer answer = Tries(communicator, parameters, scene, choice, simulate, keep_going).answer();
-    if (is_for_finer_numerics(answer.result.time) && !choice.is_users && size_of(communicator) == 1)
-      if (auto other = answer_of_stretch_form(parameters, scene, options, keep_going))
+      return in_files(better_of_both_forms(problem, choice, options));
+    Answer answer = Tries(problem, choice, simulate).answer();
+    // The position form may fail shortly before an end inverts, since the stretch nearby is tiny.
+    if (is_for_finer_numerics(answer.result.time) && !choice.is_users && size_of(problem.ranks) == 1 &&
+        may_be_stretch_form(problem))
+      if (auto other = answer_in_form(FormulationEntry::stretch, problem, options);
+          other && other->result.time.status != Status::failed)
         return in_files(std::move(*other));
     return answer;
   }

@@ -4,7 +4,7 @@
 #include <crawler/accuracy/shared_choice.h>
 #include <crawler/accuracy/stress_scales.h>
 #include <crawler/run/batch.h>
-#include <crawler/run/stress_watch.h>
+#include <crawler/run/step_limiter.h>
 #include <crawler/time/integrators.h>
 
 #include <algorithm>
@@ -27,22 +27,21 @@ namespace crawler
 
     /// True if an answer of shared numerics can have a bound that is comparable with the wanted error.
     bool
-    may_share(const NumericsChoice &choice, const SceneToCompute &one)
+    may_share(const NumericsChoice &choice, const Problem &one)
     {
-      return !one.scene->keeps_its_centre() && // displacements of 0 tell nothing
+      return !one.scene.keeps_its_centre() && // displacements of 0 tell nothing
              !choice.is_of_several_runs() && choice.follows_rule() &&
-             batch_method(*one.scene, one.parameters->time, choice.numerics);
+             batch_method(one.scene, one.parameters.time, choice.numerics);
     }
 
     class Search
     {
     public:
-      Search(const std::span<const SceneToCompute> examples, const std::function<bool()> &keep_going)
+      explicit Search(const std::span<const Problem> examples)
         : examples_(examples)
-        , keep_going_(keep_going)
       {
-        for (const SceneToCompute &one : examples)
-          accuracy_ = std::min(accuracy_, one.parameters->accuracy);
+        for (const Problem &one : examples)
+          accuracy_ = std::min(accuracy_, one.parameters.accuracy);
       }
 
       std::optional<SharedChoice>
@@ -73,12 +72,12 @@ namespace crawler
       begin_by_rule()
       {
         found_.relative_tolerance = std::numeric_limits<double>::infinity();
-        for (const SceneToCompute &one : examples_)
+        for (const Problem &one : examples_)
         {
-          const auto choice = choose_numerics(MPI_COMM_SELF, *one.parameters, *one.scene, keep_going_);
+          const auto choice = choose_numerics(one);
           if (!choice || !may_share(*choice, one))
             return false;
-          const double size         = choice->wanted_error / one.parameters->accuracy; // not 0 where D nearly is
+          const double size         = choice->wanted_error / one.parameters.accuracy; // not 0 where D nearly is
           found_.relative_tolerance = std::min(found_.relative_tolerance, choice->numerics.tolerance / size);
           found_.sizes.push_back(size);
           if (found_.sizes.size() == 1)
@@ -106,20 +105,20 @@ namespace crawler
         settings.relative_tolerance = relative_tolerance;
         std::vector<NumericsChoice> choices;
         for (std::size_t i = 0; i < examples_.size(); ++i)
-          choices.push_back(settings.choice_for(*examples_[i].scene, found_.sizes[i]));
+          choices.push_back(settings.choice_for(examples_[i].scene, found_.sizes[i]));
         std::vector<BatchRun> runs;
         for (std::size_t i = 0; i < examples_.size(); ++i)
         {
-          const TimeParameters &time = examples_[i].parameters->time;
-          if (!batch_method(*examples_[i].scene, time, choices[i].numerics))
+          const TimeParameters &time = examples_[i].parameters.time;
+          if (!batch_method(examples_[i].scene, time, choices[i].numerics))
             return {};
-          auto cycles = cycle_wish(*examples_[i].parameters, *examples_[i].scene, /*has_pictures=*/false);
+          auto cycles = cycle_wish(examples_[i].parameters, examples_[i].scene, /*has_pictures=*/false);
           if (cycles)
             cycles->accuracy = part_of_cycles * accuracy_;
-          runs.push_back({examples_[i].scene, &time, &choices[i].numerics, cycles});
+          runs.push_back({&examples_[i].scene, &time, &choices[i].numerics, cycles});
         }
         Runs result{true, {}, 0.};
-        for (const auto &one : run_batch(runs, {.energy_balance = false}, keep_going_))
+        for (const auto &one : run_batch(runs, {.energy_balance = false}, examples_.front().keep_going))
         {
           if (!one || one->time.status != Status::finished)
             return {};
@@ -160,7 +159,7 @@ namespace crawler
         }
         double min_cost     = on_mesh.cost;
         const Numerics mesh = best;
-        const bool is_free  = examples_.front().parameters->time.integrator == "automatic";
+        const bool is_free  = examples_.front().parameters.time.integrator == "automatic";
         for (const char *name : {"radau 9", "radau 5"})
         {
           if (!is_free && mesh.integrator != name)
@@ -193,7 +192,7 @@ namespace crawler
       void
       try_longer_first_step(const Runs &reference, const double cost)
       {
-        if (examples_.front().parameters->time.initial_step)
+        if (examples_.front().parameters.time.initial_step)
           return;
         Numerics other = found_.choice.numerics;
         other.initial_step *= longer_first_step;
@@ -202,8 +201,7 @@ namespace crawler
           found_.choice.numerics = other;
       }
 
-      const std::span<const SceneToCompute> examples_;
-      const std::function<bool()> &keep_going_;
+      const std::span<const Problem> examples_;
       double accuracy_ = std::numeric_limits<double>::infinity();
       SharedChoice found_;
     };
@@ -221,8 +219,8 @@ namespace crawler
   }
 
   std::optional<SharedChoice>
-  shared_choice(const std::span<const SceneToCompute> examples, const std::function<bool()> &keep_going)
+  shared_choice(const std::span<const Problem> examples)
   {
-    return Search(examples, keep_going).find();
+    return Search(examples).find();
   }
 } // namespace crawler

@@ -215,18 +215,24 @@ namespace crawler
       double
       sixth_difference(const std::vector<double> &m, const std::size_t apart) const
       {
-        const std::size_t n   = m.size() - 6 * apart;
-        const auto difference = [&](const std::size_t i) {
+        return largest_difference(m.size(), 6 * apart, [&](const std::size_t i) {
           const double *x = m.data() + i;
           return x[0] + x[6 * apart] - 6. * (x[apart] + x[5 * apart]) + 15. * (x[2 * apart] + x[4 * apart]) -
                  20. * x[3 * apart];
-        };
+        });
+      }
+
+      /// Largest of the differences of samples i to i + @p reach along the body that have no break between them.
+      template <typename Difference>
+      double
+      largest_difference(const std::size_t n_samples, const std::size_t reach, const Difference &difference) const
+      {
         if (in_space_.empty())
-          return largest_size(n, difference);
-        const double h = scene_.body.length / static_cast<double>(m.size() - 1);
+          return largest_size(n_samples - reach, difference);
+        const double h = scene_.body.length / static_cast<double>(n_samples - 1);
         double found   = 0.;
-        for (std::size_t i = 0; i < n; ++i)
-          if (!any_between(in_space_, h * static_cast<double>(i), h * static_cast<double>(i + 6 * apart)))
+        for (std::size_t i = 0; i + reach < n_samples; ++i)
+          if (!any_between(in_space_, h * static_cast<double>(i), h * static_cast<double>(i + reach)))
             found = std::max(found, std::abs(difference(i)));
         return found;
       }
@@ -240,18 +246,12 @@ namespace crawler
       void
       sample(ActiveStressAtPoints *stress, const unsigned int n_points, const double t)
       {
-        const double L = scene_.body.length;
         m_.resize(n_points + 1);
         stress->values(t, m_);
-        largest       = std::max(largest, largest_size(m_.size(), [this](const std::size_t i) { return m_[i]; }));
-        double change = 0.;
-        if (in_space_.empty())
-          change = largest_size(n_points, [this](const std::size_t i) { return m_[i + 1] - m_[i]; });
-        else
-          for (unsigned int i = 1; i <= n_points; ++i)
-            if (!any_between(in_space_, L * (i - 1) / n_points, L * i / n_points))
-              change = std::max(change, std::abs(m_[i] - m_[i - 1]));
-        along = std::max(along, change * n_points / L);
+        largest = std::max(largest, largest_size(m_.size(), [this](const std::size_t i) { return m_[i]; }));
+        const double change =
+          largest_difference(m_.size(), 1, [this](const std::size_t i) { return m_[i + 1] - m_[i]; });
+        along = std::max(along, change * n_points / scene_.body.length);
         if (n_points != fine)
           return;
         std::vector<double> near_samples;
@@ -353,12 +353,7 @@ namespace crawler
         return longest < unlimited ? limits : std::vector<StepLimit>();
       const double n_periods = std::ceil(end_time / period * (1. - 1e-12));
       if (static_cast<double>(n) * n_periods > static_cast<double>(max_limits))
-      {
-        double shortest = longest;
-        for (const StepLimit &limit : limits)
-          shortest = std::min(shortest, limit.longest);
-        return {{0., shortest}};
-      }
+        return {{0., std::min(longest, std::ranges::min_element(limits, {}, &StepLimit::longest)->longest)}};
       for (double i = 1.; i < n_periods; ++i)
         for (std::size_t j = 0; j < n; ++j)
           limits.push_back({limits[j].from + i * period, limits[j].longest});
@@ -417,17 +412,6 @@ namespace crawler
     }
   } // namespace
 
-  namespace
-  {
-    /// True if the fast changes of the stress were searched when its repetition was found.
-    bool
-    is_known_by_repetition(const ActiveStress &stress)
-    {
-      const auto repetition = stress.repetition();
-      return repetition && repetition->from == 0.;
-    }
-  } // namespace
-
   StressScales
   stress_scales(const Scene &scene)
   {
@@ -470,11 +454,14 @@ namespace crawler
     const SuddenChange change = is_moved ? largest_sudden_change(scene, in_space) : SuddenChange{0., 0.};
     const double unit         = largest > 0. ? largest : scene.body.elastic_modulus;
     const bool may_jump       = along * L / fine > jump_part * largest;
+    // Fast changes were searched when a repetition was found.
+    const auto repetition = stress.repetition();
+    const bool sees_all   = found.is_complete || (repetition && repetition->from == 0.);
     return {std::min(largest * L / scene.body.elastic_modulus, largest * T / (L * scene.body.friction_coefficient)),
             along > 0. ? largest / along : L,
             step_limits(changes, largest, usual, P, T),
             largest,
-            found.is_complete || is_known_by_repetition(stress),
+            sees_all,
             samples.is_smooth(),
             std::max(change.at_start, change.later) / unit,
             change.later / unit,

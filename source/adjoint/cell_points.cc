@@ -16,25 +16,23 @@ namespace crawler
   }
 
   CellPoints::CellPoints(const LaneSetup &setup, const unsigned int n_more)
-    : setup_(setup)
-    , per_cell_(setup.degree + 1 + n_more)
+    : per_cell(setup.degree + 1 + n_more)
+    , places(gauss_rule(static_cast<unsigned int>(per_cell)).points)
+    , setup_(setup)
+    , weights_(gauss_rule(static_cast<unsigned int>(per_cell)).weights)
+    , values_(interpolation_matrix(reference_element(setup.degree).nodes, places))
+    , slopes_(interpolation_matrix(reference_element(setup.degree).nodes, places, /*derivative=*/true))
   {
-    const QuadratureRule gauss       = gauss_rule(static_cast<unsigned int>(per_cell_));
-    places_                          = gauss.points;
-    weights_                         = gauss.weights;
-    const std::vector<double> &nodes = reference_element(setup.degree).nodes;
-    values_                          = interpolation_matrix(nodes, places_);
-    slopes_                          = interpolation_matrix(nodes, places_, /*derivative=*/true);
-    double left                      = 0.;
+    double left = 0.;
     for (std::size_t c = 0; c < setup.n_cells; left += setup.sizes[c++])
-      for (const double place : places_)
-        points_.push_back(left + place * setup.sizes[c]);
+      for (const double place : places)
+        points.push_back(left + place * setup.sizes[c]);
   }
 
   double
   CellPoints::weight(const std::size_t point) const
   {
-    return weights_[point % per_cell_] * setup_.sizes[cell_of(point)];
+    return weights_[point % per_cell] * setup_.sizes[cell_of(point)];
   }
 
   void
@@ -42,7 +40,7 @@ namespace crawler
   {
     const std::size_t n = setup_.degree + 1;
     for (std::size_t c = 0; c < setup_.n_cells; ++c)
-      for (std::size_t p = 0; p < per_cell_; ++p)
+      for (std::size_t p = 0; p < per_cell; ++p)
       {
         double value = 0., slope = 0.;
         for (std::size_t i = 0; i < n; ++i)
@@ -50,8 +48,8 @@ namespace crawler
           value += values_[p * n + i] * nodal[c * setup_.degree + i];
           slope += slopes_[p * n + i] * nodal[c * setup_.degree + i];
         }
-        values[c * per_cell_ + p] = value;
-        slopes[c * per_cell_ + p] = slope / setup_.sizes[c];
+        values[c * per_cell + p] = value;
+        slopes[c * per_cell + p] = slope / setup_.sizes[c];
       }
   }
 
@@ -61,7 +59,7 @@ namespace crawler
     const std::size_t n = setup_.degree + 1;
     for (std::size_t at = 0; at < size(); ++at)
     {
-      const std::size_t c = cell_of(at), p = at % per_cell_;
+      const std::size_t c = cell_of(at), p = at % per_cell;
       for (std::size_t i = 0; i < n; ++i)
         nodal[c * setup_.degree + i] +=
           values[at] * values_[p * n + i] + slopes[at] * slopes_[p * n + i] / setup_.sizes[c];
@@ -69,20 +67,21 @@ namespace crawler
   }
 
   void
-  CellPoints::evaluate(const std::vector<double> &u, const std::vector<double> &v, StateAtPoints &at) const
+  CellPoints::evaluate(const BackwardStages &stages, StateAtPoints &at) const
   {
-    evaluate(u.data(), at.u, at.e);
-    evaluate(v.data(), at.v, at.rate);
+    at.t = stages.time;
+    evaluate(stages.u.data(), at.u, at.e);
+    evaluate(stages.v.data(), at.v, at.rate);
     for (std::size_t p = 0; p < size(); ++p)
       at.w[p] = 1. + at.e[p];
   }
 
   BackwardStages::BackwardStages(const LaneRecord &steps, const RadauTableau &tableau)
-    : steps_(steps)
+    : u(steps.end())
+    , v(steps.end().size())
+    , steps_(steps)
     , tableau_(tableau)
     , y_(steps.end())
-    , u_(steps.end())
-    , v_(y_.size())
   {
   }
 
@@ -100,14 +99,14 @@ namespace crawler
   {
     const double *z = steps_.z(step_);
     for (std::size_t d = 0; d < y_.size(); ++d)
-      u_[d] = y_[d] + z[stage * y_.size() + d];
+      u[d] = y_[d] + z[stage * y_.size() + d];
     radau::stage_rate(static_cast<int>(tableau_.n),
                       tableau_.inverse.data(),
                       static_cast<int>(stage),
                       1. / steps_.size(step_),
                       z,
                       static_cast<int>(y_.size()),
-                      v_.data());
-    time_ = steps_.time(step_) - (1. - tableau_.c[stage]) * steps_.size(step_);
+                      v.data());
+    time = steps_.time(step_) - (1. - tableau_.c[stage]) * steps_.size(step_);
   }
 } // namespace crawler

@@ -36,50 +36,29 @@ namespace crawler
       }
     };
 
-    /// Adds the bubbles of all cells, @p c [cell][function], at the points of the cells.
-    void
-    add_bubbles(const Bubbles &bubbles,
-                const CellPoints &cells,
-                const LaneSetup &setup,
-                const double *c,
-                std::vector<double> &values,
-                std::vector<double> &slopes)
-    {
-      for (std::size_t p = 0; p < cells.size(); ++p)
-        for (unsigned int j = 0; j < Bubbles::n; ++j)
-        {
-          const std::size_t cell = cells.cell_of(p), row = p % cells.per_cell() * Bubbles::n + j;
-          values[p] += c[cell * Bubbles::n + j] * bubbles.values[row];
-          slopes[p] += c[cell * Bubbles::n + j] * bubbles.slopes[row] / setup.sizes[cell];
-        }
-    }
-
     /// One backward sweep.
     class ErrorSweep
     {
     public:
       explicit ErrorSweep(const RecordedRun &run)
-        : run_(run)
-        , method_(with_more_stages(run.method))
-        , adjoint_(run.natural, method_)
+        : adjoint_(run.natural, with_more_stages(run.method))
         , setup_(adjoint_.tables().setup)
-        , tableau_(radau_tableau(method_.n_stages))
+        , tableau_(radau_tableau(setup_.n_stages))
         , steps_(run.steps.at_places(radau_tableau(run.method.n_stages).c, tableau_.c))
         , stages_(steps_, tableau_)
         , cells_(setup_)
         , fine_(setup_, more_points)
-        , bubbles_(setup_.degree, fine_.places())
+        , bubbles_(setup_.degree, fine_.places)
         , slopes_(interpolation_matrix(tableau_.c, tableau_.c, /*derivative=*/true))
-        , forces_(run.scene, run.scene, cells_.points())
-        , fine_forces_(run.scene, run.scene, fine_.points())
-        , n_bubbles_(setup_.n_cells * Bubbles::n)
-        , at_(cells_.size())
+        , forces_(run.scene, run.scene, cells_.points)
+        , fine_forces_(run.scene, run.scene, fine_.points)
         , fine_at_(tableau_.n, StateAtPoints(fine_.size()))
       {
       }
 
+      /// Errors of a body of this length.
       std::optional<SweptErrors>
-      compute()
+      compute(const double length)
       {
         result_.of_steps.resize(steps_.n_steps());
         result_.of_cells.resize(setup_.n_cells);
@@ -89,20 +68,17 @@ namespace crawler
           [this](const std::size_t step, const std::span<const double> mu, const auto &) { look(step, mu); });
         if (!is_solved || lost_)
           return std::nullopt;
-        const double L = run_.units.length;
-        for (double &error : result_.of_steps)
-        {
-          error *= L;
-          result_.time += error;
-          result_.time_sum += std::abs(error);
-        }
-        for (double &error : result_.of_cells)
-        {
-          error *= L;
-          result_.space += error;
-          result_.space_sum += std::abs(error);
-        }
-        result_.space_change = std::abs(result_.space - L * before_last_);
+        const auto sum_up = [length](std::vector<double> &errors, double &sum, double &sum_of_sizes) {
+          for (double &error : errors)
+          {
+            error *= length;
+            sum += error;
+            sum_of_sizes += std::abs(error);
+          }
+        };
+        sum_up(result_.of_steps, result_.time, result_.time_sum);
+        sum_up(result_.of_cells, result_.space, result_.space_sum);
+        result_.space_change = std::abs(result_.space - length * before_last_);
         return result_;
       }
 
@@ -118,25 +94,37 @@ namespace crawler
       look(const std::size_t step, const std::span<const double> mu)
       {
         std::vector<double> of_cells(setup_.n_cells, 0.), mu_at(cells_.size()), mu_s(cells_.size());
+        StateAtPoints at(cells_.size());
         const std::size_t n = mu.size() / tableau_.n;
-        times_.clear();
         stages_.go_back(step);
         for (unsigned int i = 0; i < tableau_.n; ++i)
         {
           stages_.go_to_stage(i);
-          times_.push_back(stages_.time());
-          cells_.evaluate(stages_.u(), stages_.v(), at_);
+          cells_.evaluate(stages_, at);
           cells_.evaluate(mu.data() + i * n, mu_at, mu_s);
-          forces_.evaluate(stages_.time(), steps_.time(step), at_);
+          forces_.evaluate(steps_.time(step), at);
           for (std::size_t p = 0; p < cells_.size(); ++p)
           {
             const double part = cells_.weight(p) * (forces_.body_force(p) * mu_s[p] + forces_.friction(p) * mu_at[p]);
             result_.of_steps[step] += part;
             of_cells[cells_.cell_of(p)] -= part;
           }
-          fine_.evaluate(stages_.u(), stages_.v(), fine_at_[i]);
+          fine_.evaluate(stages_, fine_at_[i]);
         }
         look_at_bubbles(step, mu.data(), n, of_cells);
+      }
+
+      /// Adds the bubbles of all cells, @p c [cell][function], at the points of the cells.
+      void
+      add_bubbles(const double *c, std::vector<double> &values, std::vector<double> &slopes) const
+      {
+        for (std::size_t p = 0; p < fine_.size(); ++p)
+          for (unsigned int j = 0; j < Bubbles::n; ++j)
+          {
+            const std::size_t cell = fine_.cell_of(p), row = p % fine_.per_cell * Bubbles::n + j;
+            values[p] += c[cell * Bubbles::n + j] * bubbles_.values[row];
+            slopes[p] += c[cell * Bubbles::n + j] * bubbles_.slopes[row] / setup_.sizes[cell];
+          }
       }
 
       /// States of all stages with the contribution of the bubbles @p c [stage][cell][function].
@@ -144,15 +132,15 @@ namespace crawler
       with_bubbles(const std::vector<double> &c, const double h) const
       {
         std::vector<StateAtPoints> states = fine_at_;
-        std::vector<double> rate(n_bubbles_);
+        std::vector<double> rate(n_bubbles());
         for (unsigned int i = 0; i < tableau_.n; ++i)
         {
           std::ranges::fill(rate, 0.);
           for (unsigned int j = 0; j < tableau_.n; ++j)
-            for (std::size_t b = 0; b < n_bubbles_; ++b)
-              rate[b] += slopes_[i * tableau_.n + j] / h * c[j * n_bubbles_ + b];
-          add_bubbles(bubbles_, fine_, setup_, c.data() + i * n_bubbles_, states[i].u, states[i].e);
-          add_bubbles(bubbles_, fine_, setup_, rate.data(), states[i].v, states[i].rate);
+            for (std::size_t b = 0; b < n_bubbles(); ++b)
+              rate[b] += slopes_[i * tableau_.n + j] / h * c[j * n_bubbles() + b];
+          add_bubbles(c.data() + i * n_bubbles(), states[i].u, states[i].e);
+          add_bubbles(rate.data(), states[i].v, states[i].rate);
           for (std::size_t p = 0; p < states[i].e.size(); ++p)
             states[i].w[p] = 1. + states[i].e[p];
         }
@@ -166,9 +154,9 @@ namespace crawler
         for (std::size_t cell = 0; cell < setup_.n_cells; ++cell)
         {
           double k = 0., residual[Bubbles::n] = {};
-          for (std::size_t i = 0; i < fine_.per_cell(); ++i)
+          for (std::size_t i = 0; i < fine_.per_cell; ++i)
           {
-            const std::size_t p = cell * fine_.per_cell() + i;
+            const std::size_t p = cell * fine_.per_cell + i;
             k += fine_.weight(p) * fine_forces_.elastic(p, 1.);
             for (unsigned int j = 0; j < Bubbles::n; ++j)
               residual[j] += fine_.weight(p) *
@@ -184,7 +172,7 @@ namespace crawler
       void
       look_at_bubbles(const std::size_t step, const double *mu, const std::size_t n, const std::vector<double> &without)
       {
-        std::vector<double> c(tableau_.n * n_bubbles_, 0.), mu_at(fine_.size()), mu_s(fine_.size());
+        std::vector<double> c(tableau_.n * n_bubbles(), 0.), mu_at(fine_.size()), mu_s(fine_.size());
         for (unsigned int round = 0; round <= rounds; ++round)
         {
           const auto states            = with_bubbles(c, steps_.size(step));
@@ -196,7 +184,7 @@ namespace crawler
               lost_ = true;
               return;
             }
-            fine_forces_.evaluate(times_[i], steps_.time(step), states[i]);
+            fine_forces_.evaluate(steps_.time(step), states[i]);
             if (round + 1 >= rounds) // the last two rounds
             {
               fine_.evaluate(mu + i * n, mu_at, mu_s);
@@ -205,7 +193,7 @@ namespace crawler
                   fine_.weight(p) * (fine_forces_.body_force(p) * mu_s[p] + fine_forces_.friction(p) * mu_at[p]);
             }
             if (round < rounds)
-              improve(c.data() + i * n_bubbles_);
+              improve(c.data() + i * n_bubbles());
           }
           for (std::size_t cell = 0; cell < setup_.n_cells; ++cell)
             if (round + 1 == rounds)
@@ -215,8 +203,13 @@ namespace crawler
         }
       }
 
-      const RecordedRun &run_;
-      const LaneMethod method_;
+      /// Number of the bubbles in all cells.
+      std::size_t
+      n_bubbles() const
+      {
+        return setup_.n_cells * Bubbles::n;
+      }
+
       LaneAdjoint adjoint_;
       const LaneSetup &setup_;
       const RadauTableau &tableau_;
@@ -226,10 +219,7 @@ namespace crawler
       const Bubbles bubbles_;
       const std::vector<double> slopes_; ///< derivatives at the stages of the polynomial through values there
       ForcesAtPoints forces_, fine_forces_;
-      const std::size_t n_bubbles_;
-      StateAtPoints at_;
-      std::vector<StateAtPoints> fine_at_; ///< points of the stages, without bubbles
-      std::vector<double> times_;          ///< times of the stages
+      std::vector<StateAtPoints> fine_at_; ///< [stage], without bubbles
       SweptErrors result_{};
       double before_last_ = 0.; ///< error in space with one round less, in natural units
       bool lost_          = false;
@@ -245,6 +235,6 @@ namespace crawler
   std::optional<SweptErrors>
   sweep_errors(const RecordedRun &run)
   {
-    return ErrorSweep(run).compute();
+    return ErrorSweep(run).compute(run.units.length);
   }
 } // namespace crawler

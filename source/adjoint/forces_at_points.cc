@@ -7,9 +7,9 @@
 namespace crawler
 {
   ForcesAtPoints::ForcesAtPoints(const Scene &physical, const Scene &other, const std::vector<double> &points)
-    : units_(natural_units(physical))
+    : units(natural_units(physical))
     , segments_(*physical.active_stress, physical.end_time)
-    , scene_(in_units(physical, units_, &segments_))
+    , scene_(in_units(physical, units, &segments_))
     , in_time_(breaks_in_time_of(other), segments_.breaks())
     , at_(points.size())
     , g_(points.size())
@@ -28,7 +28,7 @@ namespace crawler
   }
 
   void
-  ForcesAtPoints::evaluate(const double t, const double end, const StateAtPoints &at)
+  ForcesAtPoints::evaluate(const double end, const StateAtPoints &at)
   {
     const std::size_t piece = in_time_.piece(end);
     const double slower     = in_time_.slope(piece);
@@ -40,44 +40,38 @@ namespace crawler
       at_.w[p]    = 1. + at_.e[p];
       at_.rate[p] = at.rate[p] / (longer_[p] * slower);
     }
-    go_to(in_time_.image(piece), in_time_(piece, t));
+    piece_ = in_time_.image(piece);
+    at_.t  = in_time_(piece, at.t);
+    go_to(piece_, at_.t);
     sliding_->evaluate(at_.u, at_.v);
     scene_.friction->values(at_.w, g_);
   }
 
-  void
-  ForcesAtPoints::slopes(std::vector<Slopes> &all)
+  std::vector<ForcesAtPoints::Slopes>
+  ForcesAtPoints::slopes()
   {
     scene_.friction->values(at_.w, g_, w_dg_);
-    all.resize(g_.size());
+    std::vector<Slopes> all;
     for (std::size_t p = 0; p < g_.size(); ++p)
-    {
-      const bool sees_rate = !body_->by_rate.empty();
-      all[p]               = {body_->by_w[p] - body_->k[p],
-                sees_rate ? body_->by_rate[p] : 0.,
-                              g_[p] * sliding_->by_u[p],
-                              w_dg_[p] / at_.w[p] * sliding_->force[p],
-                              g_[p] * sliding_->by_v[p]};
-    }
-  }
-
-  bool
-  ForcesAtPoints::has_between(const double time, const bool start) const
-  {
-    const std::size_t number = start ? 0 : in_time_.piece(time) + 1;
-    const bool is_edge       = start || in_time_.is_last(number - 1);
-    return in_time_.bunch(number).size() >= (is_edge ? 1 : 2) &&
-           (start || std::abs(time - in_time_.end(number - 1)) <= min_time_between_breaks);
+      all.push_back({body_->by_w[p] - body_->k[p],
+                     body_->by_rate.empty() ? 0. : body_->by_rate[p],
+                     g_[p] * sliding_->by_u[p],
+                     w_dg_[p] / at_.w[p] * sliding_->force[p],
+                     g_[p] * sliding_->by_v[p]});
+    return all;
   }
 
   std::vector<double>
   ForcesAtPoints::between(const double time, const bool start)
   {
     const std::size_t number         = start ? 0 : in_time_.piece(time) + 1;
-    const std::vector<double> &edges = in_time_.bunch(number);
-    const double middle              = in_time_.image_of_break(number);
+    const std::vector<double> &edges = in_time_.bunches[number];
+    const bool is_end                = !start && number + 1 == in_time_.from.size();
+    if (edges.size() < (start || is_end ? 1 : 2) ||
+        (!start && std::abs(time - in_time_.from[number]) > min_time_between_breaks))
+      return {};
+    const double middle    = in_time_.to[number];
     const std::size_t left = start ? 0 : in_time_.image(number - 1), right = left + edges.size();
-    const bool is_end = !start && in_time_.is_last(number - 1);
     std::vector<double> sum(g_.size(), 0.);
     const auto add = [&](const std::size_t piece, const double from, const double to) {
       if (!(to > from))
@@ -99,6 +93,7 @@ namespace crawler
     }
     if (is_end)
       add(right, edges.back(), 1.);
+    go_to(piece_, at_.t);
     return sum;
   }
 

@@ -36,10 +36,8 @@ namespace crawler
     double from  = 0.;
     for (std::size_t i = 0; i < steps.n_steps(); ++i)
     {
-      if (std::abs(steps.time(i) - steps.size(i) - from) > 1e-9 * steps.size(i) + 1e-14)
-        from = HUGE_VAL;
-      else
-        from = steps.time(i);
+      const bool follows = std::abs(steps.time(i) - steps.size(i) - from) <= 1e-9 * steps.size(i) + 1e-14;
+      from               = follows ? steps.time(i) : HUGE_VAL;
     }
     if (!(std::abs(from - 1.) <= 1e-12))
       throw std::runtime_error("the fused engine did not make all steps");

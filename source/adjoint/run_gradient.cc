@@ -7,8 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
-#include <memory>
 #include <numeric>
 #include <stdexcept>
 
@@ -39,19 +39,33 @@ namespace crawler
       return std::abs(left - right) > same * (std::abs(left) + std::abs(right)) + rough;
     }
 
-    /// Direction of variation of one number: the forces in the four scenes, and their changes.
-    struct Direction
+    /// Last stride, in units of the duration, if the active stress declares its length.
+    std::optional<double>
+    last_stride_of(const Scene &scene)
+    {
+      const auto stride = stride_of(*scene.active_stress, scene.end_time);
+      return stride && *stride <= 1. + 1e-9 ? stride : std::nullopt;
+    }
+
+    /// Scene of a variation: its forces, and the changes of all quantities in it.
+    struct OtherScene
     {
       /// Change of a quantity, in natural units.
       struct Change
       {
-        std::array<double, 4> sums = {};
-        double at_breaks           = 0.; ///< change by jumps at start and end, or that come together; infinity: unknown
+        double sum       = 0.;
+        double at_breaks = 0.; ///< change by jumps at start and end, or that come together; infinity: unknown
       };
-      std::array<std::unique_ptr<ForcesOfScene>, 4> forces;
-      std::array<double, 4> strides = {}; ///< the last ones, if they are known
-      bool has_strides              = true;
-      std::vector<Change> changes; ///< [slot of an Adjoint]
+      ForcesOfScene forces;
+      std::optional<double> stride; ///< the last one, if it is known
+      std::vector<Change> changes;  ///< [slot of an Adjoint]
+
+      OtherScene(const Scene &scene, const Scene &own, const std::vector<double> &points, const std::size_t n_slots)
+        : forces(scene, own, points)
+        , stride(last_stride_of(scene))
+        , changes(n_slots)
+      {
+      }
     };
 
     /// Place of a stretch in the run: w = 1 + sum slopes[j] u[first + j], where u is on the polynomial of a step
@@ -71,19 +85,17 @@ namespace crawler
     {
       std::size_t slot;                      ///< index in all_quantities, followed by the stretches
       Quantity quantity;                     ///< the displacement if it is none of these
-      StretchInRun *stretch;                 ///< null unless a stretch is requested
+      std::optional<StretchInRun> stretch;   ///< if a stretch is requested
       std::vector<double> mu;                ///< [step][stage][unknown]
       std::vector<std::vector<double>> zeta; ///< [step], mostly empty
       double value = 0.;                     ///< value in natural units
     };
 
-    /// Last stride, in units of the duration, if the active stress declares its length.
-    std::optional<double>
-    last_stride_of(const Scene &scene)
+    /// Field at the points, and its derivative by s.
+    struct Field
     {
-      const auto stride = stride_of(*scene.active_stress, scene.end_time);
-      return stride && *stride <= 1. + 1e-9 ? stride : std::nullopt;
-    }
+      std::vector<double> values, slopes;
+    };
 
     /// Sweeps: a backward one for each quantity, and one that assembles their results.
     class GradientSweep
@@ -92,47 +104,34 @@ namespace crawler
       GradientSweep(const RecordedRun &run,
                     const std::span<const Variation> variations,
                     const std::span<const Quantity> quantities,
-                    const std::span<const StretchPlace> stretches,
-                    LocalSensitivity &local)
+                    const std::span<const StretchPlace> stretches)
         : run_(run)
-        , local_(local)
         , adjoint_(run.natural, run.method)
         , setup_(adjoint_.tables().setup)
         , tableau_(radau_tableau(setup_.n_stages))
         , cells_(setup_)
-        , own_(run.scene, run.scene, cells_.points())
-        , works_(cells_)
+        , own_(run.scene, run.scene, cells_.points)
+        , local_{cells_.points, std::vector<double>(cells_.size()), std::vector<double>(cells_.size()), {}, {}}
         , at_(cells_.size())
         , at_ends_(2)
-        , mu_(cells_.size())
-        , mu_s_(cells_.size())
-        , zeta_(cells_.size())
-        , zeta_s_(cells_.size())
+        , mu_{std::vector<double>(cells_.size()), std::vector<double>(cells_.size())}
+        , zeta_(mu_)
       {
         for (const Variation &variation : variations)
-        {
-          Direction &direction = directions_.emplace_back();
-          direction.changes.resize(all_quantities.size() + stretches.size());
-          for (std::size_t k = 0; k < 4; ++k)
-            direction.forces[k] = std::make_unique<ForcesOfScene>(variation.scenes[k], run.scene, cells_.points());
-        }
-        find_stride(variations);
+          for (const Scene &scene : variation.scenes)
+            others_.emplace_back(scene, run.scene, cells_.points, all_quantities.size() + stretches.size());
+        find_stride();
         for (const Quantity quantity : quantities)
           if (quantity == Quantity::stride         ? stride_.has_value() // the speed is the same in other units
               : quantity == Quantity::paper_energy ? run.scene.active_stress->feedback() == nullptr
                                                    : quantity != Quantity::speed)
-            add_adjoint(static_cast<std::size_t>(quantity), quantity);
-        for (const StretchPlace &place : stretches)
-          stretches_.push_back(in_step(place));
-        for (std::size_t i = 0; i < stretches_.size(); ++i)
-          add_adjoint(all_quantities.size() + i, Quantity::displacement, &stretches_[i]);
-        constexpr std::size_t max_samples = 4000000;
-        keeps_stress_                     = run.steps.n_steps() * tableau_.n * cells_.size() <= max_samples;
-        local_ = {cells_.points(), std::vector<double>(cells_.size()), std::vector<double>(cells_.size()), {}, {}};
+            add_adjoint(static_cast<std::size_t>(quantity), quantity, std::nullopt);
+        for (std::size_t i = 0; i < stretches.size(); ++i)
+          add_adjoint(all_quantities.size() + i, Quantity::displacement, in_step(stretches[i]));
       }
 
-      void
-      make()
+      RunGradient
+      compute(const std::span<const Variation> variations)
       {
         for (Adjoint &adjoint : adjoints_)
           solve(adjoint);
@@ -144,46 +143,72 @@ namespace crawler
           s *= run_.units.length;
         std::ranges::reverse(local_.times);
         std::ranges::reverse(local_.stress);
+        RunGradient result;
+        for (std::size_t i = 0; i < variations.size(); ++i)
+        {
+          result.quantities.push_back(derivatives(i, variations[i]));
+          result.stretches.push_back(of_stretches(i, variations[i]));
+        }
+        result.local = std::move(local_);
+        return result;
+      }
+
+    private:
+      /// Changes of a quantity in the scenes of a variation; in units that may differ from scene to scene, by this
+      /// function of its natural units and stride.
+      template <typename Unit>
+      std::array<double, 4>
+      changes_of(const Adjoint &adjoint, const std::size_t variation, const Unit &unit) const
+      {
+        const double own = unit(run_.units, stride_);
+        std::array<double, 4> all;
+        for (std::size_t k = 0; k < 4; ++k)
+        {
+          const OtherScene &other = others_[4 * variation + k];
+          all[k]                  = own * other.changes[adjoint.slot].sum +
+                   adjoint.value * (unit(other.forces.inside.units, other.stride) - own);
+        }
+        return all;
+      }
+
+      double
+      change_at_breaks(const Adjoint &adjoint, const std::size_t variation) const
+      {
+        double largest = 0.;
+        for (std::size_t k = 0; k < 4; ++k)
+          largest = std::max(largest, others_[4 * variation + k].changes[adjoint.slot].at_breaks);
+        return largest;
       }
 
       /// Derivatives of the quantities, as far as they are known.
       Derivatives
       derivatives(const std::size_t number, const Variation &variation) const
       {
-        constexpr double nothing   = 1e-7;
-        const Direction &direction = directions_[number];
+        constexpr double nothing = 1e-7;
+        const bool has_strides   = std::all_of(others_.begin() + static_cast<std::ptrdiff_t>(4 * number),
+                                             others_.begin() + static_cast<std::ptrdiff_t>(4 * number + 4),
+                                             [](const OtherScene &other) { return other.stride.has_value(); });
         Derivatives result;
         for (const Adjoint &adjoint : adjoints_)
         {
-          if (adjoint.stretch != nullptr)
+          if (adjoint.stretch)
             continue;
-          const auto put = [&](const Quantity quantity, const double own, const std::array<double, 4> &units) {
-            const Direction::Change &change = direction.changes[adjoint.slot];
-            std::array<double, 4> all;
-            for (std::size_t k = 0; k < 4; ++k)
-              all[k] = own * change.sums[k] + adjoint.value * (units[k] - own);
-            const double value = derivative_of(all, variation);
+          const auto put = [&](const Quantity quantity, const auto &unit) {
+            const std::array<double, 4> all = changes_of(adjoint, number, unit);
+            const double own = unit(run_.units, stride_), value = derivative_of(all, variation);
             // Positive work has small kinks everywhere, from point to point.
             const double rough =
               own * std::max((quantity == Quantity::positive_work ? 1e-5 : 1e-7) * std::abs(adjoint.value), round_off);
-            if (own * change.at_breaks <= nothing * std::abs(variation.step * value) &&
+            if (own * change_at_breaks(adjoint, number) <= nothing * std::abs(variation.step * value) &&
                 !has_kink(all, variation, rough))
               result[static_cast<std::size_t>(quantity)] = value;
           };
-          std::array<double, 4> energies, lengths, speeds;
-          for (std::size_t k = 0; k < 4; ++k)
-          {
-            const Units &units = direction.forces[k]->inside.units();
-            energies[k]        = units.energy();
-            lengths[k]         = units.length;
-            speeds[k]          = stride_ ? units.velocity() / direction.strides[k] : 0.;
-          }
           if (is_work(adjoint.quantity))
-            put(adjoint.quantity, run_.units.energy(), energies);
-          else if (adjoint.quantity == Quantity::displacement || direction.has_strides)
-            put(adjoint.quantity, run_.units.length, lengths);
-          if (adjoint.quantity == Quantity::stride && direction.has_strides)
-            put(Quantity::speed, run_.units.velocity() / *stride_, speeds);
+            put(adjoint.quantity, [](const Units &units, const auto &) { return units.energy(); });
+          else if (adjoint.quantity == Quantity::displacement || has_strides)
+            put(adjoint.quantity, [](const Units &units, const auto &) { return units.length; });
+          if (adjoint.quantity == Quantity::stride && has_strides)
+            put(Quantity::speed, [](const Units &units, const auto &stride) { return units.velocity() / *stride; });
         }
         return result;
       }
@@ -195,20 +220,20 @@ namespace crawler
         constexpr double rough = 1e-7;
         std::vector<std::optional<double>> result;
         for (const Adjoint &adjoint : adjoints_)
-          if (adjoint.stretch != nullptr)
+          if (adjoint.stretch)
           {
-            const Direction::Change &change = directions_[number].changes[adjoint.slot];
-            const bool is_smooth            = change.at_breaks == 0. && !has_kink(change.sums, variation, rough);
-            result.push_back(is_smooth ? std::optional(derivative_of(change.sums, variation)) : std::nullopt);
+            const auto all       = changes_of(adjoint, number, [](const Units &, const auto &) { return 1.; });
+            const bool is_smooth = change_at_breaks(adjoint, number) == 0. && !has_kink(all, variation, rough);
+            result.push_back(is_smooth ? std::optional(derivative_of(all, variation)) : std::nullopt);
           }
         return result;
       }
 
-    private:
       void
-      add_adjoint(const std::size_t slot, const Quantity quantity, StretchInRun *const stretch = nullptr)
+      add_adjoint(const std::size_t slot, const Quantity quantity, std::optional<StretchInRun> stretch)
       {
-        adjoints_.push_back({slot, quantity, stretch, {}, std::vector<std::vector<double>>(run_.steps.n_steps())});
+        adjoints_.push_back(
+          {slot, quantity, std::move(stretch), {}, std::vector<std::vector<double>>(run_.steps.n_steps())});
       }
 
       StretchInRun
@@ -256,7 +281,7 @@ namespace crawler
 
       /// Adds the dependence of a stretch on the step where it is, and on the start of this, the end of the one before.
       void
-      add_stretch(const Adjoint &adjoint, const std::size_t step, BackwardStages &stages, const LaneSources &sources)
+      add_stretch(Adjoint &adjoint, const std::size_t step, BackwardStages &stages, const LaneSources &sources)
       {
         StretchInRun &stretch = *adjoint.stretch;
         const std::size_t n   = run_.steps.end().size();
@@ -269,7 +294,7 @@ namespace crawler
         if (step != stretch.step)
           return;
         stages.go_to_stage(tableau_.n - 1);
-        std::vector<double> u = stages.u(), more(n);
+        std::vector<double> u = stages.u, more(n);
         const double *z       = run_.steps.z(step);
         radau::combine(static_cast<int>(tableau_.n), stretch.weights.data(), z, static_cast<int>(n), more.data());
         for (std::size_t d = 0; d < n; ++d)
@@ -279,19 +304,19 @@ namespace crawler
           for (std::size_t j = 0; j < stretch.slopes.size(); ++j)
             sources.by_u[i * n + stretch.cell * setup_.degree + j] += stretch.weights[i] * stretch.slopes[j];
         // Strains of the parts of a body that is longer there are smaller.
-        for (Direction &direction : directions_)
-          for (std::size_t k = 0; k < 4; ++k)
-            direction.changes[adjoint.slot].sums[k] +=
-              stretch.strain / direction.forces[k]->inside.longer(stretch.cell * cells_.per_cell()) - stretch.strain;
+        for (OtherScene &other : others_)
+          other.changes[adjoint.slot].sum +=
+            stretch.strain / other.forces.inside.longer(stretch.cell * cells_.per_cell) - stretch.strain;
       }
 
       void
       go_to_stage(BackwardStages &stages, const unsigned int stage)
       {
         stages.go_to_stage(stage);
-        cells_.evaluate(stages.u(), stages.v(), at_);
-        at_ends_.u = {stages.u().front(), stages.u().back()};
-        at_ends_.v = {stages.v().front(), stages.v().back()};
+        cells_.evaluate(stages, at_);
+        at_ends_.t = stages.time;
+        at_ends_.u = {stages.u.front(), stages.u.back()};
+        at_ends_.v = {stages.v.front(), stages.v.back()};
       }
 
       void
@@ -299,16 +324,15 @@ namespace crawler
       {
         const std::vector<double> mean = adjoint_.gradient_of_displacement();
         std::vector<double> gradient   = mean;
-        if (is_work(adjoint.quantity) || adjoint.stretch != nullptr)
+        if (is_work(adjoint.quantity) || adjoint.stretch)
           std::ranges::fill(gradient, 0.);
         else
           adjoint.value = run_.displacement / run_.units.length;
         const std::size_t n = gradient.size(), n_mu = tableau_.n * n;
         adjoint.mu.resize(run_.steps.n_steps() * n_mu);
         const LaneRecord steps = // steps after a stretch have no effect on it
-          adjoint.stretch != nullptr ? run_.steps.first_steps(adjoint.stretch->step + 1) : run_.steps;
+          adjoint.stretch ? run_.steps.first_steps(adjoint.stretch->step + 1) : run_.steps;
         BackwardStages stages(steps, tableau_);
-        std::vector<ForcesAtPoints::Slopes> slopes;
         const auto see =
           [&](const std::size_t step, const std::span<const double> mu, const std::span<const double> zeta) {
             std::ranges::copy(mu, adjoint.mu.begin() + static_cast<std::ptrdiff_t>(step * n_mu));
@@ -316,7 +340,7 @@ namespace crawler
           };
         LaneAdjoint::Source source = [&](const std::size_t step, const LaneSources &sources) {
           stages.go_back(step);
-          if (adjoint.stretch != nullptr)
+          if (adjoint.stretch)
           {
             add_stretch(adjoint, step, stages, sources);
             return;
@@ -329,7 +353,7 @@ namespace crawler
             for (std::size_t d = 0; d < n; ++d)
             {
               sources.by_end[d] = -mean[d];
-              adjoint.value -= mean[d] * stages.u()[d];
+              adjoint.value -= mean[d] * stages.u[d];
             }
             return;
           }
@@ -337,34 +361,26 @@ namespace crawler
           {
             const double weight = run_.steps.size(step) * tableau_.b[i];
             go_to_stage(stages, i);
-            own_.evaluate(stages.time(), run_.steps.time(step), at_, at_ends_);
-            adjoint.value += weight * works_.rate(adjoint.quantity, own_, at_, at_ends_);
-            own_.inside.slopes(slopes);
-            works_.add_slopes(
-              adjoint.quantity, weight, own_, slopes, at_, n, sources.by_u + i * n, sources.by_velocity + i * n);
+            own_.evaluate(run_.steps.time(step), at_, at_ends_);
+            adjoint.value += weight * work_rate(adjoint.quantity, cells_, own_, at_, at_ends_);
+            add_slopes_of_work(
+              adjoint.quantity, weight, cells_, own_, at_, n, sources.by_u + i * n, sources.by_velocity + i * n);
           }
         };
-        if (adjoint.quantity == Quantity::displacement && adjoint.stretch == nullptr)
+        if (adjoint.quantity == Quantity::displacement && !adjoint.stretch)
           source = {};
         if (!adjoint_.solve(steps, gradient, see, source))
           throw std::runtime_error("the adjoint of a step did not converge");
-      }
-
-      static Direction::Change &
-      change_of(Direction &direction, const Quantity quantity)
-      {
-        return direction.changes[static_cast<std::size_t>(quantity)];
       }
 
       /// Adds the mean displacement of a body that is longer in some places, @p factor times.
       void
       add_lengths(const Quantity quantity, const double factor)
       {
-        for (Direction &direction : directions_)
-          for (std::size_t k = 0; k < 4; ++k)
-            for (std::size_t p = 0; p < cells_.size(); ++p)
-              change_of(direction, quantity).sums[k] +=
-                factor * cells_.weight(p) * (direction.forces[k]->inside.longer(p) - 1.) * at_.u[p];
+        for (OtherScene &other : others_)
+          for (std::size_t p = 0; p < cells_.size(); ++p)
+            other.changes[static_cast<std::size_t>(quantity)].sum +=
+              factor * cells_.weight(p) * (other.forces.inside.longer(p) - 1.) * at_.u[p];
       }
 
       void
@@ -383,15 +399,14 @@ namespace crawler
         for (std::size_t p = 0; p < cells_.size(); ++p)
           velocity += cells_.weight(p) * at_.v[p];
         add_lengths(Quantity::stride, -1.);
-        for (Direction &direction : directions_)
-          for (std::size_t k = 0; k < 4; ++k)
-            change_of(direction, Quantity::stride).sums[k] -=
-              velocity * (1. - direction.strides[k] - direction.forces[k]->inside.own_time(1. - *stride_));
+        for (OtherScene &other : others_)
+          other.changes[static_cast<std::size_t>(Quantity::stride)].sum -=
+            velocity * (1. - other.stride.value_or(1.) - other.forces.inside.own_time(1. - *stride_));
       }
 
-      /// Finds the last stride of the run and of the scenes that differ; none unless a step ends where it starts.
+      /// Finds the last stride of the run; none unless a step ends where it starts.
       void
-      find_stride(const std::span<const Variation> variations)
+      find_stride()
       {
         const auto stride = last_stride_of(run_.scene);
         if (!stride)
@@ -400,16 +415,8 @@ namespace crawler
         for (std::size_t step = 0; step < run_.steps.n_steps(); ++step)
           if (std::abs(run_.steps.time(step) - (1. - *stride)) <= 1e-9)
             before_stride_ = step;
-        if (std::abs(*stride - 1.) > 1e-9 && before_stride_ == run_.steps.n_steps())
-          return;
-        for (std::size_t i = 0; i < variations.size(); ++i)
-          for (std::size_t k = 0; k < 4; ++k)
-          {
-            const auto other           = last_stride_of(variations[i].scenes[k]);
-            directions_[i].strides[k]  = other.value_or(1.);
-            directions_[i].has_strides = directions_[i].has_strides && other;
-          }
-        stride_ = stride;
+        if (std::abs(*stride - 1.) <= 1e-9 || before_stride_ < run_.steps.n_steps())
+          stride_ = stride;
       }
 
       void
@@ -420,37 +427,35 @@ namespace crawler
         for (unsigned int i = tableau_.n; i-- > 0;)
         {
           const double weight = h * tableau_.b[i];
+          const bool is_last  = i + 1 == tableau_.n;
           go_to_stage(stages, i);
-          if (stride_ && step == before_stride_ && i + 1 == tableau_.n)
+          if (stride_ && step == before_stride_ && is_last)
             look_at_start_of_stride();
-          own_.evaluate(stages.time(), end, at_, at_ends_);
-          for (Direction &direction : directions_)
-            for (std::size_t k = 0; k < 4; ++k)
-              direction.forces[k]->evaluate(stages.time(), end, at_, at_ends_);
+          own_.evaluate(end, at_, at_ends_);
+          for (OtherScene &other : others_)
+            other.forces.evaluate(end, at_, at_ends_);
           for (const Adjoint &adjoint : adjoints_)
           {
-            if (adjoint.stretch != nullptr && step > adjoint.stretch->step)
+            if (adjoint.stretch && step > adjoint.stretch->step)
               continue;
             const std::size_t n = adjoint.mu.size() / (run_.steps.n_steps() * tableau_.n);
-            cells_.evaluate(adjoint.mu.data() + (step * tableau_.n + i) * n, mu_, mu_s_);
-            if (i + 1 == tableau_.n && !adjoint.zeta[step].empty())
-              cells_.evaluate(adjoint.zeta[step].data(), zeta_, zeta_s_);
+            cells_.evaluate(adjoint.mu.data() + (step * tableau_.n + i) * n, mu_.values, mu_.slopes);
+            if (is_last && !adjoint.zeta[step].empty())
+              cells_.evaluate(adjoint.zeta[step].data(), zeta_.values, zeta_.slopes);
             if (adjoint.slot == static_cast<std::size_t>(Quantity::displacement))
-              add_local(stages.time(), weight);
-            for (Direction &direction : directions_)
-              for (std::size_t k = 0; k < 4; ++k)
-              {
-                ForcesAtPoints &forces    = direction.forces[k]->inside;
-                Direction::Change &change = direction.changes[adjoint.slot];
-                add_forces(forces, change.sums[k]);
-                if (is_work(adjoint.quantity))
-                  change.sums[k] += weight * (works_.rate(adjoint.quantity, *direction.forces[k], at_, at_ends_) -
-                                              works_.rate(adjoint.quantity, own_, at_, at_ends_));
-                if (i + 1 == tableau_.n && forces.has_between(end, false))
-                  add_impulse(adjoint, change, k, forces.between(end, false), zeta_s_, -1., end == 1.);
-                if (step == 0 && i == 0 && forces.has_between(0., true))
-                  add_impulse(adjoint, change, k, forces.between(0., true), mu_s_, 1. / weight, true);
-              }
+              add_local(weight);
+            for (OtherScene &other : others_)
+            {
+              OtherScene::Change &change = other.changes[adjoint.slot];
+              add_forces(other.forces.inside, change.sum);
+              if (is_work(adjoint.quantity))
+                change.sum += weight * (work_rate(adjoint.quantity, cells_, other.forces, at_, at_ends_) -
+                                        work_rate(adjoint.quantity, cells_, own_, at_, at_ends_));
+              if (is_last)
+                add_impulse(adjoint, change, other.forces.inside.between(end, false), zeta_.slopes, -1., end == 1.);
+              if (step == 0 && i == 0)
+                add_impulse(adjoint, change, other.forces.inside.between(0., true), mu_.slopes, 1. / weight, true);
+            }
           }
         }
       }
@@ -460,42 +465,43 @@ namespace crawler
       add_forces(const ForcesAtPoints &forces, double &sum) const
       {
         for (std::size_t p = 0; p < cells_.size(); ++p)
-          sum += cells_.weight(p) * ((forces.body_force(p) - own_.inside.body_force(p)) * mu_s_[p] +
-                                     (forces.friction(p) - own_.inside.friction(p)) * mu_[p]);
+          sum += cells_.weight(p) * ((forces.body_force(p) - own_.inside.body_force(p)) * mu_.slopes[p] +
+                                     (forces.friction(p) - own_.inside.friction(p)) * mu_.values[p]);
       }
 
       /// @p weight is that of the stage.
       void
-      add_local(const double time, const double weight)
+      add_local(const double weight)
       {
+        constexpr std::size_t max_samples = 4000000;
         for (std::size_t p = 0; p < cells_.size(); ++p)
         {
-          local_.elastic_modulus[p] += own_.inside.elastic(p, at_.e[p]) * mu_s_[p];
-          local_.friction[p] += own_.inside.friction(p) * mu_[p];
+          local_.elastic_modulus[p] += own_.inside.elastic(p, at_.e[p]) * mu_.slopes[p];
+          local_.friction[p] += own_.inside.friction(p) * mu_.values[p];
         }
-        if (!keeps_stress_)
+        if (run_.steps.n_steps() * tableau_.n * cells_.size() > max_samples)
           return;
-        local_.times.push_back(time * run_.units.time);
+        local_.times.push_back(at_.t * run_.units.time);
         for (std::size_t p = cells_.size(); p-- > 0;)
-          local_.stress.push_back(mu_s_[p] / (weight * run_.units.force * run_.units.time));
+          local_.stress.push_back(mu_.slopes[p] / (weight * run_.units.force * run_.units.time));
       }
 
+      /// Adds the effect of an @p impulse at the points, if there is one.
       void
       add_impulse(const Adjoint &adjoint,
-                  Direction::Change &change,
-                  const std::size_t k,
+                  OtherScene::Change &change,
                   const std::vector<double> &impulse,
                   const std::vector<double> &effect,
                   const double factor,
                   const bool is_edge) const
       {
         double sum = 0., size = 0.;
-        for (std::size_t p = 0; p < cells_.size(); ++p)
+        for (std::size_t p = 0; p < impulse.size(); ++p)
         {
           sum += factor * cells_.weight(p) * impulse[p] * effect[p];
           size += cells_.weight(p) * std::abs(impulse[p]);
         }
-        change.sums[k] += sum;
+        change.sum += sum;
         // Impulses have effects beyond their size where friction is not linear in the velocity; and works grow in them.
         if (is_work(adjoint.quantity) && size > 0.)
           change.at_breaks = std::numeric_limits<double>::infinity();
@@ -504,21 +510,18 @@ namespace crawler
       }
 
       const RecordedRun &run_;
-      LocalSensitivity &local_;
       LaneAdjoint adjoint_;
       const LaneSetup &setup_;
       const RadauTableau &tableau_;
       const CellPoints cells_;
       ForcesOfScene own_;
-      WorkRates works_;
-      std::vector<Direction> directions_;
-      std::vector<StretchInRun> stretches_;
+      std::deque<OtherScene> others_; ///< [variation][4]
       std::vector<Adjoint> adjoints_;
-      bool keeps_stress_ = true;
+      LocalSensitivity local_;
       std::optional<double> stride_;  ///< stride of the run, if it is known
       std::size_t before_stride_ = 0; ///< the step that ends where the last stride starts
       StateAtPoints at_, at_ends_;
-      std::vector<double> mu_, mu_s_, zeta_, zeta_s_; ///< adjoint at the points, and its derivatives by s
+      Field mu_, zeta_; ///< adjoint at the points
     };
   } // namespace
 
@@ -526,7 +529,7 @@ namespace crawler
   have_similar_breaks(const Scene &scene, const Scene &other)
   {
     return BreakMap(breaks_in_space_of(scene), breaks_in_space_of(other)).is_one_to_one() &&
-           BreakMap(breaks_in_time_of(scene), breaks_in_time_of(other)).is_good();
+           BreakMap(breaks_in_time_of(scene), breaks_in_time_of(other)).is_good;
   }
 
   RunGradient
@@ -535,14 +538,6 @@ namespace crawler
               const std::span<const Quantity> quantities,
               const std::span<const StretchPlace> stretches)
   {
-    RunGradient result;
-    GradientSweep sweep(run, variations, quantities, stretches, result.local);
-    sweep.make();
-    for (std::size_t i = 0; i < variations.size(); ++i)
-    {
-      result.quantities.push_back(sweep.derivatives(i, variations[i]));
-      result.stretches.push_back(sweep.of_stretches(i, variations[i]));
-    }
-    return result;
+    return GradientSweep(run, variations, quantities, stretches).compute(variations);
   }
 } // namespace crawler

@@ -36,10 +36,10 @@ namespace crawler
       return ExitCode::finished;
     }
     WaitProgress pilots(log, pilot_runs);
-    NumericsChoice choice = *choose_numerics(MPI_COMM_SELF, input.parameters, input.scene, [&]() {
-      pilots.step();
-      return true;
-    });
+    NumericsChoice choice = *choose_numerics({input.parameters, input.scene, [&]() {
+                                                pilots.step();
+                                                return true;
+                                              }});
     if (input.parameters.output.has_snapshots())
       prepare_for_pictures(choice, input.parameters);
     const Simulation simulation(MPI_COMM_SELF, input.scene, input.parameters.time, choice.numerics);

@@ -41,17 +41,6 @@ namespace crawler
     return result;
   }
 
-  EnergyBalance
-  EnergyBalance::combined(const double own, const EnergyBalance &other, const double part) const
-  {
-    EnergyBalance result      = scaled(own);
-    const EnergyBalance added = other.scaled(part);
-    for (const auto energy : energies())
-      result.*energy += added.*energy;
-    result.initial_energy += added.initial_energy;
-    return result;
-  }
-
   void
   RateQuadrature::advance(const double time, const Rates &rates)
   {

@@ -22,20 +22,15 @@ namespace crawler
     if (is_dense)
       return;
     // Times of snapshots are kept to the last bit.
-    std::vector<double> ends;
+    std::vector<double> snapshots;
     for (std::size_t i = 0; i < pictures_.all().size(); ++i)
       if (pictures_.all()[i].kinds.is_snapshot)
-        ends.push_back(pictures_.natural(i));
-    const std::size_t n = ends.size();
-    for (const double time : step_ends_)
-    {
-      const auto last  = ends.begin() + static_cast<std::ptrdiff_t>(n);
-      const auto place = std::lower_bound(ends.begin(), last, time - min_time_between_breaks);
-      if (place == last || !is_same(*place, time))
-        ends.push_back(time);
-    }
-    std::sort(ends.begin(), ends.end());
-    step_ends_ = std::move(ends);
+        snapshots.push_back(pictures_.natural(i));
+    std::erase_if(step_ends_, [&](const double time) {
+      return std::ranges::any_of(snapshots, [time](const double snapshot) { return is_same(snapshot, time); });
+    });
+    step_ends_.insert(step_ends_.end(), snapshots.begin(), snapshots.end());
+    std::ranges::sort(step_ends_);
   }
 
   std::vector<double>

@@ -216,9 +216,9 @@ namespace crawler
     scale(result.max_stretch);
     if (result.inversion)
       scale(*result.inversion);
-    if (result.inverted_places)
-      result.inverted_places = {result.inverted_places->first * units.length,
-                                result.inverted_places->second * units.length};
+    if (result.inversion && result.inversion->places)
+      for (double *place : {&result.inversion->places->first, &result.inversion->places->second})
+        *place *= units.length;
     if (result.cycles)
     {
       result.cycles->period *= units.time;

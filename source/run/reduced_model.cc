@@ -72,7 +72,7 @@ namespace crawler
     if (motion.inversion)
     {
       result.time.status = Status::inverted;
-      result.inversion   = stretch_of(*motion.inversion);
+      result.inversion   = Inversion{stretch_of(*motion.inversion)};
       result.energy_balance.reset();
       return;
     }

@@ -30,13 +30,6 @@ namespace crawler
              (parameters.time.integrator != "automatic" && parameters.time.integrator != "bdf") ||
              parameters.time.order < 4 || parameters.time.step_control == StepControl::fixed;
     }
-
-    double
-    net_friction_tolerance(const RunParameters &parameters)
-    {
-      return has_own_steps(parameters) ? net_friction_of_users
-                                       : std::max(min_net_friction, net_friction_of_accuracy * parameters.accuracy);
-    }
   } // namespace
 
   double
@@ -151,7 +144,10 @@ namespace crawler
                     result.energy_balance->residual(),
                     tolerance);
     }
-    else if (const double most = net_friction_tolerance(parameters); result.net_friction > most)
+    else if (const double most = has_own_steps(parameters)
+                                   ? net_friction_of_users
+                                   : std::max(min_net_friction, net_friction_of_accuracy * parameters.accuracy);
+             result.net_friction > most)
     {
       result.time.reason = "net_friction";
       result.time.message =

@@ -296,8 +296,11 @@ namespace crawler
   {
     if (!run_->goes_on)
       run_->part_start = run_->accepted.time;
-    run_->goes_on      = false;
-    run_->lane_samples = can_sample_lanes();
+    run_->goes_on = false;
+    // Numbers of the lanes are used, but not where round-off of the state counts, in very stiff or small cells.
+    run_->lane_samples = run_->options.energy_balance && mesh_.position != nullptr &&
+                         integrators_.present == integrators_.lanes.get() && mesh_.velocity->is_known_to_lanes() &&
+                         run_->options.resolution != ResolutionWish::all;
     if (integrators_.lanes)
       integrators_.lanes->look_inside = run_->lane_samples;
     Stepper &stepper    = *integrators_.present;

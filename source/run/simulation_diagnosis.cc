@@ -85,7 +85,7 @@ namespace crawler
   void
   Simulation::inverted_at_end(const double s, const double t, const std::string &reason)
   {
-    result().inversion = SimulationResult::Extreme{0., s, t};
+    result().inversion = Inversion{{0., s, t}};
     run_->diagnosis    = {Status::inverted,
                           "inverted_at_end",
                           fmt::format("the body inverted: its stretch reached 0 at the end s = {:.6g} at t = {:.9g}, {}; "
@@ -124,8 +124,8 @@ namespace crawler
         // Disturbances travel at unbounded speed there, so all these places are lost at once.
         constexpr double at_once = 1e-6;
         integrators_.present->interpolate(t, y);
-        const auto [first, last] = mesh_.stretch->lost_places(t, y, at_once);
-        result().inverted_places = {std::min(first, smallest.s), std::max(last, smallest.s)};
+        const auto [first, last]   = mesh_.stretch->lost_places(t, y, at_once);
+        result().inversion->places = {std::min(first, smallest.s), std::max(last, smallest.s)};
       }
     }
   }
@@ -220,7 +220,7 @@ namespace crawler
                     mesh_.position != nullptr ? "Discretization/Formulation = stretch, or " : "")};
     else
     {
-      result().inversion = SimulationResult::Extreme{std::min(value, 0.), s, t};
+      result().inversion = Inversion{{std::min(value, 0.), s, t}};
       run_->diagnosis    = {Status::inverted,
                             "inverted_inside",
                             fmt::format("the body inverted: its stretch reached 0 at s = {:.6g}, t = {:.9g}; the model "

@@ -10,15 +10,6 @@
 
 namespace crawler
 {
-  /// True if they may be taken: not where round-off of the state counts, in very stiff or small cells.
-  bool
-  Simulation::can_sample_lanes() const
-  {
-    return run_->options.energy_balance && mesh_.position != nullptr &&
-           integrators_.present == integrators_.lanes.get() && mesh_.velocity->is_known_to_lanes() &&
-           run_->options.resolution != ResolutionWish::all;
-  }
-
   /// True if those of this step, where no stretch is nearly lost, may be taken.
   bool
   Simulation::samples_lanes(const Step &step) const

@@ -10,12 +10,6 @@
 
 namespace crawler
 {
-  namespace
-  {
-    /// Step of balance_state() after a change of mesh, over the root of the tolerance.
-    constexpr double settling_factor = 0.01;
-  } // namespace
-
   /// Changes the mesh, of the position form, and transfers the last accepted state.
   void
   Simulation::change()
@@ -51,6 +45,7 @@ namespace crawler
   void
   Simulation::balance_state()
   {
+    constexpr double settling_factor       = 0.01; // step over the root of the tolerance
     constexpr unsigned int max_corrections = 10;
     const double size                      = settling_factor * std::sqrt(std::min(numerics_.tolerance, 1e-8));
     const double t                         = run_->accepted.time + size;

@@ -36,8 +36,8 @@ namespace crawler
   {
     archive(time);
     archive(model, displacement, integrator, engine, error, corrected, errors, largest_u, last_u, unresolved, strain);
-    archive(energy_balance, jumps_move, net_friction, min_stretch, max_stretch, inversion, inverted_places);
-    archive(inversion_error, gait, gait_efficiency, cycles, formulation, mesh_changes, most_cells, mesh);
+    archive(energy_balance, jumps_move, net_friction, min_stretch, max_stretch, inversion);
+    archive(gait, gait_efficiency, cycles, formulation, mesh_changes, most_cells, mesh);
     archive(largest_indicator, setup_seconds, solve_seconds, output_seconds, estimate_seconds, refinements);
   }
 } // namespace crawler

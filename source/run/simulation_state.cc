@@ -69,7 +69,8 @@ namespace crawler
       if (samples_lanes(step))
         see_stretch_of_lanes(integrators_.lanes->tables().setup.n_stages - 1);
       else
-        look_at_extremes(step.time, stretch);
+        run_->recorder.see_stretch({stretch.min.value, stretch.min.s, step.time},
+                                   {stretch.max.value, stretch.max.s, step.time});
     }
     if (run_->options.resolution != ResolutionWish::none)
       look_at_resolution(step, y);
@@ -202,8 +203,9 @@ namespace crawler
       {
         if (!finds_velocity(t, step.size, state_within(t), inside_.v))
           return false;
-        inside = rates_within(t);
-        look_at_extremes(t, mesh_.assembler->stretch_range(inside_.y));
+        inside                = rates_within(t);
+        const auto [min, max] = mesh_.assembler->stretch_range(inside_.y);
+        run_->recorder.see_stretch({min.value, min.s, t}, {max.value, max.s, t});
       }
       run_->quadrature.add_stage(place, inside);
     }
@@ -227,12 +229,6 @@ namespace crawler
       record.coefficients[i] = mesh_.discretization->gather(mesh_.assembler->stretch_coefficients(state));
     }
     past_.history.add(std::move(record), step.time - 2. * past_.delay);
-  }
-
-  void
-  Simulation::look_at_extremes(const double t, const StretchRange &range)
-  {
-    run_->recorder.see_stretch({range.min.value, range.min.s, t}, {range.max.value, range.max.s, t});
   }
 
   /// Computes the displacement, and on request the energy balance, at an accepted state.

@@ -22,11 +22,9 @@ namespace crawler
     Json &
     place_of(const std::string &key, Json &json)
     {
-      Json *place      = &json;
-      std::size_t from = 0;
-      for (std::size_t dot = 0; (dot = key.find('.', from)) != std::string::npos; from = dot + 1)
-        place = &(*place)[key.substr(from, dot - from)];
-      return (*place)[key.substr(from)];
+      std::string path = "/" + key;
+      std::replace(path.begin(), path.end(), '.', '/');
+      return json[Json::json_pointer(path)];
     }
 
     Json

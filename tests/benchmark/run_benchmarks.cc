@@ -196,7 +196,7 @@ namespace crawler::test
       for (auto _ : state)
       {
         const auto start = Clock::now();
-        answer           = answer_in_memory(parameters, scene, {.energy_balance = true}, {});
+        answer           = answer_in_memory({parameters, scene}, {.energy_balance = true});
         const auto end   = Clock::now();
         state.PauseTiming();
         own.simulation.run({}, {});
@@ -225,7 +225,7 @@ namespace crawler::test
       const Scene scene = parameters.create_scene();
       Answer answer;
       for (auto _ : state)
-        answer = answer_in_memory(parameters, scene, {.energy_balance = true}, {});
+        answer = answer_in_memory({parameters, scene}, {.energy_balance = true});
       state.counters["cells"] = answer.result.most_cells;
       state.counters["steps"] = answer.result.time.steps;
       state.counters["bound"] = answer.result.error ? answer.result.error->total : HUGE_VAL;

@@ -71,7 +71,7 @@ namespace
     const bool inverted            = result.inversion.has_value();
     const double value             = inverted ? result.inversion->t : result.displacement;
     const double wanted            = accuracy * (inverted ? 1. : std::abs(value));
-    const double bound = inverted ? result.inversion_error.value_or(NAN) : result.error ? result.error->total : NAN;
+    const double bound = inverted ? result.inversion->error.value_or(NAN) : result.error ? result.error->total : NAN;
     fmt::print("| {} | {:.0e} | {:.3g} ms | {:.10g} | {:.2g} | {:.2g} | {} {}, {} cells, {} steps{} |\n",
                c.name,
                accuracy,

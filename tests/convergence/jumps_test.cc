@@ -258,7 +258,7 @@ TEST(Jumps, GradedMeshesConvergeExponentially)
 TEST(Jumps, AloneGetGradedMeshes)
 {
   const auto smooth = jumping(test::wave(-1., 0.2), "automatic", {}, {}, {});
-  EXPECT_EQ(choose_numerics(MPI_COMM_WORLD, smooth->parameters, smooth->scene)->numerics.grading.levels, 0u);
+  EXPECT_EQ(choose_numerics({smooth->parameters, smooth->scene, {}, MPI_COMM_WORLD})->numerics.grading.levels, 0u);
 }
 
 /// Errors of the time steps, multiplied by the cycles that are extrapolated, are not taken for those of the mesh; nor
@@ -270,7 +270,7 @@ TEST(Jumps, OfManyCyclesNeedNoMoreCells)
   {
     test::LaneRun run(test::set(scene), "automatic", {});
     run.parameters.accuracy = accuracy;
-    const auto choice       = choose_numerics(MPI_COMM_WORLD, run.parameters, run.scene);
+    const auto choice       = choose_numerics({run.parameters, run.scene, {}, MPI_COMM_WORLD});
     EXPECT_GE(choice->numerics.grading.levels, 1u) << scene;
     EXPECT_LT(choice->numerics.n_cells, 100u) << scene;
   }
@@ -283,7 +283,7 @@ TEST(Pilots, ThatDoNotSettleAreGivenUp)
                           "automatic",
                           {.degree = 4, .n_cells = 4, .tolerance = 1e-4, .initial_step = 1e-5});
   const KeepGoing keep_going;
-  Pilots pilots(MPI_COMM_SELF, run.parameters, run.scene, keep_going);
+  Pilots pilots({run.parameters, run.scene, keep_going});
   pilots.must_settle = true;
   EXPECT_THROW(pilots.run(run.numerics, ResolutionWish::size), PilotsUnsettled);
 }
@@ -321,7 +321,7 @@ TEST(Jumps, AreMadeByAnInitialStretch)
   {
     test::LaneRun run(scene, "automatic", {});
     run.parameters.accuracy       = accuracy;
-    run.numerics                  = choose_numerics(MPI_COMM_WORLD, run.parameters, run.scene)->numerics;
+    run.numerics                  = choose_numerics({run.parameters, run.scene, {}, MPI_COMM_WORLD})->numerics;
     const SimulationResult result = run.simulate(Engine::automatic);
     EXPECT_GT(run.numerics.grading.levels, 0u);
     ASSERT_EQ(result.time.status, Status::finished) << result.time.message;

@@ -28,7 +28,7 @@ namespace
       parameters = test::parameters_with(
         test::set("T = 20; cells = 4; tolerance = 1e-3; expression; Active stress = 0.1*sin(2*pi*(s+t)); " + settings));
       scene.emplace(parameters.create_scene());
-      numerics = choose_numerics(MPI_COMM_SELF, parameters, *scene)->numerics;
+      numerics = choose_numerics({parameters, *scene})->numerics;
       RunJournal journal(0., [&](const std::string &bytes) {
         left = bytes;
         return true;

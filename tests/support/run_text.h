@@ -139,10 +139,10 @@ namespace crawler::test
            const Simulation::Options &options = {.energy_balance = true})
   {
     Outcome outcome;
-    outcome.choice = *choose_numerics(MPI_COMM_WORLD, parameters, scene);
+    outcome.choice = *choose_numerics({parameters, scene, {}, MPI_COMM_WORLD});
     if (outcome.choice.is_of_several_runs())
     {
-      Answer answer = run_to_accuracy(MPI_COMM_SELF, parameters, scene, outcome.choice, {}, options, /*writes=*/false);
+      Answer answer = run_to_accuracy({parameters, scene}, outcome.choice, {}, options, /*writes=*/false);
       return {std::move(answer.result), std::move(answer.choice)};
     }
     const bool stretch = outcome.choice.numerics.formulation == Formulation::stretch; // its cells are not shared

@@ -12,7 +12,7 @@
 #include "random_scenes.h"
 
 #include <crawler/accuracy/error_estimate.h>
-#include <crawler/accuracy/graded_choice.h>
+#include <crawler/accuracy/mesh_choices.h>
 #include <crawler/accuracy/mesh_family.h>
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/base/archive.h>
@@ -65,7 +65,7 @@ namespace
     p.discretization.degree      = 8;
     p.output.energy_balance      = false;
     const Scene scene            = p.create_scene();
-    Numerics numerics            = choose_numerics(MPI_COMM_SELF, p, scene)->numerics;
+    Numerics numerics            = choose_numerics({p, scene})->numerics;
     numerics.n_cells             = std::clamp(numerics.n_cells, 8u, 128u); // layers of a start ask for thousands
     if (integrator == "bdf")                                               // so that the bar knows the mesh, too
       numerics.n_cells += (numerics.n_cells + 2) / 3;
@@ -95,8 +95,8 @@ namespace
     const Scene scene            = random.create(p);
     if (!reason_against_stretch_form(scene).empty())
       return {unknown, unknown, "the stretch form cannot compute it"};
-    const auto choice             = choose_numerics(MPI_COMM_SELF, p, scene);
-    const SimulationResult result = answer_of_family(p, scene, *choice, {}, {}).result;
+    const auto choice             = choose_numerics({p, scene});
+    const SimulationResult result = answer_of_family({p, scene}, *choice, {}).result;
     if (!result.error || !std::isfinite(result.error->total))
       return {unknown, unknown, "stretch form: " + problem_of(result)};
     return {result.displacement, result.error->total, ""};
@@ -107,14 +107,12 @@ namespace
   Reference
   displacement_of_jumping(const Parameters &parameters, const test::RandomScene &random)
   {
-    Parameters p      = parameters;
-    p.accuracy        = 1e-3;
-    p.time.cycle_stop = CycleStopMode::off;
-    const Scene scene = random.create(p);
-    const double rough =
-      std::abs(Simulation(MPI_COMM_SELF, scene, p.time, choose_numerics(MPI_COMM_SELF, p, scene)->numerics)
-                 .run({}, {})
-                 .displacement);
+    Parameters p       = parameters;
+    p.accuracy         = 1e-3;
+    p.time.cycle_stop  = CycleStopMode::off;
+    const Scene scene  = random.create(p);
+    const double rough = std::abs(
+      Simulation(MPI_COMM_SELF, scene, p.time, choose_numerics({p, scene})->numerics).run({}, {}).displacement);
     Reference reference;
     const auto run = [&](const std::string &integrator,
                          const std::string &engine,
@@ -157,7 +155,7 @@ namespace
     Parameters rough                 = parameters;
     rough.accuracy                   = 1e-6;
     rough.discretization.formulation = FormulationEntry::position;
-    const Numerics by_rule           = choose_numerics(MPI_COMM_SELF, rough, scene)->numerics;
+    const Numerics by_rule           = choose_numerics({rough, scene})->numerics;
     const auto run = [&](const std::string &integrator, const double tolerance, const unsigned int more) {
       Numerics n   = by_rule;
       n.degree     = 8;
@@ -227,11 +225,8 @@ namespace
     {
       parameters.accuracy = accuracy;
       const Scene scene   = random.create(parameters);
-      const Answer answer =
-        answer_in_memory(parameters,
-                         scene,
-                         {.energy_balance = true, .cycles = cycle_wish(parameters, scene, /*has_pictures=*/false)},
-                         {});
+      const Answer answer = answer_in_memory(
+        {parameters, scene}, {.energy_balance = true, .cycles = cycle_wish(parameters, scene, /*has_pictures=*/false)});
       const SimulationResult &result = answer.result;
       const DisplacementError error  = result.error.value_or(DisplacementError());
       rows.push_back({number,

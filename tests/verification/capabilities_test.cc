@@ -70,7 +70,7 @@ namespace
     Simulation::Options options    = {.energy_balance = true,
                                       .cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false),
                                       .gait           = Simulation::GaitWish::any};
-    const Answer answer            = answer_in_memory(parameters, scene, options, {});
+    const Answer answer            = answer_in_memory({parameters, scene}, options);
     const SimulationResult &result = answer.result;
     EXPECT_EQ(result.time.status, Status::finished) << row.name << ": " << result.time.message;
     bool in_batches = false;

@@ -24,7 +24,7 @@ namespace
     auto parameters        = test::parameters_with(settings);
     parameters.time.engine = engine;
     const Scene scene      = parameters.create_scene();
-    const auto choice      = *choose_numerics(MPI_COMM_WORLD, parameters, scene);
+    const auto choice      = *choose_numerics({parameters, scene, {}, MPI_COMM_WORLD});
     parameters.accuracy    = accuracy;
     Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, choice.numerics);
     Pair pair;

@@ -53,7 +53,7 @@ main(int argc, char **argv)
   {
     const Parameters parameters = test::parameters_with(periodic_scene(i));
     const Scene scene           = parameters.create_scene();
-    const auto choice           = choose_numerics(MPI_COMM_SELF, parameters, scene);
+    const auto choice           = choose_numerics({parameters, scene});
     const auto period           = scene.active_stress->period();
     Simulation simulation(MPI_COMM_SELF, scene, parameters.time, choice->numerics);
     const SimulationResult full = simulation.run({}, {});

@@ -223,7 +223,7 @@ TEST(Events, FirstStridesChooseForLongRuns)
   {
     const std::string what      = on_ground ? "ground" : "soft body";
     const Parameters parameters = test::parameters_with(settings(on_ground, "1e-5"));
-    const NumericsChoice choice = *choose_numerics(MPI_COMM_SELF, parameters, parameters.create_scene());
+    const NumericsChoice choice = *choose_numerics({parameters, parameters.create_scene()});
     EXPECT_TRUE(std::isfinite(choice.min_size)) << what << ": " << choice.explanation;
     const SimulationResult exact = answer_to(settings(on_ground, "1e-8"));
     ASSERT_EQ(exact.time.status, Status::finished) << what << ": " << exact.time.message;

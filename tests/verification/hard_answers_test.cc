@@ -215,9 +215,9 @@ TEST(HardAnswers, TimesOfSlowInversions)
                           "Amplitude = 1.4916126528567062; Wave number = 1; Frequency = 1",
                           accuracy));
     ASSERT_EQ(result.time.status, Status::inverted) << accuracy;
-    ASSERT_TRUE(result.inversion_error);
-    EXPECT_NEAR(result.inversion->t, 0.046553, *result.inversion_error) << accuracy;
-    EXPECT_LE(*result.inversion_error, 0.01) << accuracy;
+    ASSERT_TRUE(result.inversion->error);
+    EXPECT_NEAR(result.inversion->t, 0.046553, *result.inversion->error) << accuracy;
+    EXPECT_LE(*result.inversion->error, 0.01) << accuracy;
     EXPECT_LE(result.time.time, result.inversion->t) << accuracy;
   }
 }

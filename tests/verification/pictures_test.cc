@@ -68,7 +68,7 @@ namespace
     const Parameters parameters = test::parameters_with(settings);
     const Scene scene           = parameters.create_scene();
     Compared run;
-    run.choice = *choose_numerics(MPI_COMM_SELF, parameters, scene);
+    run.choice = *choose_numerics({parameters, scene});
     prepare_for_pictures(run.choice, parameters);
     if (numerics)
       run.choice.numerics = *numerics;

@@ -19,7 +19,7 @@
 #include "anything.h"
 
 #include <crawler/accuracy/answer.h>
-#include <crawler/accuracy/graded_choice.h>
+#include <crawler/accuracy/mesh_choices.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/mpi_session.h>
 #include <crawler/run/self_check.h>
@@ -241,7 +241,7 @@ namespace
     const SimulationResult &result = own.computed.result;
     const bool has_bound           = result.error && std::isfinite(result.error->total);
     if (row.status == "inverted")
-      row.bound = result.inversion_error.value_or(0.);
+      row.bound = result.inversion->error.value_or(0.);
     else if (has_bound)
       row.bound = result.error->total;
     row.verdict = "not compared";

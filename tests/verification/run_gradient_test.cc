@@ -217,6 +217,14 @@ TEST(RunGradient, OfJumpsThatComeTogether)
       EXPECT_EQ(expect_same(scene, entry, value, 5e-4, 2e-3, {{3, 0.25}, 1e-12, 2.5e-4}),
                 std::string(entry).ends_with("Frequency") ? 4u : 0u) // where they stay together
         << entry;
+  // The last stride, beside the displacement.
+  EXPECT_EQ(expect_same(with(robot, {{"Time/End time", "2.83"}}),
+                        "Active stress/Segments/Phase lag",
+                        0.25,
+                        5e-4,
+                        2e-3,
+                        {{3, 0.25}, 1e-11, 2.5e-4}),
+            2u);
 }
 
 /// A jump at the very end of the run comes in with a higher frequency, but does not go out with a lower one.

@@ -120,7 +120,7 @@ TEST(SoftBodies, InversionsOnCoarseMeshesAreNotBelieved)
         "Active stress/Optimal wave/Sine coefficients = 0.4911145846589811, 0.48073719980123863; T = "
         "1.7256928779971001; Accuracy = 1e-2"));
   if (result.inversion)
-    EXPECT_NEAR(result.inversion->t, 0.68988, result.inversion_error.value_or(0.));
+    EXPECT_NEAR(result.inversion->t, 0.68988, result.inversion->error.value_or(0.));
   else
     EXPECT_EQ(result.time.reason, "under_resolved");
 }

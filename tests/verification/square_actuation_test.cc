@@ -6,7 +6,7 @@
 #include "../support/test.h"
 
 #include <crawler/accuracy/error_estimate.h>
-#include <crawler/accuracy/graded_choice.h>
+#include <crawler/accuracy/mesh_choices.h>
 #include <crawler/accuracy/stress_scales.h>
 
 using namespace crawler;

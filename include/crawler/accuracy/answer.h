@@ -2,10 +2,21 @@
 #pragma once
 
 #include <crawler/accuracy/numerics_choice.h>
-#include <crawler/run/simulation_result.h>
+#include <crawler/run/run_parameters.h>
+#include <crawler/run/simulation.h>
 
 namespace crawler
 {
+  /// Problem to answer: a scene with its parameters, which are the caller's. All runs of it ask whether they may go on;
+  /// the ranks share their cells.
+  struct Problem
+  {
+    const RunParameters &parameters;
+    const Scene &scene;
+    KeepGoing keep_going = {};
+    MPI_Comm ranks       = MPI_COMM_SELF;
+  };
+
   /// Run with its error and the numerics that were used.
   struct Answer
   {

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/accuracy/numerics_choice.h>
-#include <crawler/run/run_parameters.h>
-#include <crawler/run/simulation.h>
-
-#include <functional>
+#include <crawler/accuracy/answer.h>
 
 namespace crawler
 {
@@ -23,17 +19,12 @@ namespace crawler
    * parts in space and time, and total is twice their sum.
    *
    * The rule that chose the numerics predicts the split into space and time. Where the stretch collapses the choice has
-   * measured the error, and no second run is made. The error is unknown if the finer run did not finish or was stopped
-   * by @p keep_going. Other numbers have errors by number_errors(), with the same factors and Accuracy as the wanted
-   * error, if there was a second run.
+   * measured the error, and no second run is made. The error is unknown if the finer run did not finish or was not to
+   * go on. Other numbers have errors by number_errors(), with the same factors and Accuracy as the wanted error, if
+   * there was a second run.
    */
   void
-  estimate_errors(MPI_Comm communicator,
-                  const RunParameters &parameters,
-                  const Scene &scene,
-                  const NumericsChoice &choice,
-                  SimulationResult &result,
-                  const KeepGoing &keep_going = {});
+  estimate_errors(const Problem &problem, const NumericsChoice &choice, SimulationResult &result);
 
   /// Numerics of the next try where the error of @p choice is too large, with @p cells times the cells.
   NumericsChoice
@@ -50,10 +41,18 @@ namespace crawler
 
   /// Sets the errors of a finished @p result from the finer run; null if there was none since the choice knows.
   void
-  set_errors(const NumericsChoice &choice,
+  set_errors(const Problem &problem,
+             const NumericsChoice &choice,
              SimulationResult &result,
              const SimulationResult *finer,
-             const RunParameters &parameters,
-             const Scene &scene,
              const SimulationResult *finer_mesh = nullptr);
+
+  /**
+   * Measures the error of a finished @p result, whose bound is known, once more by the adjoint (adjoint/error_sweep.h):
+   * its parts in space and time, which were those that the rule of the numerics expects, and the corrected displacement
+   * with its bound. A bound below the error found by the sweep is raised to it. Nothing is done where there is no
+   * adjoint, and for runs of so many steps and cells that it would take long.
+   */
+  void
+  sweep_error(const Problem &problem, const NumericsChoice &choice, SimulationResult &result);
 } // namespace crawler

@@ -13,6 +13,9 @@
  */
 namespace crawler
 {
+  /// Change of the displacement, as a part of the wanted error, below which a refinement was not needed.
+  inline constexpr double graded_change = 0.25;
+
   /// Constants that several choices have in common. Measured by tests/verification/calibration.cc and
   /// tests/benchmark/setting_search.cc.
   namespace mesh_choice
@@ -49,6 +52,15 @@ namespace crawler
    */
   std::optional<double>
   choose_graded_mesh(Pilots &pilots, NumericsChoice &choice);
+
+  /// First step of a run or piece on a graded mesh [time]: the smallest cells come to rest in it, whatever the active
+  /// stress did, and Newton's method converges.
+  double
+  first_step_on_graded_mesh(const Scene &scene, const Numerics &numerics);
+
+  /// Settings of @p numerics, whose mesh is graded, with a mesh that is certainly finer.
+  Numerics
+  with_finer_grading(const Scene &scene, const Numerics &numerics);
 
   /// Adaptive mesh: pilots measure the strain, which scales its tolerance, and the number of steps.
   void

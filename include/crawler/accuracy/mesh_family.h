@@ -3,8 +3,6 @@
 
 #include <crawler/accuracy/answer.h>
 
-#include <functional>
-
 namespace crawler
 {
   /**
@@ -19,9 +17,5 @@ namespace crawler
    * inverts the time of inversion has to settle. @p options are those of each run, without output times.
    */
   Answer
-  answer_of_family(const RunParameters &parameters,
-                   const Scene &scene,
-                   const NumericsChoice &choice,
-                   const Simulation::Options &options,
-                   const KeepGoing &keep_going);
+  answer_of_family(const Problem &problem, const NumericsChoice &choice, const Simulation::Options &options);
 } // namespace crawler

@@ -2,15 +2,11 @@
 #pragma once
 
 #include <crawler/accuracy/answer.h>
-#include <crawler/run/run_parameters.h>
 
 #include <functional>
 
 namespace crawler
 {
-  /// Function that answers a scene similar to another one, to another accuracy.
-  using AnswerOf = std::function<Answer(const RunParameters &, const Scene &)>;
-
   /**
    * Answer where jumps of the active stress move along the body (NumericsChoice::has_fronts). No mesh follows them, and
    * on any mesh the error falls like the size of a cell. But with fronts of the width d in place of the jumps the scene
@@ -23,5 +19,5 @@ namespace crawler
    * last stride and extreme stretches are extrapolated alike; all else is that of the steepest fronts.
    */
   Answer
-  answer_of_fronts(const RunParameters &parameters, const Scene &scene, const AnswerOf &answer_of);
+  answer_of_fronts(const Problem &problem, const std::function<Answer(const Problem &)> &answer_of);
 } // namespace crawler

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/accuracy/answer.h>
 #include <crawler/accuracy/stress_scales.h>
-#include <crawler/run/run_parameters.h>
-#include <crawler/run/simulation.h>
 
 #include <optional>
 #include <string>
@@ -18,6 +17,10 @@ namespace crawler
     inline constexpr double multistep_start = 1e-5;
   } // namespace mesh_choice
 
+  /// True if the user's settings leave the form open, and the stretch form can compute the scene.
+  bool
+  may_be_stretch_form(const Problem &problem);
+
   /// Exception for a stop that was requested during the pilots.
   struct PilotsInterrupted
   {
@@ -28,10 +31,10 @@ namespace crawler
   {
   };
 
-  /// Pilot runs of a scene, coarse and with loose tolerances, and what the last one that counts has measured.
-  struct Pilots
+  /// Problem with its pilot runs, coarse and with loose tolerances, and what the last one that counts has measured.
+  struct Pilots : Problem
   {
-    Pilots(MPI_Comm communicator, const RunParameters &parameters, const Scene &scene, const KeepGoing &keep_going);
+    explicit Pilots(const Problem &problem);
 
     /// Runs the scene (collective). Throws PilotsInterrupted, and PilotsUnsettled if it must settle.
     SimulationResult
@@ -64,6 +67,10 @@ namespace crawler
     double
     stiffness_over_friction() const;
 
+    /// True if the body is so soft that its thin layers are for the stretch form. Steep friction makes them thinner.
+    bool
+    is_soft() const;
+
     /// True if the user's settings leave the form open and the last pilot came near an emptied state.
     bool
     is_for_stretch() const;
@@ -87,10 +94,6 @@ namespace crawler
     double
     first_step(const Numerics &numerics) const;
 
-    const MPI_Comm communicator;
-    const KeepGoing &keep_going;
-    const RunParameters &parameters;
-    const Scene &scene;
     const StressScales scales;
     TimeParameters time;
     std::optional<CycleWish> cycles;

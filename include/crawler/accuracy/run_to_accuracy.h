@@ -16,19 +16,13 @@ namespace crawler
    * not meet Accuracy the position form may. Only the last run is by @p simulate then, if that @p writes.
    */
   Answer
-  run_to_accuracy(MPI_Comm communicator,
-                  const RunParameters &parameters,
-                  const Scene &scene,
+  run_to_accuracy(const Problem &problem,
                   const NumericsChoice &choice,
                   const std::function<SimulationResult(const NumericsChoice &)> &simulate,
                   const Simulation::Options &options,
-                  bool writes,
-                  const KeepGoing &keep_going = {});
+                  bool writes);
 
   /// Answer on one rank without files, with numerics chosen for it.
   Answer
-  answer_in_memory(const RunParameters &parameters,
-                   const Scene &scene,
-                   const Simulation::Options &options,
-                   const KeepGoing &keep_going);
+  answer_in_memory(const Problem &problem, const Simulation::Options &options);
 } // namespace crawler

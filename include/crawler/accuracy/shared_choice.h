@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/accuracy/numerics_choice.h>
-#include <crawler/run/run_parameters.h>
-#include <crawler/run/simulation.h>
+#include <crawler/accuracy/answer.h>
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace crawler
 {
-  /// Scene to compute, and its parameters. Both are the caller's.
-  struct SceneToCompute
-  {
-    const RunParameters *parameters;
-    const Scene *scene;
-  };
-
   /// Numerics that similar scenes share.
   struct SharedChoice
   {
@@ -38,8 +28,8 @@ namespace crawler
    * of Accuracy.
    *
    * Nothing if the examples are of different kinds, do not fit the fused engine or have no bound that could be compared
-   * with the wanted error, or if @p keep_going returns false.
+   * with the wanted error, or if their runs were not to go on.
    */
   std::optional<SharedChoice>
-  shared_choice(std::span<const SceneToCompute> examples, const std::function<bool()> &keep_going);
+  shared_choice(std::span<const Problem> examples);
 } // namespace crawler

@@ -9,67 +9,13 @@
 
 namespace crawler
 {
-  /// State at all points: displacement, velocity, strain, stretch and its rate.
+  /// State at all points at a time: displacement, velocity, strain, stretch and its rate.
   struct StateAtPoints
   {
+    double t = 0.;
     std::vector<double> u, v, e, w, rate;
 
     explicit StateAtPoints(std::size_t n);
-  };
-
-  /// Gauss points of all cells, for a body of length 1.
-  class CellPoints
-  {
-  public:
-    /// @p n_more points in each cell beyond the degree + 1 of the run itself. @p setup must outlive it.
-    explicit CellPoints(const LaneSetup &setup, unsigned int n_more = 0);
-
-    const std::vector<double> &
-    points() const
-    {
-      return points_;
-    }
-    std::size_t
-    size() const
-    {
-      return points_.size();
-    }
-    std::size_t
-    cell_of(const std::size_t point) const
-    {
-      return point / per_cell_;
-    }
-    std::size_t
-    per_cell() const
-    {
-      return per_cell_;
-    }
-    /// Places [per_cell()] in a cell of size 1.
-    const std::vector<double> &
-    places() const
-    {
-      return places_;
-    }
-    /// Weight of the quadrature.
-    double
-    weight(std::size_t point) const;
-
-    /// Evaluates a field, and its derivative by s, from its values at the nodes.
-    void
-    evaluate(const double *nodal, std::vector<double> &values, std::vector<double> &slopes) const;
-    /// Adds to the nodes: for each the sum of @p values times its shape function and of @p slopes times the derivative
-    /// of that.
-    void
-    add_to_nodes(const std::vector<double> &values, const std::vector<double> &slopes, double *nodal) const;
-    /// Evaluates the state from displacement and velocity at the nodes.
-    void
-    evaluate(const std::vector<double> &u, const std::vector<double> &v, StateAtPoints &at) const;
-
-  private:
-    const LaneSetup &setup_;
-    const std::size_t per_cell_;
-    std::vector<double> places_, weights_, values_, slopes_; ///< tables of a cell of size 1: [point], [point][node]
-    std::vector<double> points_;
   };
 
   /// States in the stages of a recorded run, step by step from the last one to the first.
@@ -86,27 +32,54 @@ namespace crawler
     void
     go_to_stage(unsigned int stage);
 
-    double
-    time() const
-    {
-      return time_;
-    }
-    const std::vector<double> &
-    u() const
-    {
-      return u_;
-    }
-    const std::vector<double> &
-    v() const
-    {
-      return v_;
-    }
+    double time = 1.;         ///< time of the stage
+    std::vector<double> u, v; ///< displacement and velocity in the stage
 
   private:
     const LaneRecord &steps_;
     const RadauTableau &tableau_;
     std::size_t step_ = 0;
-    double time_      = 1.;
-    std::vector<double> y_, u_, v_; ///< state at the start of the step; in the stage
+    std::vector<double> y_; ///< state at the start of the step
+  };
+
+  /// Gauss points of all cells, for a body of length 1.
+  class CellPoints
+  {
+  public:
+    /// @p n_more points in each cell beyond the degree + 1 of the run itself. @p setup must outlive it.
+    explicit CellPoints(const LaneSetup &setup, unsigned int n_more = 0);
+
+    const std::size_t per_cell;
+    const std::vector<double> places; ///< [per_cell] in a cell of size 1
+    std::vector<double> points;
+
+    std::size_t
+    size() const
+    {
+      return points.size();
+    }
+    std::size_t
+    cell_of(const std::size_t point) const
+    {
+      return point / per_cell;
+    }
+    /// Weight of the quadrature.
+    double
+    weight(std::size_t point) const;
+
+    /// Evaluates a field, and its derivative by s, from its values at the nodes.
+    void
+    evaluate(const double *nodal, std::vector<double> &values, std::vector<double> &slopes) const;
+    /// Adds to the nodes: for each the sum of @p values times its shape function and of @p slopes times the derivative
+    /// of that.
+    void
+    add_to_nodes(const std::vector<double> &values, const std::vector<double> &slopes, double *nodal) const;
+    /// Evaluates the state in a stage.
+    void
+    evaluate(const BackwardStages &stages, StateAtPoints &at) const;
+
+  private:
+    const LaneSetup &setup_;
+    const std::vector<double> weights_, values_, slopes_; ///< tables of a cell of size 1: [point], [point][node]
   };
 } // namespace crawler

@@ -22,15 +22,11 @@ namespace crawler
     ForcesAtPoints(const Scene &physical, const Scene &other, const std::vector<double> &points);
     ForcesAtPoints(const ForcesAtPoints &) = delete;
 
-    const Units &
-    units() const
-    {
-      return units_;
-    }
+    const Units units;
 
-    /// Evaluates at the time @p t of a step that ends at @p end.
+    /// Evaluates at a state within a step that ends at @p end.
     void
-    evaluate(double t, double end, const StateAtPoints &at);
+    evaluate(double end, const StateAtPoints &at);
 
     /// Maps a time of the other scene to this one.
     double
@@ -39,13 +35,9 @@ namespace crawler
       return in_time_(in_time_.piece(t), t);
     }
 
-    /// True if several jumps come together at the end of a step, or if some enter or leave the run there. (@p start: of
-    /// the run.)
-    bool
-    has_between(double time, bool start) const;
-
-    /// Integral of N over the short times between them, less that of the forces of evaluate(), at all points; for the
-    /// state that was evaluated last.
+    /// Integral of N at all points over the short times between jumps that come together at the end of a step, or that
+    /// enter or leave the run there, less that of the forces of evaluate(); for the state that was evaluated last.
+    /// Empty if there are none. (@p start: of the run.)
     std::vector<double>
     between(double time, bool start);
 
@@ -77,8 +69,8 @@ namespace crawler
       double m_w, m_rate, f_u, f_w, f_v;
     };
     /// Slopes at all points, for the state that was evaluated last. Of the scene itself only, not of others.
-    void
-    slopes(std::vector<Slopes> &all);
+    std::vector<Slopes>
+    slopes();
 
     double
     elastic(const std::size_t point, const double e) const
@@ -90,14 +82,14 @@ namespace crawler
     void
     go_to(std::size_t piece, double t);
 
-    const Units units_;
     TimeSegments segments_;
     const Scene scene_;
     const BreakMap in_time_;
     std::vector<double> longer_;
     std::optional<BodyForceAtPoints> body_;
     std::optional<SlidingAtPoints> sliding_;
-    StateAtPoints at_;
+    StateAtPoints at_;      ///< the state in this body, at the time of this scene
+    std::size_t piece_ = 0; ///< of the active stress there
     std::vector<double> g_, w_dg_;
   };
 } // namespace crawler

@@ -41,37 +41,30 @@ namespace crawler
   {
     ForcesOfScene(const Scene &physical, const Scene &other, const std::vector<double> &points);
 
-    /// Evaluates at a state; @p u, v at the nodes give @p at_ends.
+    /// Evaluates at a state, @p at_ends of the body, within a step that ends at @p end.
     void
-    evaluate(double t, double end, const StateAtPoints &at, const StateAtPoints &at_ends);
+    evaluate(double end, const StateAtPoints &at, const StateAtPoints &at_ends);
 
     ForcesAtPoints inside, ends;
   };
 
-  /// Rates at which works grow, in natural units; the displacement is none. The state is that of another scene, and so
-  /// are lengths and times: a rate is per unit of time of that scene.
-  class WorkRates
-  {
-  public:
-    explicit WorkRates(const CellPoints &points);
+  /// Rate at which a work grows, in natural units, at a state that was evaluated. The state is that of another scene,
+  /// and so are lengths and times: the rate is per unit of time of that scene.
+  double
+  work_rate(Quantity work,
+            const CellPoints &cells,
+            const ForcesOfScene &forces,
+            const StateAtPoints &at,
+            const StateAtPoints &at_ends);
 
-    /// Rate at a state that was evaluated.
-    double
-    rate(Quantity work, const ForcesOfScene &forces, const StateAtPoints &at, const StateAtPoints &at_ends) const;
-
-    /// Adds @p weight times the derivatives of the rate by displacement and velocity at the nodes; of the scene itself.
-    void
-    add_slopes(Quantity work,
-               double weight,
-               const ForcesOfScene &forces,
-               const std::vector<ForcesAtPoints::Slopes> &slopes,
-               const StateAtPoints &at,
-               std::size_t n_nodes,
-               double *by_u,
-               double *by_v);
-
-  private:
-    const CellPoints &points_;
-    std::vector<double> by_u_, by_e_, by_v_, by_rate_;
-  };
+  /// Adds @p weight times the derivatives of the rate by displacement and velocity at the nodes; of the scene itself.
+  void
+  add_slopes_of_work(Quantity work,
+                     double weight,
+                     const CellPoints &cells,
+                     ForcesOfScene &forces,
+                     const StateAtPoints &at,
+                     std::size_t n_nodes,
+                     double *by_u,
+                     double *by_v);
 } // namespace crawler

@@ -54,10 +54,6 @@ namespace crawler
     EnergyBalance
     scaled(double unit) const;
 
-    /// Returns @p own times these energies plus @p part times the others.
-    EnergyBalance
-    combined(double own, const EnergyBalance &other, double part) const;
-
     /// Energy of the paper, int int m_s zeta_t ds dt [energy].
     double
     paper_energy() const

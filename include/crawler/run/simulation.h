@@ -101,8 +101,6 @@ namespace crawler
     bool
     integrate_step(const Step &step, const Rates &at_end);
     bool
-    can_sample_lanes() const;
-    bool
     samples_lanes(const Step &step) const;
     StretchRange
     stretch_of_lanes() const;
@@ -114,8 +112,6 @@ namespace crawler
     sample_lanes(const Step &step);
     void
     keep_history(const Step &step, std::span<const double> y);
-    void
-    look_at_extremes(double t, const StretchRange &range);
     bool
     wants_coarser_mesh(const Step &step);
     double

@@ -28,6 +28,20 @@ namespace crawler
     double model = unknown; ///< part of the model level; 0 if the full equation was solved
   };
 
+  /// Place and time at which the body inverted; value is the stretch there.
+  struct Inversion : Extreme
+  {
+    /// Region of the stretch form that is lost at once, from the first to the last of these places [length].
+    std::optional<std::pair<double, double>> places = {};
+    std::optional<double> error                     = {}; ///< error of the time, where it was measured [time]
+
+    void
+    exchange(auto &archive)
+    {
+      archive(value, s, t, jump, places, error);
+    }
+  };
+
   /// Derivative of the displacement by an entry of the parameter file.
   struct EntrySensitivity
   {
@@ -95,12 +109,8 @@ namespace crawler
     bool jumps_move     = false; ///< true if the active stress is not smooth in time for the energy balance
     double net_friction = 0.;    ///< largest |int g v ds| over largest int |g v| ds, both over time [1]
 
-    using Extreme = crawler::Extreme;
     Extreme min_stretch, max_stretch;
-    std::optional<Extreme> inversion; ///< place and time at which the body inverted; value is the stretch there
-    /// Region of the stretch form that is lost together with it, from the first to the last of these places [length].
-    std::optional<std::pair<double, double>> inverted_places;
-    std::optional<double> inversion_error; ///< error of the time of inversion, where it was measured [time]
+    std::optional<Inversion> inversion; ///< if the body inverted
 
     std::optional<Gait> gait;              ///< last stride, on request and if there is one
     std::optional<double> gait_efficiency; ///< efficiency of the whole run (gait.h), if it is known [1]

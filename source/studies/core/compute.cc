@@ -72,7 +72,7 @@ namespace crawler
             level.compute(task.parameters.accuracy, task.parameters.output.energy_balance, keep_going, task.gait);
           return;
         }
-        const auto choice = choose_numerics(MPI_COMM_SELF, task.parameters, *task.scene, keep_going);
+        const auto choice = choose_numerics({task.parameters, *task.scene, keep_going});
         if (choice)
           task.computed.choice = *choice;
         else
@@ -133,7 +133,7 @@ namespace crawler
         choice.wanted_error = task.parameters.accuracy * size;
       choice.set_size(result.displacement, task.parameters.accuracy);
       if (finer != nullptr)
-        set_errors(choice, result, finer, task.parameters, *task.scene);
+        set_errors({task.parameters, *task.scene}, choice, result, finer);
       check_identities(result, task.parameters);
       const bool is_good =
         finer != nullptr ? result.error->total <= choice.wanted_error : size >= least_part * member.expected_size;
@@ -224,9 +224,7 @@ namespace crawler
       options.cycles              = cycle_wish(task.parameters, *task.scene, /*has_pictures=*/false);
       bool is_computed            = task.computed.result.time.status != Status::none;
       task.computed               = run_to_accuracy(
-        MPI_COMM_SELF,
-        task.parameters,
-        *task.scene,
+        {task.parameters, *task.scene, keep_going},
         task.computed.choice,
         [&](const NumericsChoice &choice) {
           return std::exchange(is_computed, false)
@@ -235,8 +233,7 @@ namespace crawler
                        .run({}, options, {}, keep_going);
         },
         options,
-        /*writes=*/false,
-        keep_going);
+        /*writes=*/false);
     }
 
     bool
@@ -316,7 +313,7 @@ namespace crawler
   {
     try
     {
-      std::vector<SceneToCompute> scenes;
+      std::vector<Problem> problems;
       for (Task &task : examples)
       {
         if (!may_share(task.parameters))
@@ -324,9 +321,9 @@ namespace crawler
         if (!task.parameters.error_estimate)
           task.parameters.accuracy *= 0.3; // no finer run finds the scenes that need more than the examples
         create_scene(task);
-        scenes.push_back({&task.parameters, &*task.scene});
+        problems.push_back({task.parameters, *task.scene, keep_going});
       }
-      return shared_choice(scenes, keep_going);
+      return shared_choice(problems);
     }
     catch (const std::exception &) // the one-by-one computation finds the faulty run
     {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/choose_numerics.h>
+#include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/accuracy/run_to_accuracy.h>
-#include <crawler/accuracy/swept_error.h>
 #include <crawler/base/archive.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
@@ -175,8 +175,7 @@ namespace crawler
             reach(StopPlace::pilot);
             return !is_stopped();
           };
-          choice_ =
-            choose_numerics(MPI_COMM_SELF, input_.parameters, input_.scene, KeepGoing(goes_on, &memory_.journal));
+          choice_ = choose_numerics({input_.parameters, input_.scene, KeepGoing(goes_on, &memory_.journal)});
           if (choice_ && input_.parameters.output.has_snapshots())
             prepare_for_pictures(*choice_, input_.parameters);
         });
@@ -244,9 +243,7 @@ namespace crawler
                                                .gait   = Simulation::GaitWish::any};
           const double setup                = result_.setup_seconds;
           Answer answer                     = run_to_accuracy(
-            sharing_.ranks,
-            parameters,
-            input_.scene,
+            {parameters, input_.scene, keep_going, sharing_.ranks},
             *choice_,
             [&](const NumericsChoice &choice) {
               announce_next_try(choice);
@@ -256,8 +253,7 @@ namespace crawler
               return run;
             },
             options,
-            /*writes=*/true,
-            keep_going);
+            /*writes=*/true);
           result_ = std::move(answer.result);
           if (answer.choice.is_of_several_runs())
             log_.line("  (" + answer.choice.explanation + ")");
@@ -355,7 +351,7 @@ namespace crawler
       add_what_follows()
       {
         if (is_first_ && !sharing_.is_shared && choice_)
-          sweep_error(input_.parameters, input_.scene, *choice_, result_, [&]() { return !is_stopped(); });
+          sweep_error({input_.parameters, input_.scene, [&]() { return !is_stopped(); }}, *choice_, result_);
         other_runs_.reset();
         if (is_first_ && !input_.sensitivities.empty() && result_.time.status != Status::finished)
           log_.warn("there are no sensitivities, since the run did not end normally");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/choose_numerics.h>
+#include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/run_to_accuracy.h>
-#include <crawler/accuracy/swept_error.h>
 #include <crawler/base/clock.h>
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/statistics_writer.h>
@@ -70,7 +70,7 @@ namespace crawler
       auto &chosen = run.numerics = wanted.numerics;
       if (!chosen)
       {
-        chosen = choose_numerics(MPI_COMM_SELF, parameters, input.scene, keep_going);
+        chosen = choose_numerics({parameters, input.scene, keep_going});
         if (chosen && !pictures.is_empty())
           prepare_for_pictures(*chosen, parameters);
       }
@@ -89,11 +89,11 @@ namespace crawler
         return Simulation(MPI_COMM_SELF, input.scene, parameters.time, choice.numerics)
           .run(pictures, options, tables, keep_going);
       };
-      Answer answer = run_to_accuracy(
-        MPI_COMM_SELF, parameters, input.scene, *chosen, simulate, options, /*writes=*/true, keep_going);
+      Answer answer =
+        run_to_accuracy({parameters, input.scene, keep_going}, *chosen, simulate, options, /*writes=*/true);
       run.result = std::move(answer.result);
       check_identities(run.result, parameters);
-      sweep_error(parameters, input.scene, answer.choice, run.result, keep_going);
+      sweep_error({parameters, input.scene, keep_going}, answer.choice, run.result);
       if (afterwards && run.result.time.status == Status::finished)
         afterwards(input, answer.choice, run.result);
     }

@@ -219,7 +219,7 @@ namespace crawler
       if (run.parameters.model == Model::nonlinear)
       {
         const auto in_time = [&]() { return now() < end && !interrupted(); };
-        const auto choice  = choose_numerics(MPI_COMM_SELF, run.parameters, run.scene, in_time);
+        const auto choice  = choose_numerics({run.parameters, run.scene, in_time});
         if (!choice)
           return late();
         run.numerics = choice->numerics;

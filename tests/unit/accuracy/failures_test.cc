@@ -117,7 +117,7 @@ TEST(Failures, OfTheSecondRunLeaveTheAnswer)
   };
   const SimulationResult first = simulate(choice);
   const Answer answer =
-    run_to_accuracy(MPI_COMM_SELF, parameters, scene, choice, simulate, {.energy_balance = true}, /*writes=*/false, {});
+    run_to_accuracy({parameters, scene}, choice, simulate, {.energy_balance = true}, /*writes=*/false);
   EXPECT_EQ(answer.result.displacement, first.displacement);
   EXPECT_EQ(answer.result.time.steps, first.time.steps);
   EXPECT_EQ(answer.result.time.status, Status::failed);

@@ -140,11 +140,11 @@ TEST(MeshFamily, TimeOfAnInversion)
     EXPECT_EQ(result.time.status, Status::inverted);
     EXPECT_EQ(result.time.reason, "inverted_inside");
     EXPECT_EQ(result.formulation, Formulation::stretch);
-    ASSERT_TRUE(result.inversion && result.inversion_error && result.inverted_places);
-    EXPECT_NEAR(result.inversion->t, 0.322123, *result.inversion_error + 0.5e-6);
-    EXPECT_LE(*result.inversion_error, 1.001 * accuracy);
-    EXPECT_LE(result.inverted_places->first, result.inversion->s);
-    EXPECT_GE(result.inverted_places->second, result.inversion->s);
+    ASSERT_TRUE(result.inversion && result.inversion->error && result.inversion->places);
+    EXPECT_NEAR(result.inversion->t, 0.322123, *result.inversion->error + 0.5e-6);
+    EXPECT_LE(*result.inversion->error, 1.001 * accuracy);
+    EXPECT_LE(result.inversion->places->first, result.inversion->s);
+    EXPECT_GE(result.inversion->places->second, result.inversion->s);
   }
 }
 
@@ -189,7 +189,7 @@ TEST(MeshFamily, IsChosenWhereTheStretchIsSmallOrTheBodySoft)
 {
   const auto form = [](const Settings &settings) {
     const Parameters parameters = test::parameters_with(settings);
-    return choose_numerics(MPI_COMM_SELF, parameters, parameters.create_scene())->numerics.formulation;
+    return choose_numerics({parameters, parameters.create_scene()})->numerics.formulation;
   };
   EXPECT_EQ(form(test::wave(-1., 0.2)), Formulation::position);
   EXPECT_EQ(form(test::wave(1., 0.2, -1.)), Formulation::position);
@@ -214,14 +214,13 @@ TEST(MeshFamily, NumbersNeedFewerCyclesThanFiles)
 {
   const Parameters parameters = test::parameters_with(test::set("p = 2; k = 0.5; T = 20; Accuracy = 1e-2; segments"));
   const Scene scene           = parameters.create_scene();
-  const auto choice           = choose_numerics(MPI_COMM_SELF, parameters, scene);
+  const auto choice           = choose_numerics({parameters, scene});
   ASSERT_TRUE(choice && choice->is_family);
   SimulationResult files;
   const auto simulate = [&](const NumericsChoice &chosen) {
     return files = Simulation(MPI_COMM_SELF, scene, parameters.time, chosen.numerics).run({}, {});
   };
-  const SimulationResult numbers =
-    run_to_accuracy(MPI_COMM_SELF, parameters, scene, *choice, simulate, {}, /*writes=*/true, {}).result;
+  const SimulationResult numbers = run_to_accuracy({parameters, scene}, *choice, simulate, {}, /*writes=*/true).result;
   EXPECT_EQ(files.time.time, scene.end_time);
   EXPECT_FALSE(files.cycles);
   EXPECT_TRUE(numbers.cycles);
@@ -233,11 +232,11 @@ TEST(MeshFamily, CanBeStopped)
 {
   const Parameters parameters = test::parameters_with(test::with(test::wave(-1., 0.4), stretch));
   const Scene scene           = parameters.create_scene();
-  const auto choice           = choose_numerics(MPI_COMM_SELF, parameters, scene);
+  const auto choice           = choose_numerics({parameters, scene});
   ASSERT_TRUE(choice && choice->is_family);
   unsigned int n_steps  = 0;
   const auto keep_going = [&]() { return ++n_steps < 100; };
-  const Answer answer   = answer_of_family(parameters, scene, *choice, {}, keep_going);
+  const Answer answer   = answer_of_family({parameters, scene, keep_going}, *choice, {});
   EXPECT_EQ(answer.result.time.status, Status::stopped);
   EXPECT_EQ(n_steps, 100u);
 }

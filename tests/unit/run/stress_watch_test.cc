@@ -2,7 +2,7 @@
 #include "../../support/run_text.h"
 #include "../../support/test.h"
 
-#include <crawler/run/stress_watch.h>
+#include <crawler/run/step_limiter.h>
 
 using namespace crawler;
 

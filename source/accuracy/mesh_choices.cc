@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/mesh_choices.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace crawler
 {
+  using namespace mesh_choice;
+
   namespace
   {
-    using namespace mesh_choice;
-
     /// Thickness, in distances between the unknowns, below which layers may look resolved when they are not.
     constexpr double widest_hidden_layer = 1.;
     /// Factor on `unresolved` of the mesh: a bound of the relative error of the displacement in space.
@@ -164,5 +167,164 @@ namespace crawler
     if (most < max_cells && pilots.stiffness() < very_soft)
       return std::nullopt; // a pilot may pass over these layers by luck
     return user_cells ? nothing_predicted : extrapolate_cells(pilots, choice, degree, n_cells, may_be_steep);
+  }
+
+  namespace
+  {
+    constexpr unsigned int adaptive_degree = 4, max_adaptive_pilot_steps = 20000, max_adaptive_pilot_cells = 1200;
+  }
+
+  void
+  choose_adaptive_mesh(Pilots &pilots, NumericsChoice &choice)
+  {
+    const DiscretizationParameters &own = pilots.parameters.discretization;
+    const double L                      = pilots.scene.body.length;
+    Numerics &n                         = choice.numerics;
+    n.integrator                        = "";
+    n.degree                            = own.degree.value_or(adaptive_degree);
+    n.n_cells                           = own.n_cells.value_or(
+      static_cast<unsigned int>(std::clamp(std::ceil(L / pilots.scales.length), 8., 1. * max_cells)));
+    n.mesh        = {1., own.smallest_cell.value_or(1e-6 * L)};
+    double strain = pilots.last.strain > 0. ? pilots.last.strain : pilots.scale * pilots.scale / L;
+    // Pilots that need more steps than this collapse, and the scheme that is safe then costs less.
+    const unsigned int usual = pilots.time.max_steps;
+    pilots.time.max_steps    = std::min(usual, max_adaptive_pilot_steps);
+    double tighter           = 1.;
+    for (int i = 0; i < 4; ++i)
+    {
+      Numerics settings        = n;
+      settings.mesh.tolerance  = tighter * resolved * strain;
+      settings.mesh.most_cells = max_adaptive_pilot_cells;
+      pilots.count(pilots.run(settings, n.degree, n.n_cells, ResolutionWish::all));
+      const bool finished = pilots.finished();
+      const double before = strain;
+      if (finished && pilots.last.strain > 0.)
+        strain = pilots.last.strain;
+      const bool strain_known = strain < 4. * before && strain > 0.25 * before;
+      if (!finished)
+        tighter *= 0.01; // the mesh may have caused the loss of the stretch
+      const bool coarse_steps = finished && pilots.size > 0. && pilots.tolerance > 0.03 * pilots.size;
+      if (coarse_steps || (!finished && i < 2))
+        pilots.tolerance = finished ? std::max(0.01 * pilots.size, 1e-3 * pilots.tolerance) : 0.03 * pilots.tolerance;
+      else if (strain_known)
+        break;
+    }
+    pilots.time.max_steps = usual;
+    const double accuracy = pilots.parameters.accuracy;
+    n.mesh.tolerance = strain * own.mesh_tolerance.value_or(std::min(accuracy / indicator_factor, tighter * resolved));
+    // Method bdf restarts with each mesh, unlike one-step methods; but where the stretch collapses it is faster.
+    if (pilots.parameters.time.step_control == StepControl::adaptive && pilots.last.min_stretch.value > emptied)
+      n.integrator = "radau 5";
+  }
+
+  namespace
+  {
+    /// Meshes are doubled until the displacement settles, which it does in proportion to the cell size, with tolerances
+    /// that fall in the same proportion; limits on cells, and on cells times steps.
+    constexpr unsigned int last_moving_cells = 2048;
+    constexpr double max_moving_work         = 1e7;
+    /// Smallest number of steps of a period for each cell.
+    constexpr double moving_steps = 4.;
+    /// Factors on the last change, which is the remaining error of a first-order method: the first one counts more.
+    constexpr double moving_factor = 1.5, moving_factor_of_first = 4.;
+  } // namespace
+
+  void
+  choose_mesh_for_moving_jumps(Pilots &pilots, NumericsChoice &choice)
+  {
+    const double accuracy = pilots.parameters.accuracy, end = pilots.scene.end_time;
+    Numerics &n  = choice.numerics;
+    n.jumps_move = true;
+    n.degree     = pilots.parameters.discretization.degree.value_or(moving_degree);
+    n.integrator = "radau 5";
+    if (pilots.cycles)
+      pilots.cycles->accuracy = 0.01 * accuracy; // the displacements are compared here
+    const double period = std::min(pilots.scene.active_stress->period().value_or(end), end);
+    double change       = std::numeric_limits<double>::infinity();
+    for (n.n_cells = first_moving_cells;; n.n_cells *= 2)
+    {
+      // Steps that pass over many cells at once miss the motion in between, and their errors look small.
+      n.step_limits        = {{0., period / (moving_steps * n.n_cells)}};
+      n.tolerance          = moving_tolerance * pilots.scale / n.n_cells;
+      pilots.tolerance     = n.tolerance;
+      const double before  = pilots.last.displacement;
+      const bool is_second = pilots.finished();
+      pilots.count(pilots.run(n, n.degree, n.n_cells, ResolutionWish::size));
+      const bool finished = pilots.finished();
+      if (!finished && (n.n_cells > first_moving_cells || pilots.last.time.reason == "inverted_at_end"))
+        return; // the run will report the reason
+      // Meshes double their cells and take up to twice the steps.
+      unsigned int last = n.n_cells;
+      for (double work = 4. * n.n_cells * pilots.last.time.steps;
+           2 * last <= last_moving_cells && work < max_moving_work;
+           work *= 4.)
+        last *= 2;
+      if (finished && is_second)
+      {
+        const double change_before = change;
+        change                     = std::abs(pilots.last.displacement - before);
+        // Changes may be small by chance if there is only one.
+        const bool is_first = !std::isfinite(change_before);
+        const double error =
+          is_first ? moving_factor_of_first * change : moving_factor * std::max(change, 0.5 * change_before);
+        const double wanted   = accuracy * pilots.size;
+        choice.measured_error = error;
+        choice.space_share    = 0.9; // the tolerance is small
+        choice.advice         = "the active stress jumps at places that move through the cells, where the error falls "
+                                "only like the size of a cell, and works and energies are known only to within some per "
+                                "cent: fronts of finite width (a smoothed square profile) cost far less";
+        const bool hopeless   = !is_first && error > wanted * last / n.n_cells;
+        if (error <= 0.9 * wanted || hopeless) // the end of cycles has an error, too
+          return;
+      }
+      if (n.n_cells == last)
+        return;
+    }
+  }
+
+  namespace
+  {
+    /// Cells of the coarsest mesh, cells for each length in which the active stress changes, and the time tolerance
+    /// relative to the strain, as a multiple of Accuracy and at most.
+    constexpr unsigned int first_family_cells = 25;
+    constexpr double cells_of_length = 4., family_tolerance = 10., largest_family_tolerance = 1e-3;
+    /// Layers: layer_lengths times k/max|m_s| thick, at most this part of the body.
+    constexpr double layer_lengths = 1., largest_layer = 0.02;
+  } // namespace
+
+  void
+  choose_stretch_form(const Pilots &pilots, NumericsChoice &choice)
+  {
+    const RunParameters &own = pilots.parameters;
+    const Scene &scene       = pilots.scene;
+    const double L = scene.body.length, length = pilots.scales.length;
+    const double m_s = pilots.scales.stress / length, a = std::max(1., std::abs(scene.friction_exponent()));
+    const auto &user_cells = own.discretization.n_cells;
+    Numerics &n            = choice.numerics;
+    n.formulation          = Formulation::stretch;
+    n.degree               = 1;
+    n.mesh                 = {};
+    n.grading              = {};
+    n.layer =
+      m_s > 0. ? std::min(largest_layer * L, layer_lengths / a * scene.body.elastic_modulus / m_s) : largest_layer * L;
+    if (own.discretization.mesh == MeshKind::uniform)
+      n.layer = 0.;
+    n.parts            = 1;
+    n.integrator       = "radau 5";
+    choice.strain      = std::min(pilots.scale / std::min(L, length), 0.3);
+    const double first = std::clamp(std::ceil(cells_of_length * L / length), 1. * first_family_cells, 0.25 * max_cells);
+    n.n_cells          = user_cells.value_or(static_cast<unsigned int>(first));
+    n.tolerance        = own.time.tolerance.value_or(
+      std::max(std::min(family_tolerance * own.accuracy, largest_family_tolerance) * choice.strain * L, 1e-13 * L));
+    if (!own.time.initial_step)
+      n.initial_step = 1e-4 * scene.end_time;
+    choice.is_family    = !user_cells;
+    choice.is_users     = !choice.is_family;
+    choice.wanted_error = choice.space_share = std::numeric_limits<double>::quiet_NaN();
+    choice.explanation =
+      choice.is_family
+        ? fmt::format("for Accuracy {:g}: the stretch form, on ever finer meshes until the displacement settles",
+                      own.accuracy)
+        : "stretch form, with cells as set by the user";
   }
 } // namespace crawler
