@@ -4,7 +4,6 @@
 #include <crawler/time/radau_tableau.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 namespace crawler
@@ -32,21 +31,18 @@ namespace crawler
                         method.n_cells,
                         method.n_stages,
                         sizes_.data(),
-                        element_.values.data(),
-                        element_.derivatives.data(),
-                        element_.weights.data(),
-                        element_.stiffness.data(),
+                        element_.tables(),
                         static_cast<unsigned int>(sample_places_.size()),
                         samples_.data(),
-                        tableau.c.data(),
-                        tableau.b.data(),
-                        tableau.inverse.data(),
-                        tableau.error_weights.data(),
-                        tableau.newton_fraction,
-                        tableau.real_eigenvalue,
-                        parts(tableau.eigenvalues),
-                        parts(tableau.vectors),
-                        parts(tableau.rows)};
+                        {tableau.c.data(),
+                         tableau.b.data(),
+                         tableau.inverse.data(),
+                         tableau.error_weights.data(),
+                         tableau.newton_fraction,
+                         tableau.real_eigenvalue,
+                         parts(tableau.eigenvalues),
+                         parts(tableau.vectors),
+                         parts(tableau.rows)}};
     setup.is_stretch = method.is_stretch;
     setup.laws       = method.laws;
   }
@@ -71,7 +67,7 @@ namespace crawler
   {
     const int s                       = static_cast<int>(setup.n_stages);
     double weights[radau::max_stages] = {};
-    radau::collocation_weights(s, setup.c, 1. - (step.time - time) / step.size, weights);
+    radau::collocation_weights(s, setup.method.c, 1. - (step.time - time) / step.size, weights);
     weights[s - 1] -= 1.; // weights are for the state relative to y at the end
     const std::size_t n = y.size();
     for (std::size_t d = 0; d < n; ++d)
