@@ -12,8 +12,6 @@ namespace crawler
     , scene_(in_units(physical, units_, &segments_))
     , in_time_(breaks_in_time_of(other), segments_.breaks())
     , at_(points.size())
-    , g_(points.size())
-    , w_dg_(points.size())
   {
     const BreakMap in_space(breaks_in_space_of(other), breaks_in_space_of(physical));
     std::vector<double> own = points;
@@ -24,7 +22,7 @@ namespace crawler
       s = in_space(piece, s);
     }
     body_.emplace(scene_, own);
-    sliding_.emplace(scene_, own);
+    friction_.emplace(scene_, own);
   }
 
   void
@@ -33,7 +31,7 @@ namespace crawler
     const std::size_t piece = in_time_.piece(end);
     const double slower     = in_time_.slope(piece);
     at_.u                   = at.u;
-    for (std::size_t p = 0; p < g_.size(); ++p)
+    for (std::size_t p = 0; p < longer_.size(); ++p)
     {
       at_.v[p]    = at.v[p] / slower;
       at_.e[p]    = at.e[p] / longer_[p];
@@ -41,23 +39,21 @@ namespace crawler
       at_.rate[p] = at.rate[p] / (longer_[p] * slower);
     }
     go_to(in_time_.image(piece), in_time_(piece, t));
-    sliding_->evaluate(at_.u, at_.v);
-    scene_.friction->values(at_.w, g_);
+    friction_->evaluate(at_.u, at_.v, at_.w);
   }
 
   void
   ForcesAtPoints::slopes(std::vector<Slopes> &all)
   {
-    scene_.friction->values(at_.w, g_, w_dg_);
-    all.resize(g_.size());
-    for (std::size_t p = 0; p < g_.size(); ++p)
+    all.resize(longer_.size());
+    for (std::size_t p = 0; p < longer_.size(); ++p)
     {
       const bool sees_rate = !body_->by_rate.empty();
       all[p]               = {body_->by_w[p] - body_->k[p],
                 sees_rate ? body_->by_rate[p] : 0.,
-                              g_[p] * sliding_->by_u[p],
-                              w_dg_[p] / at_.w[p] * sliding_->force[p],
-                              g_[p] * sliding_->by_v[p]};
+                              friction_->f_u[p],
+                              friction_->w_dg[p] / at_.w[p] * friction_->sliding[p],
+                              friction_->f_v[p]};
     }
   }
 
@@ -78,7 +74,7 @@ namespace crawler
     const double middle              = in_time_.image_of_break(number);
     const std::size_t left = start ? 0 : in_time_.image(number - 1), right = left + edges.size();
     const bool is_end = !start && in_time_.is_last(number - 1);
-    std::vector<double> sum(g_.size(), 0.);
+    std::vector<double> sum(longer_.size(), 0.);
     const auto add = [&](const std::size_t piece, const double from, const double to) {
       if (!(to > from))
         return;

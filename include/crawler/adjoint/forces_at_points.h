@@ -58,7 +58,7 @@ namespace crawler
     double
     friction(const std::size_t point) const
     {
-      return longer_[point] * g_[point] * sliding_->force[point];
+      return longer_[point] * friction_->g[point] * friction_->sliding[point];
     }
     double
     longer(const std::size_t point) const
@@ -96,8 +96,7 @@ namespace crawler
     const BreakMap in_time_;
     std::vector<double> longer_;
     std::optional<BodyForceAtPoints> body_;
-    std::optional<SlidingAtPoints> sliding_;
+    std::optional<FrictionAtPoints> friction_;
     StateAtPoints at_;
-    std::vector<double> g_, w_dg_;
   };
 } // namespace crawler

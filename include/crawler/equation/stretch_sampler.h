@@ -13,18 +13,14 @@ namespace crawler
   public:
     /// @p places from 0 (left end of the cell) to 1.
     StretchSampler(const ReferenceElement &element, const std::vector<double> &places)
-      : places_(places)
+      : places(places)
       , n_(element.n)
       , q_(element.degree)
       , derivatives_(interpolation_matrix(element.nodes, places, /*derivative=*/true))
     {
     }
 
-    const std::vector<double> &
-    places() const
-    {
-      return places_;
-    }
+    const std::vector<double> places;
 
     /// Strain at place @p i of the local cell @p c of size @p h. @p u are the local displacements.
     double
@@ -36,14 +32,7 @@ namespace crawler
       return sum / h;
     }
 
-    double
-    stretch(const std::span<const double> u, const unsigned int c, const double h, const unsigned int i) const
-    {
-      return 1. + strain(u, c, h, i);
-    }
-
   private:
-    std::vector<double> places_;
     unsigned int n_, q_;
     std::vector<double> derivatives_; ///< [place][n nodes]
   };
