@@ -82,6 +82,16 @@ namespace crawler
       found(hdf5::is_harmless(path, purpose, read) ? 0 : -1, path, "makes HDF5 crash or hang");
     }
 
+    /// Access of all ranks to a file.
+    Hdf5Handle
+    shared_access(MPI_Comm communicator, const std::filesystem::path &path)
+    {
+      H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own message instead of HDF5's stack
+      Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+      hdf5::checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
+      return access;
+    }
+
     /// Writes rows @p first to @p first + @p n - 1 of a column; @p value gives the value of row @p first + i.
     template <typename Function>
     void
@@ -261,9 +271,7 @@ namespace crawler
     : path_(path)
     , columns_(std::move(columns))
   {
-    H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);
-    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    hdf5::checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
+    const Hdf5Handle access = shared_access(communicator, path);
     handles_.reset(new Handles{{hdf5::checked(H5Fopen(path.c_str(), H5F_ACC_RDWR, access), path, "open"), H5Fclose},
                                {H5Pcreate(H5P_DATASET_XFER), H5Pclose},
                                {},
@@ -312,26 +320,18 @@ namespace crawler
   };
 
   RowReader::RowReader(MPI_Comm communicator, const std::filesystem::path &path, const std::string &group_name)
+    : RowReader(path, group_name, [&]() {
+      on_first_rank(communicator,
+                    [&]() { require_harmless(path, "table", [&]() { RowReader(path, group_name, H5P_DEFAULT); }); });
+      return shared_access(communicator, path);
+    }())
+  {
+  }
+
+  RowReader::RowReader(const std::filesystem::path &path, const std::string &group_name, const hid_t access)
     : path_(path)
+    , handles_(new Handles{{opened(path, access), H5Fclose}})
   {
-    on_first_rank(communicator,
-                  [&]() { require_harmless(path, "table", [&]() { RowReader(path).open(H5P_DEFAULT, group_name); }); });
-    H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);
-    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    hdf5::checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
-    open(access, group_name);
-  }
-
-  RowReader::RowReader(std::filesystem::path path)
-    : path_(std::move(path))
-  {
-  }
-
-  void
-  RowReader::open(const hid_t access, const std::string &group_name)
-  {
-    const std::filesystem::path &path = path_;
-    handles_.reset(new Handles{{opened(path, access), H5Fclose}});
     const Hdf5Handle group(
       found(H5Gopen(handles_->file, group_name.c_str(), H5P_DEFAULT), path, "has no group \"" + group_name + "\""),
       H5Gclose);
