@@ -45,15 +45,10 @@ namespace crawler
     const unsigned int q = element.degree;
     std::vector<double> buffer;
     const auto local = discretization.to_local(displacement(y), buffer);
-    std::vector<double> strain(static_cast<std::size_t>(discretization.n_local_cells()) * q, 0.);
+    std::vector<double> strain(static_cast<std::size_t>(discretization.n_local_cells()) * q);
     for (std::size_t c = 0; c < discretization.n_local_cells(); ++c)
       for (unsigned int p = 0; p < q; ++p)
-      {
-        double &sum = strain[c * q + p];
-        for (unsigned int i = 0; i < element.n; ++i)
-          sum += element.stretch_derivatives[p * element.n + i] * local[c * q + i];
-        sum /= discretization.cell_size[c];
-      }
+        strain[c * q + p] = discretization.slope(local, c, &element.stretch_derivatives[p * element.n]);
     return strain;
   }
 

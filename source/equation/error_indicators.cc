@@ -34,7 +34,7 @@ namespace crawler
       double mode = 0., strain = 0., smallest = std::numeric_limits<double>::infinity();
       for (unsigned int p = 0; p < element.n; ++p)
       {
-        const double e = sampler_.strain(local, c, h, p + 1);
+        const double e = discretization.slope(local, c, &element.derivatives[p * element.n]);
         mode += highest_mode[p] * e;
         strain += element.weights[p] * e * e;
         smallest = std::min(smallest, 1. + e);
@@ -82,7 +82,7 @@ namespace crawler
         double N = balance;
         for (unsigned int i = 0; i < n; ++i)
           N += h * to_points[p * n + i] * g_v[i];
-        const double e = sampler_.strain(local, c, h, p + 1);
+        const double e = discretization.slope(local, c, &element.derivatives[p * element.n]);
         const double k = in.laws != nullptr ? in.laws->k[c * n + p] : in.k;
         const double d = (N - force_[c * n + p]) / k;
         const double w = std::max(1. + e, smallest_scale);

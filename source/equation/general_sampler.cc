@@ -28,16 +28,15 @@ namespace crawler
     {
       const unsigned int c = places_[p].cell;
       const double h       = d.cell_size[c];
-      u_[p] = v_[p] = e_[p] = rate_[p] = 0.;
+      u_[p] = v_[p] = rate_[p] = 0.;
+      e_[p]                    = d.slope(u_local, c, &derivatives_[p * n]);
       for (unsigned int i = 0; i < n; ++i)
       {
         const std::size_t node = static_cast<std::size_t>(c) * q + i;
         u_[p] += values_[p * n + i] * u_local[node];
         v_[p] += values_[p * n + i] * v_local[node];
-        e_[p] += derivatives_[p * n + i] * u_local[node];
         rate_[p] += derivatives_[p * n + i] * v_local[node] / h;
       }
-      e_[p] /= h;
       w_[p] = cells.empty() ? 1. + e_[p] : cells[c];
     }
     elsewhere_.evaluate(t, assembler_.stretch_coefficients(y), assembler_.history);

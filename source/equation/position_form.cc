@@ -27,27 +27,6 @@ namespace crawler
           best = {all[2 * r], all[2 * r + 1]};
       return best;
     }
-
-    /// Places in a cell where the stretch is sampled: its ends and the quadrature points, from left to right.
-    std::vector<double>
-    sampled_places(const ReferenceElement &element)
-    {
-      std::vector<double> places = {0.};
-      places.insert(places.end(), element.points.begin(), element.points.end());
-      places.push_back(1.);
-      return places;
-    }
-
-    /// Sampler at these places, made once for each degree.
-    const StretchSampler &
-    stretch_sampler(const ReferenceElement &element)
-    {
-      static std::map<unsigned int, const StretchSampler> samplers;
-      const auto known = samplers.find(element.degree);
-      return known != samplers.end()
-               ? known->second
-               : samplers.try_emplace(element.degree, element, sampled_places(element)).first->second;
-    }
   } // namespace
 
   PositionForm::PositionForm(const Scene &scene, const Discretization &discretization)
@@ -56,7 +35,6 @@ namespace crawler
     , jacobian_(discretization)
     , stress_(scene.active_stress->at(discretization.points(discretization.element.points)))
     , stresses_(1)
-    , sampler_(stretch_sampler(discretization.element))
   {
   }
 
@@ -107,12 +85,13 @@ namespace crawler
   PositionForm::stretch_range(const ConstVector y)
   {
     const auto local          = discretization.to_local(displacement(y), u_local_);
-    const unsigned n          = discretization.element.n;
+    const auto &element       = discretization.element;
+    const unsigned int n      = element.n;
     constexpr double infinity = std::numeric_limits<double>::infinity();
 
-    const auto place      = [&](const unsigned int i) { return sampler_.places[i]; };
+    const auto place      = [&](const unsigned int i) { return element.sample_places[i]; };
     const auto stretch_at = [&](const unsigned int c, const unsigned int i) {
-      return 1. + sampler_.strain(local, c, discretization.cell_size[c], i);
+      return 1. + discretization.slope(local, c, &element.sample_derivatives[i * n]);
     };
 
     struct Found

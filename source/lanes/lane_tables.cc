@@ -10,14 +10,9 @@ namespace crawler
 {
   LaneTables::LaneTables(const LaneMethod &method)
     : method_(method)
-    , element_(method.degree)
-    , sample_places_(method.is_stretch ? std::vector<double>{0.5} : element_.points)
+    , element_(reference_element(method.degree))
+    , sample_places_(method.is_stretch ? std::vector<double>{0.5} : element_.sample_places)
   {
-    if (!method.is_stretch)
-    {
-      sample_places_.insert(sample_places_.begin(), 0.);
-      sample_places_.push_back(1.);
-    }
     samples_                    = interpolation_matrix(element_.nodes, sample_places_, /*derivative=*/true);
     const RadauTableau &tableau = radau_tableau(method.n_stages);
     const bool uniform          = method.cell_ends.empty();

@@ -37,7 +37,7 @@ namespace crawler
     points_                         = places_(assembler.discretization);
     coordinates_                    = assembler.discretization.points_of(points_);
     values_                         = interpolation_matrix(element.nodes, in_cells(points_));
-    stretch_.emplace(element, in_cells(points_));
+    derivatives_                    = interpolation_matrix(element.nodes, in_cells(points_), /*derivative=*/true);
     if (assembler.scene.is_plain())
       stress_ = assembler.scene.active_stress->at(coordinates_);
     else
@@ -51,7 +51,7 @@ namespace crawler
   const Fields &
   FieldSampler::sample(const Snapshot &snapshot)
   {
-    if (!stretch_ || mesh_number_ != snapshot.mesh_number)
+    if (mesh_number_ != snapshot.mesh_number)
       begin_mesh(snapshot);
     const Assembler &assembler         = snapshot.assembler;
     const Units &units                 = snapshot.units;
@@ -71,12 +71,12 @@ namespace crawler
         u_p += values_[p * n + i] * u_local[cell * q + i];
         v_p += values_[p * n + i] * v_local[cell * q + i];
       }
-      fields_.displacement[p] = u_p * units.length;
-      fields_.position[p]     = coordinates_[p] + fields_.displacement[p];
-      fields_.velocity[p]     = v_p;
-      const double drawn      = cells.empty() ? 0. : slopes[cell] * (points_[p].x - 0.5);
-      const double strain = stretch_->strain(u_local, cell, d.cell_size[cell], static_cast<unsigned int>(p)) + drawn;
-      fields_.stretch[p]  = cells.empty() ? 1. + strain : std::max(cells[cell] + drawn, 0.);
+      fields_.displacement[p]   = u_p * units.length;
+      fields_.position[p]       = coordinates_[p] + fields_.displacement[p];
+      fields_.velocity[p]       = v_p;
+      const double drawn        = cells.empty() ? 0. : slopes[cell] * (points_[p].x - 0.5);
+      const double strain       = d.slope(u_local, cell, &derivatives_[p * n]) + drawn;
+      fields_.stretch[p]        = cells.empty() ? 1. + strain : std::max(cells[cell] + drawn, 0.);
       fields_.elastic_stress[p] = units.force * equation::body_force(strain, 0., assembler.scene.body.elastic_modulus);
     }
     if (general_)

@@ -3,7 +3,6 @@
 
 #include <crawler/equation/cell_kernels.h>
 #include <crawler/equation/general_laws.h>
-#include <crawler/equation/stretch_sampler.h>
 #include <crawler/mesh/discretization.h>
 #include <crawler/scene/scene.h>
 

@@ -118,7 +118,6 @@ namespace crawler
     std::vector<StressAtTime> stresses_; ///< latest stresses
     std::size_t oldest_stress_ = 0;
     std::vector<double> u_local_, v_local_, F_local_;
-    const StretchSampler &sampler_;        ///< samples at the left end, the quadrature points and the right end
     std::vector<double> force_, friction_; ///< values at the quadrature points
     std::vector<BlockTridiagonalMatrix<Complex>> complex_jacobians_;
     struct Stage

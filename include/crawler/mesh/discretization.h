@@ -102,6 +102,17 @@ namespace crawler
     std::vector<double>
     points_of(const std::vector<CellPlace> &places) const;
 
+    /// Slope of a field in one of this rank's cells, from its @p local values and the derivatives [n nodes] of the
+    /// shape functions at the place.
+    double
+    slope(const std::span<const double> local, const std::size_t cell, const double *derivatives) const
+    {
+      double sum = 0.;
+      for (std::size_t i = 0; i < element.n; ++i)
+        sum += derivatives[i] * local[cell * element.degree + i];
+      return sum / cell_size[cell];
+    }
+
     /// Completes a local array from the owned values of all ranks (collective). Returns @p owned itself where nothing
     /// is missing; else fills and returns @p buffer.
     std::span<const double>
