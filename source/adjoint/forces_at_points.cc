@@ -12,8 +12,6 @@ namespace crawler
     , scene_(in_units(physical, units, &segments_))
     , in_time_(breaks_in_time_of(other), segments_.breaks())
     , at_(points.size())
-    , g_(points.size())
-    , w_dg_(points.size())
   {
     const BreakMap in_space(breaks_in_space_of(other), breaks_in_space_of(physical));
     std::vector<double> own = points;
@@ -24,7 +22,7 @@ namespace crawler
       s = in_space(piece, s);
     }
     body_.emplace(scene_, own);
-    sliding_.emplace(scene_, own);
+    friction_.emplace(scene_, own);
   }
 
   void
@@ -33,7 +31,7 @@ namespace crawler
     const std::size_t piece = in_time_.piece(end);
     const double slower     = in_time_.slope(piece);
     at_.u                   = at.u;
-    for (std::size_t p = 0; p < g_.size(); ++p)
+    for (std::size_t p = 0; p < longer_.size(); ++p)
     {
       at_.v[p]    = at.v[p] / slower;
       at_.e[p]    = at.e[p] / longer_[p];
@@ -43,21 +41,19 @@ namespace crawler
     piece_ = in_time_.image(piece);
     at_.t  = in_time_(piece, at.t);
     go_to(piece_, at_.t);
-    sliding_->evaluate(at_.u, at_.v);
-    scene_.friction->values(at_.w, g_);
+    friction_->evaluate(at_.u, at_.v, at_.w);
   }
 
   std::vector<ForcesAtPoints::Slopes>
-  ForcesAtPoints::slopes()
+  ForcesAtPoints::slopes() const
   {
-    scene_.friction->values(at_.w, g_, w_dg_);
     std::vector<Slopes> all;
-    for (std::size_t p = 0; p < g_.size(); ++p)
+    for (std::size_t p = 0; p < longer_.size(); ++p)
       all.push_back({body_->by_w[p] - body_->k[p],
                      body_->by_rate.empty() ? 0. : body_->by_rate[p],
-                     g_[p] * sliding_->by_u[p],
-                     w_dg_[p] / at_.w[p] * sliding_->force[p],
-                     g_[p] * sliding_->by_v[p]});
+                     friction_->f_u[p],
+                     friction_->w_dg[p] / at_.w[p] * friction_->sliding[p],
+                     friction_->f_v[p]});
     return all;
   }
 
@@ -72,7 +68,7 @@ namespace crawler
       return {};
     const double middle    = in_time_.to[number];
     const std::size_t left = start ? 0 : in_time_.image(number - 1), right = left + edges.size();
-    std::vector<double> sum(g_.size(), 0.);
+    std::vector<double> sum(longer_.size(), 0.);
     const auto add = [&](const std::size_t piece, const double from, const double to) {
       if (!(to > from))
         return;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
-#include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 
 #include <unistd.h>
@@ -9,7 +8,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <numeric>
-#include <string>
 #include <string_view>
 #include <utility>
 

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <limits>
 #include <optional>
 #include <sstream>
 
@@ -67,21 +66,20 @@ namespace crawler
     }
   } // namespace
 
-  bool
-  Mistakes::is_first(const std::size_t row)
+  void
+  Mistakes::note(const std::size_t row, const std::function<std::string()> &sentence)
   {
     if (sentence_.empty())
     {
-      first_ = row;
-      return true;
+      first_    = row;
+      sentence_ = sentence();
     }
-    if (row != first_)
+    else if (row != first_)
       others_.insert(row);
-    return false;
   }
 
   void
-  Mistakes::refuse(const std::string &entry) const
+  Mistakes::report(const std::string &entry) const
   {
     constexpr std::ptrdiff_t most = 4;
     if (sentence_.empty())
@@ -89,13 +87,13 @@ namespace crawler
     if (others_.empty())
       throw InputError(sentence_, entry);
     const auto n = static_cast<std::ptrdiff_t>(others_.size());
-    throw InputError(fmt::format("{}; {} more {} like it: {}{}",
-                                 sentence_,
-                                 n,
-                                 n == 1 ? "row is" : "rows are",
-                                 fmt::join(others_.begin(), std::next(others_.begin(), std::min(n, most)), ", "),
-                                 n > most ? ", ..." : ""),
-                     entry);
+    refuse(entry,
+           "{}; {} more {} like it: {}{}",
+           sentence_,
+           n,
+           n == 1 ? "row is" : "rows are",
+           fmt::join(others_.begin(), std::next(others_.begin(), std::min(n, most)), ", "),
+           n > most ? ", ..." : "");
   }
 
   CsvNumbers
@@ -106,21 +104,19 @@ namespace crawler
   {
     const std::string header = fmt::format("{}", fmt::join(names, ","));
     if (const std::string found = foreign_format(text); !found.empty())
-      throw InputError(
-        fmt::format("\"{}\" is {}, but a CSV file in UTF-8 with the header {} is expected", file, found, header),
-        entry);
+      refuse(entry, "\"{}\" is {}, but a CSV file in UTF-8 with the header {} is expected", file, found, header);
     text                         = without_byte_order_mark(text);
     const std::string_view first = without_blanks(next_part(text, '\n'));
     std::string words;
     for (std::string_view rest = first; !rest.empty();)
       words += (words.empty() ? "" : ",") + std::string(without_blanks(next_part(rest, ',')));
     if (words != header)
-      throw InputError(fmt::format("the first row of \"{}\" is \"{}\", but the header {} is expected{}",
-                                   file,
-                                   first.substr(0, 80),
-                                   header,
-                                   hint(first, names.size())),
-                       entry);
+      refuse(entry,
+             "the first row of \"{}\" is \"{}\", but the header {} is expected{}",
+             file,
+             first.substr(0, 80),
+             header,
+             hint(first, names.size()));
     CsvNumbers numbers;
     numbers.columns.resize(names.size());
     Mistakes mistakes;
@@ -139,16 +135,18 @@ namespace crawler
           numbers.columns[i].push_back(*row[i]);
         numbers.rows.push_back(number);
       }
-      else if (mistakes.is_first(number))
-        mistakes.say(fmt::format("row {} of \"{}\" is \"{}\", but {} numbers {} are expected{}",
-                                 number,
-                                 file,
-                                 line.substr(0, 80),
-                                 names.size() == 2 ? "two" : "three",
-                                 header,
-                                 hint(line, names.size())));
+      else
+        mistakes.note(number, [&]() {
+          return fmt::format("row {} of \"{}\" is \"{}\", but {} numbers {} are expected{}",
+                             number,
+                             file,
+                             line.substr(0, 80),
+                             names.size() == 2 ? "two" : "three",
+                             header,
+                             hint(line, names.size()));
+        });
     }
-    mistakes.refuse(entry);
+    mistakes.report(entry);
     return numbers;
   }
 

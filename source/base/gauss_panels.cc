@@ -77,6 +77,14 @@ namespace crawler
       }
   }
 
+  std::vector<double>
+  GaussPanels::points_and_ends() const
+  {
+    std::vector<double> all = points_;
+    all.insert(all.end(), {ends_.front(), ends_.back()});
+    return all;
+  }
+
   double
   GaussPanels::integral(const std::span<const double> f) const
   {

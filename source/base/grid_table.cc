@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -108,15 +107,17 @@ namespace crawler
           seen[point]        = numbers.rows[r];
           grid.values[point] = values[r];
         }
-        else if (repetitions.is_first(numbers.rows[r]))
-          repetitions.say(fmt::format("row {} of \"{}\" gives s = {:g}, t = {:g} a second time, after row {}",
-                                      numbers.rows[r],
-                                      source.file,
-                                      s[r],
-                                      t[r],
-                                      seen[point]));
+        else
+          repetitions.note(numbers.rows[r], [&]() {
+            return fmt::format("row {} of \"{}\" gives s = {:g}, t = {:g} a second time, after row {}",
+                               numbers.rows[r],
+                               source.file,
+                               s[r],
+                               t[r],
+                               seen[point]);
+          });
       }
-      repetitions.refuse(source.entry);
+      repetitions.report(source.entry);
       refuse_gaps(grid, seen, n, source);
       return grid;
     }

@@ -14,7 +14,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <limits>
 
 namespace crawler
 {
@@ -81,6 +80,16 @@ namespace crawler
     {
       H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own message instead of HDF5's stack
       found(hdf5::is_harmless(path, purpose, read) ? 0 : -1, path, "makes HDF5 crash or hang");
+    }
+
+    /// Access of all ranks to a file.
+    Hdf5Handle
+    shared_access(MPI_Comm communicator, const std::filesystem::path &path)
+    {
+      H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own message instead of HDF5's stack
+      Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+      hdf5::checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
+      return access;
     }
 
     /// Writes rows @p first to @p first + @p n - 1 of a column; @p value gives the value of row @p first + i.
@@ -251,8 +260,8 @@ namespace crawler
   struct RowFile::Handles
   {
     Hdf5Handle file, transfer;
-    std::vector<std::unique_ptr<Hdf5Handle>> datasets;
-    std::unique_ptr<Hdf5Handle> checksums;
+    std::vector<Hdf5Handle> datasets;
+    std::optional<Hdf5Handle> checksums;
   };
 
   RowFile::RowFile(MPI_Comm communicator,
@@ -262,22 +271,19 @@ namespace crawler
     : path_(path)
     , columns_(std::move(columns))
   {
-    H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);
-    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    hdf5::checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
+    const Hdf5Handle access = shared_access(communicator, path);
     handles_.reset(new Handles{{hdf5::checked(H5Fopen(path.c_str(), H5F_ACC_RDWR, access), path, "open"), H5Fclose},
                                {H5Pcreate(H5P_DATASET_XFER), H5Pclose},
                                {},
-                               nullptr});
+                               std::nullopt});
     H5Pset_dxpl_mpio(handles_->transfer, H5FD_MPIO_INDEPENDENT);
     for (const Column &column : columns_)
     {
       const std::string name = "/" + group + "/" + dataset_name(column.name);
-      handles_->datasets.push_back(std::make_unique<Hdf5Handle>(
-        hdf5::checked(H5Dopen(handles_->file, name.c_str(), H5P_DEFAULT), path, "open"), H5Dclose));
+      handles_->datasets.emplace_back(hdf5::checked(H5Dopen(handles_->file, name.c_str(), H5P_DEFAULT), path, "open"),
+                                      H5Dclose);
     }
-    handles_->checksums = std::make_unique<Hdf5Handle>(
-      hdf5::checked(H5Dopen(handles_->file, checksums, H5P_DEFAULT), path, "open"), H5Dclose);
+    handles_->checksums.emplace(hdf5::checked(H5Dopen(handles_->file, checksums, H5P_DEFAULT), path, "open"), H5Dclose);
   }
 
   RowFile::~RowFile() = default;
@@ -299,7 +305,7 @@ namespace crawler
             checksum.add(rows[row][k], columns_[k].width);
           return checksum.value();
         });
-      write(*handles_->datasets[i], columns_[i].width, [&](const unsigned long row) -> const Value & {
+      write(handles_->datasets[i], columns_[i].width, [&](const unsigned long row) -> const Value & {
         return rows[row][i];
       });
     }
@@ -309,35 +315,26 @@ namespace crawler
   struct RowReader::Handles
   {
     Hdf5Handle file;
-    std::unique_ptr<Hdf5Handle> group                 = nullptr;
-    std::vector<std::unique_ptr<Hdf5Handle>> datasets = {}, types = {};
-    std::unique_ptr<Hdf5Handle> checksums = nullptr;
+    std::vector<Hdf5Handle> datasets = {}, types = {};
+    std::optional<Hdf5Handle> checksums = std::nullopt;
   };
 
   RowReader::RowReader(MPI_Comm communicator, const std::filesystem::path &path, const std::string &group_name)
+    : RowReader(path, group_name, [&]() {
+      on_first_rank(communicator,
+                    [&]() { require_harmless(path, "table", [&]() { RowReader(path, group_name, H5P_DEFAULT); }); });
+      return shared_access(communicator, path);
+    }())
+  {
+  }
+
+  RowReader::RowReader(const std::filesystem::path &path, const std::string &group_name, const hid_t access)
     : path_(path)
+    , handles_(new Handles{{opened(path, access), H5Fclose}})
   {
-    on_first_rank(communicator,
-                  [&]() { require_harmless(path, "table", [&]() { RowReader(path).open(H5P_DEFAULT, group_name); }); });
-    H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);
-    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    hdf5::checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
-    open(access, group_name);
-  }
-
-  RowReader::RowReader(std::filesystem::path path)
-    : path_(std::move(path))
-  {
-  }
-
-  void
-  RowReader::open(const hid_t access, const std::string &group_name)
-  {
-    const std::filesystem::path &path = path_;
-    handles_.reset(new Handles{{opened(path, access), H5Fclose}});
-    const hid_t group =
-      found(H5Gopen(handles_->file, group_name.c_str(), H5P_DEFAULT), path, "has no group \"" + group_name + "\"");
-    handles_->group = std::make_unique<Hdf5Handle>(group, H5Gclose);
+    const Hdf5Handle group(
+      found(H5Gopen(handles_->file, group_name.c_str(), H5P_DEFAULT), path, "has no group \"" + group_name + "\""),
+      H5Gclose);
     H5G_info_t info;
     H5Gget_info(group, &info);
     for (hsize_t i = 0; i < info.nlinks; ++i)
@@ -347,20 +344,20 @@ namespace crawler
             path,
             fmt::format("has no column {} in the order of creation", i + 1));
       const hid_t dataset = found(H5Dopen(group, name, H5P_DEFAULT), path, fmt::format("has no dataset \"{}\"", name));
-      handles_->datasets.push_back(std::make_unique<Hdf5Handle>(dataset, H5Dclose));
-      handles_->types.push_back(std::make_unique<Hdf5Handle>(H5Dget_type(dataset), H5Tclose));
+      handles_->datasets.emplace_back(dataset, H5Dclose);
+      handles_->types.emplace_back(H5Dget_type(dataset), H5Tclose);
       columns_.push_back({read_attribute_of(dataset, "name", path),
                           read_attribute_of(dataset, "unit", path),
                           read_attribute_of(dataset, "description", path),
                           {}});
-      const std::size_t n = length_of(dataset, *handles_->types.back(), name, path);
+      const std::size_t n = length_of(dataset, handles_->types.back(), name, path);
       if (i > 0 && n != n_rows_)
         found(-1, path, "has columns of different lengths");
       n_rows_ = n;
     }
     if (H5Lexists(handles_->file, checksums, H5P_DEFAULT) > 0)
     {
-      handles_->checksums = std::make_unique<Hdf5Handle>(
+      handles_->checksums.emplace(
         found(H5Dopen(handles_->file, checksums, H5P_DEFAULT), path, "has no dataset of checksums"), H5Dclose);
       const Hdf5Handle type(H5Dget_type(*handles_->checksums), H5Tclose);
       if (length_of(*handles_->checksums, type, checksums, path) != n_rows_)
@@ -383,7 +380,7 @@ namespace crawler
   RowReader::read(const std::size_t number, const unsigned long first, const unsigned long n) const
   {
     crawler::Column column = columns_[number];
-    const hid_t dataset = *handles_->datasets[number], type = *handles_->types[number];
+    const hid_t dataset = handles_->datasets[number], type = handles_->types[number];
     const hdf5::Part part(dataset, {first}, {n});
     if (H5Tget_class(type) == H5T_STRING)
     {

@@ -3,7 +3,6 @@
 #include <crawler/base/stop_place.h>
 #include <crawler/base/stop_signal.h>
 
-#include <csignal>
 #include <iterator>
 
 namespace crawler

@@ -9,8 +9,8 @@
 namespace crawler
 {
   Assembler::Assembler(const Scene &scene, const Discretization &discretization)
-    : scene_(scene)
-    , discretization_(discretization)
+    : scene(scene)
+    , discretization(discretization)
     , end_moduli_(scene.end_moduli())
     , end_stress_(scene.active_stress->at({0., scene.body.length}))
   {
@@ -20,14 +20,14 @@ namespace crawler
   Assembler::root_mean_square(const ConstVector y) const
   {
     std::vector<double> buffer;
-    const auto local                = discretization_.to_local(displacement(y), buffer);
-    const ReferenceElement &element = discretization_.element();
+    const auto local                = discretization.to_local(displacement(y), buffer);
+    const ReferenceElement &element = discretization.element;
     double sum                      = 0.;
-    for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
+    for (unsigned int c = 0; c < discretization.n_local_cells(); ++c)
       for (unsigned int i = 0; i < element.n; ++i)
-        sum += discretization_.cell_size()[c] * element.node_weights[i] * std::pow(local[c * element.degree + i], 2);
-    discretization_.sum_over_ranks({&sum, 1});
-    return std::sqrt(sum / discretization_.length());
+        sum += discretization.cell_size[c] * element.node_weights[i] * std::pow(local[c * element.degree + i], 2);
+    discretization.sum_over_ranks({&sum, 1});
+    return std::sqrt(sum / discretization.length);
   }
 
   std::pair<double, double>
@@ -41,19 +41,14 @@ namespace crawler
   std::vector<double>
   Assembler::stretch_coefficients(const ConstVector y) const
   {
-    const auto &element  = discretization_.element();
+    const auto &element  = discretization.element;
     const unsigned int q = element.degree;
     std::vector<double> buffer;
-    const auto local = discretization_.to_local(displacement(y), buffer);
-    std::vector<double> strain(static_cast<std::size_t>(discretization_.n_local_cells()) * q, 0.);
-    for (std::size_t c = 0; c < discretization_.n_local_cells(); ++c)
+    const auto local = discretization.to_local(displacement(y), buffer);
+    std::vector<double> strain(static_cast<std::size_t>(discretization.n_local_cells()) * q);
+    for (std::size_t c = 0; c < discretization.n_local_cells(); ++c)
       for (unsigned int p = 0; p < q; ++p)
-      {
-        double &sum = strain[c * q + p];
-        for (unsigned int i = 0; i < element.n; ++i)
-          sum += element.stretch_derivatives[p * element.n + i] * local[c * q + i];
-        sum /= discretization_.cell_size()[c];
-      }
+        strain[c * q + p] = discretization.slope(local, c, &element.stretch_derivatives[p * element.n]);
     return strain;
   }
 
@@ -80,10 +75,10 @@ namespace crawler
   {
     std::vector<double> ends;
     for (unsigned int i = 0; i <= n_pieces; ++i)
-      ends.push_back(discretization_.length() * i / n_pieces);
-    piece_ends_       = {n_pieces, 0, discretization_.own_places(ends), {}};
-    piece_ends_.shape = interpolation_matrix(discretization_.element().nodes, in_cells(piece_ends_.places));
-    const auto &left  = discretization_.cell_left();
+      ends.push_back(discretization.length * i / n_pieces);
+    piece_ends_       = {n_pieces, 0, discretization.own_places(ends), {}};
+    piece_ends_.shape = interpolation_matrix(discretization.element.nodes, in_cells(piece_ends_.places));
+    const auto &left  = discretization.cell_left;
     while (piece_ends_.first <= n_pieces && !left.empty() && ends[piece_ends_.first] < left.front())
       ++piece_ends_.first;
   }
@@ -93,14 +88,14 @@ namespace crawler
   {
     if (piece_ends_.n_pieces != n_pieces)
       find_piece_ends(n_pieces);
-    const auto u         = discretization_.to_local(displacement(y), u_local_);
-    const unsigned int n = discretization_.element().n, q = discretization_.element().degree;
+    const auto u         = discretization.to_local(displacement(y), u_local_);
+    const unsigned int n = discretization.element.n, q = discretization.element.degree;
     std::vector<double> values(n_pieces + 1, 0.);
     for (std::size_t e = 0; e < piece_ends_.places.size(); ++e)
       for (unsigned int i = 0; i < n; ++i)
         values[piece_ends_.first + e] +=
           piece_ends_.shape[e * n + i] * u[static_cast<std::size_t>(piece_ends_.places[e].cell) * q + i];
-    discretization_.sum_over_ranks(values);
+    discretization.sum_over_ranks(values);
     return values;
   }
 } // namespace crawler

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/equation/cell_kernels.h>
 #include <crawler/equation/cell_laws.h>
-#include <crawler/equation/crawler_equation.h>
 #include <crawler/scene/friction_law.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace crawler
 {
@@ -13,12 +9,6 @@ namespace crawler
 
   namespace
   {
-    ElementTables
-    tables_of(const ReferenceElement &element)
-    {
-      return {element.values.data(), element.derivatives.data(), element.weights.data(), element.stiffness.data()};
-    }
-
     template <int q>
     struct Kernels
     {
@@ -67,7 +57,7 @@ namespace crawler
         long bad = -1;
         for_cells(in, [&](const auto &laws, const unsigned int c) {
           const auto at = cell_residual<n, double>(
-            tables_of(*in.element), in.cell_size[c], laws, in.u + c * q, velocity(in, c), F + c * q);
+            in.element->tables(), in.cell_size[c], laws, in.u + c * q, velocity(in, c), F + c * q);
           for (int p = 0; p < n; ++p)
             if (!(at.w[p] > 0.) && bad < 0)
               bad = static_cast<long>(c) * n + p;
@@ -78,7 +68,7 @@ namespace crawler
       static void
       blocks(const CellInput &in, const double by_state, const double by_velocity, double *A)
       {
-        const ElementTables tables = tables_of(*in.element);
+        const ElementTables tables = in.element->tables();
         for_cells(in, [&](const auto &laws, const unsigned int c) {
           double K[n * n], M[n * n], *block = A + c * n * n;
           const double *u = in.u + c * q, *v = velocity(in, c);
@@ -99,7 +89,7 @@ namespace crawler
       integrals(const CellInput &in, CellIntegrals &sum)
       {
         for_cells(in, [&](const auto &laws, const unsigned int c) {
-          cell_integrals<n>(tables_of(*in.element), in.cell_size[c], laws, in.u + c * q, in.v + c * q, sum);
+          cell_integrals<n>(in.element->tables(), in.cell_size[c], laws, in.u + c * q, in.v + c * q, sum);
         });
       }
 
@@ -107,8 +97,7 @@ namespace crawler
       forces(const CellInput &in, double *N, double *f)
       {
         for_cells(in, [&](const auto &laws, const unsigned int c) {
-          cell_forces<n>(
-            tables_of(*in.element), in.cell_size[c], laws, in.u + c * q, in.v + c * q, N + c * n, f + c * n);
+          cell_forces<n>(in.element->tables(), in.cell_size[c], laws, in.u + c * q, in.v + c * q, N + c * n, f + c * n);
         });
       }
 
@@ -117,7 +106,7 @@ namespace crawler
       {
         static constexpr double rest[n] = {};
         for (unsigned int c = 0; c < in.n_cells; ++c)
-          cell_states<n, double>(tables_of(*in.element),
+          cell_states<n, double>(in.element->tables(),
                                  in.cell_size[c],
                                  in.u + c * q,
                                  in.v != nullptr ? in.v + c * q : rest,

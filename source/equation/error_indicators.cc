@@ -20,21 +20,21 @@ namespace crawler
   Resolution
   PositionForm::resolution(const ConstVector y)
   {
-    const auto local    = discretization_.to_local(displacement(y), u_local_);
-    const auto &element = discretization_.element();
+    const auto local    = discretization.to_local(displacement(y), u_local_);
+    const auto &element = discretization.element;
     double sums[2]      = {0., 0.};
     // Stretches are polynomials of degree q - 1 in a cell.
     std::vector<double> highest_mode;
     for (unsigned int p = 0; p < element.n; ++p)
       highest_mode.push_back((2. * element.degree - 1.) * element.weights[p] *
                              std::legendre(element.degree - 1, 2. * element.points[p] - 1.));
-    for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
+    for (unsigned int c = 0; c < discretization.n_local_cells(); ++c)
     {
-      const double h = discretization_.cell_size()[c];
+      const double h = discretization.cell_size[c];
       double mode = 0., strain = 0., smallest = std::numeric_limits<double>::infinity();
       for (unsigned int p = 0; p < element.n; ++p)
       {
-        const double e = sampler_.strain(local, c, h, p + 1);
+        const double e = discretization.slope(local, c, &element.derivatives[p * element.n]);
         mode += highest_mode[p] * e;
         strain += element.weights[p] * e * e;
         smallest = std::min(smallest, 1. + e);
@@ -42,16 +42,16 @@ namespace crawler
       sums[0] += h / (2. * element.degree - 1.) * (mode / smallest) * (mode / smallest);
       sums[1] += h * strain;
     }
-    discretization_.sum_over_ranks(sums);
+    discretization.sum_over_ranks(sums);
     return {sums[0], sums[1]};
   }
 
   std::vector<double>
   PositionForm::error_indicators(const double t, const ConstVector y, const ConstVector v)
   {
-    const auto &element   = discretization_.element();
+    const auto &element   = discretization.element;
     const auto &to_points = element.integrate_points; // [quadrature point][friction point]
-    const unsigned int n = element.n, n_cells = discretization_.n_local_cells();
+    const unsigned int n = element.n, n_cells = discretization.n_local_cells();
     CellInput in = input(t, y, v);
     evaluate_laws(t, y, in);
     for (std::vector<double> *field : {&force_, &friction_})
@@ -63,32 +63,32 @@ namespace crawler
     double own = 0., balance = 0.;
     for (unsigned int c = 0; c < n_cells; ++c)
       for (unsigned int i = 0; i < n; ++i)
-        own += discretization_.cell_size()[c] * weights[i] * friction_[c * n + i];
-    if (discretization_.n_ranks() > 1)
+        own += discretization.cell_size[c] * weights[i] * friction_[c * n + i];
+    if (discretization.n_ranks > 1)
     {
-      MPI_Exscan(&own, &balance, 1, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
-      if (discretization_.rank() == 0)
+      MPI_Exscan(&own, &balance, 1, MPI_DOUBLE, MPI_SUM, discretization.communicator);
+      if (discretization.rank == 0)
         balance = 0.;
     }
 
-    const std::span<const double> local(in.u, discretization_.n_local());
+    const std::span<const double> local(in.u, discretization.n_local());
     std::vector<double> indicators(n_cells, 0.);
     for (unsigned int c = 0; c < n_cells; ++c)
     {
-      const double h    = discretization_.cell_size()[c];
+      const double h    = discretization.cell_size[c];
       const double *g_v = &friction_[c * n];
       for (unsigned int p = 0; p < n; ++p)
       {
         double N = balance;
         for (unsigned int i = 0; i < n; ++i)
           N += h * to_points[p * n + i] * g_v[i];
-        const double e = sampler_.strain(local, c, h, p + 1);
+        const double e = discretization.slope(local, c, &element.derivatives[p * element.n]);
         const double k = in.laws != nullptr ? in.laws->k[c * n + p] : in.k;
         const double d = (N - force_[c * n + p]) / k;
         const double w = std::max(1. + e, smallest_scale);
         // Relative errors of the friction are w g'/g times those of the stretch.
         double g = 0., w_dg = 0.;
-        scene_.friction->values({&w, 1}, {&g, 1}, {&w_dg, 1});
+        scene.friction->values({&w, 1}, {&g, 1}, {&w_dg, 1});
         const double relative = d / w * std::max(1., std::abs(w_dg / g));
         indicators[c] += h * element.weights[p] * relative * relative;
       }

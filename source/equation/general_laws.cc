@@ -9,41 +9,44 @@
 
 namespace crawler
 {
-  SlidingAtPoints::SlidingAtPoints(const Scene &scene, std::vector<double> points)
-    : force(points.size())
-    , by_v(points.size())
-    , by_u(points.size(), 0.)
-    , scene_(scene)
+  FrictionAtPoints::FrictionAtPoints(const Scene &scene, std::vector<double> points)
+    : scene_(scene)
     , points_(std::move(points))
     , b_(profile_at(scene.profiles.friction, points_))
     , x_(points_.size())
     , c_(points_.size(), 1.)
     , slope_(points_.size(), 0.)
   {
+    for (auto *field : {&g, &w_dg, &sliding, &f, &f_u, &f_v, &w_f_w})
+      field->resize(points_.size());
   }
 
   long
-  SlidingAtPoints::evaluate(const std::span<const double> u, const std::span<const double> v)
+  FrictionAtPoints::evaluate(const std::span<const double> u,
+                             const std::span<const double> v,
+                             const std::span<const double> w)
   {
-    const std::size_t n                    = points_.size();
     const Ground &ground                   = scene_.ground;
     const auto [ratio, switching_velocity] = ground.direction;
     equation::DirectionFactor<double> direction{1., 1.};
+    scene_.friction->values(w, g, w_dg);
     if (ground.profile)
     {
-      for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t i = 0; i < x_.size(); ++i)
         x_[i] = points_[i] + u[i];
       ground.profile->values(x_, c_, slope_);
     }
     long bad = -1;
-    for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t i = 0; i < x_.size(); ++i)
     {
       if (ratio != 1.)
         direction = equation::direction_factor(ratio, switching_velocity, v[i], std::tanh(v[i] / switching_velocity));
       const auto here = equation::sliding(b_[i], c_[i], slope_[i], direction, v[i]);
-      force[i]        = here.force;
-      by_v[i]         = here.by_v;
-      by_u[i]         = here.by_u;
+      sliding[i]      = here.force;
+      f[i]            = equation::friction_force(g[i], here.force);
+      f_u[i]          = g[i] * here.by_u;
+      f_v[i]          = g[i] * here.by_v;
+      w_f_w[i]        = w_dg[i] * here.force;
       if (bad < 0 && !(c_[i] > 0. && std::isfinite(c_[i])))
         bad = static_cast<long>(i);
     }
@@ -51,7 +54,7 @@ namespace crawler
   }
 
   BadLaw
-  SlidingAtPoints::describe(const long point, const Units &units) const
+  FrictionAtPoints::describe(const long point, const Units &units) const
   {
     const auto i = static_cast<std::size_t>(point);
     return {fmt::format("the profile of the ground is {} at x = {:.6g}, which the body has reached; a positive number "
@@ -117,9 +120,9 @@ namespace crawler
       for (double &s : others)
         s += feedback->facts.distance;
       if (feedback->facts.sensor_length > 0.)
-        sensors_.emplace(discretization.cells(), discretization.element(), others, feedback->facts.sensor_length);
+        sensors_.emplace(discretization.cells, discretization.element, others, feedback->facts.sensor_length);
       else
-        near_places_.emplace(discretization.cells(), discretization.element(), others);
+        near_places_.emplace(discretization.cells, discretization.element, others);
       near.resize(points.size());
     }
     delay_ = feedback->facts.delay;

@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/equation/crawler_equation.h>
 #include <crawler/equation/general_position_form.h>
 #include <crawler/equation/newton_velocity.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace crawler
 {
   GeneralPositionForm::GeneralPositionForm(const Scene &scene, const Discretization &discretization)
     : PositionForm(scene, discretization)
-    , sliding_(scene, discretization.points(discretization.element().points))
-    , force_(scene, discretization.points(discretization.element().points))
-    , elsewhere_(scene, discretization, discretization.points(discretization.element().points))
+    , friction_laws_(scene, discretization.points(discretization.element.points))
+    , force_(scene, discretization.points(discretization.element.points))
+    , elsewhere_(scene, discretization, discretization.points(discretization.element.points))
   {
-    const std::size_t n = static_cast<std::size_t>(discretization.n_local_cells()) * discretization.element().n;
-    for (auto *field : {&e_, &w_, &u_, &v_, &rate_, &g_, &w_dg_, &f_, &f_u_, &f_v_, &w_f_w_})
+    const std::size_t n = static_cast<std::size_t>(discretization.n_local_cells()) * discretization.element.n;
+    for (auto *field : {&e_, &w_, &u_, &v_, &rate_})
       field->resize(n);
   }
 
@@ -30,28 +28,20 @@ namespace crawler
       if (bad < 0 && !(w_[i] > 0.))
         bad = static_cast<long>(i);
     }
-    elsewhere_.evaluate(t, stretch_coefficients(u), history_);
+    elsewhere_.evaluate(t, stretch_coefficients(u), history);
     if (bad >= 0)
       return bad;
     force_.evaluate(t, e_, {w_, rate_, elsewhere_.near, elsewhere_.delayed}, in.m);
-    scene_.friction->values(w_, g_, w_dg_);
-    bad = sliding_.evaluate(u_, v_);
+    bad = friction_laws_.evaluate(u_, v_, w_);
     if (bad >= 0)
-      describe_bad_law_ = [this, bad](const Units &units) { return sliding_.describe(bad, units); };
+      describe_bad_law_ = [this, bad](const Units &units) { return friction_laws_.describe(bad, units); };
     else
-      bad = look_at_friction(w_, g_);
-    for (std::size_t i = 0; i < g_.size(); ++i)
-    {
-      f_[i]     = equation::friction_force(g_[i], sliding_.force[i]);
-      f_u_[i]   = g_[i] * sliding_.by_u[i];
-      f_v_[i]   = g_[i] * sliding_.by_v[i];
-      w_f_w_[i] = w_dg_[i] * sliding_.force[i];
-    }
+      bad = look_at_friction(w_, friction_laws_.g);
     laws_   = {force_.N.data(),
-               f_.data(),
-             scene_.ground.profile ? f_u_.data() : nullptr,
-               f_v_.data(),
-               w_f_w_.data(),
+               friction_laws_.f.data(),
+             scene.ground.profile ? friction_laws_.f_u.data() : nullptr,
+               friction_laws_.f_v.data(),
+               friction_laws_.w_f_w.data(),
                force_.by_w.data(),
              force_.by_rate.empty() ? nullptr : force_.by_rate.data(),
                force_.k.data(),
@@ -60,27 +50,21 @@ namespace crawler
     return bad;
   }
 
-  GeneralPositionForm::Far
-  GeneralPositionForm::far() const
-  {
-    return {force_.by_near};
-  }
-
   void
-  GeneralPositionForm::add_far(const Far &far, const ConstVector x, const Vector result) const
+  GeneralPositionForm::add_far(const std::vector<double> &by_near, const ConstVector x, const Vector result) const
   {
     if (solves_exactly())
       return;
-    const ReferenceElement &element = discretization_.element();
+    const ReferenceElement &element = discretization.element;
     const unsigned int n = element.n, q = element.degree;
-    std::vector<double> change(far.by_near.size()), local(discretization_.n_local(), 0.), owned(result.size());
+    std::vector<double> change(by_near.size()), local(discretization.n_local(), 0.), owned(result.size());
     elsewhere_.near_strain(stretch_coefficients(x), change);
-    for (std::size_t c = 0; c < discretization_.n_local_cells(); ++c)
+    for (std::size_t c = 0; c < discretization.n_local_cells(); ++c)
       for (unsigned int p = 0; p < n; ++p)
         for (unsigned int i = 0; i < n; ++i)
           local[c * q + i] +=
-            element.weights[p] * far.by_near[c * n + p] * change[c * n + p] * element.derivatives[p * n + i];
-    discretization_.add_to_owned(local, owned);
+            element.weights[p] * by_near[c * n + p] * change[c * n + p] * element.derivatives[p * n + i];
+    discretization.add_to_owned(local, owned);
     for (std::size_t i = 0; i < result.size(); ++i)
       result[i] += owned[i];
   }
@@ -88,31 +72,31 @@ namespace crawler
   bool
   GeneralPositionForm::setup_jacobian(const double t, const ConstVector u, const ConstVector v, const double sigma)
   {
-    const bool ok = PositionForm::setup_jacobian(t, u, v, sigma);
-    jacobian_far_ = far();
+    const bool ok     = PositionForm::setup_jacobian(t, u, v, sigma);
+    jacobian_by_near_ = force_.by_near;
     return ok;
   }
 
   bool
   GeneralPositionForm::solves_exactly() const
   {
-    return !scene_.feels_elsewhere();
+    return !scene.feels_elsewhere();
   }
 
   void
   GeneralPositionForm::jacobian_vmult(const ConstVector x, const Vector y)
   {
     PositionForm::jacobian_vmult(x, y);
-    add_far(jacobian_far_, x, y);
+    add_far(jacobian_by_near_, x, y);
   }
 
   void
   GeneralPositionForm::setup_stage(const unsigned int stage, const double t, const ConstVector u, const ConstVector v)
   {
     PositionForm::setup_stage(stage, t, u, v);
-    if (stage_far_.size() <= stage)
-      stage_far_.resize(stage + 1);
-    stage_far_[stage] = far();
+    if (stage_by_near_.size() <= stage)
+      stage_by_near_.resize(stage + 1);
+    stage_by_near_[stage] = force_.by_near;
   }
 
   void
@@ -122,7 +106,7 @@ namespace crawler
                                    const Vector result)
   {
     PositionForm::stage_vmult(stage, x, x_dot, result);
-    add_far(stage_far_[stage], x, result);
+    add_far(stage_by_near_[stage], x, result);
   }
 
   bool
@@ -130,7 +114,7 @@ namespace crawler
   {
     std::fill(v.begin(), v.end(), 0.);
     return newton_velocity(
-      discretization_,
+      discretization,
       v,
       [&](const ConstVector at, const Vector F) { return residual(t, u, at, F); },
       [&](const ConstVector at, const Vector change) { return solve_with_mass(t, u, at, change); });

@@ -86,12 +86,12 @@ namespace crawler
   std::vector<double>
   transferred(const PositionForm &from, const std::span<const double> y, const PositionForm &to)
   {
-    const ReferenceElement &element = to.discretization().element();
+    const ReferenceElement &element = to.discretization.element;
     static std::map<unsigned int, const Matrices> known;
     const Matrices &matrices = known.try_emplace(element.degree, element).first->second;
     const unsigned int n = element.n, q = element.degree;
-    const auto &old_cells = from.discretization().cells(), &new_cells = to.discretization().cells();
-    const std::vector<double> u_old = from.discretization().gather(from.displacement(y));
+    const auto &old_cells = from.discretization.cells, &new_cells = to.discretization.cells;
+    const std::vector<double> u_old = from.discretization.gather(from.displacement(y));
     std::vector<double> u(new_cells.size() * q + 1);
     for (std::size_t c = 0, old = 0; c < new_cells.size();)
     {
@@ -122,10 +122,10 @@ namespace crawler
       }
     }
     const double missing =
-      (integral(u_old, old_cells, element) - integral(u, new_cells, element)) / to.discretization().length();
+      (integral(u_old, old_cells, element) - integral(u, new_cells, element)) / to.discretization.length;
     for (double &value : u)
       value += missing;
-    const auto owned = to.discretization().owned_part(u);
+    const auto owned = to.discretization.owned_part(u);
     return {owned.begin(), owned.end()};
   }
 } // namespace crawler

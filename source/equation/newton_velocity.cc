@@ -21,8 +21,8 @@ namespace crawler
       double result = 0.;
       for (const double value : x)
         result = std::isfinite(value) ? std::max(result, std::abs(value)) : HUGE_VAL;
-      if (discretization.n_ranks() > 1)
-        MPI_Allreduce(MPI_IN_PLACE, &result, 1, MPI_DOUBLE, MPI_MAX, discretization.communicator());
+      if (discretization.n_ranks > 1)
+        MPI_Allreduce(MPI_IN_PLACE, &result, 1, MPI_DOUBLE, MPI_MAX, discretization.communicator);
       return result;
     }
   } // namespace

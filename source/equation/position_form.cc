@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/communication.h>
 #include <crawler/base/parabola.h>
 #include <crawler/equation/position_form.h>
 
@@ -14,61 +15,39 @@ namespace crawler
     StretchAt
     reduce_minimum(const StretchAt own, const double sign, const Discretization &discretization)
     {
-      const unsigned int size = discretization.n_ranks();
+      const unsigned int size = discretization.n_ranks;
       if (size == 1)
         return own;
       const double sent[2] = {own.value, own.s};
       std::vector<double> all(2 * size);
-      MPI_Allgather(sent, 2, MPI_DOUBLE, all.data(), 2, MPI_DOUBLE, discretization.communicator());
+      MPI_Allgather(sent, 2, MPI_DOUBLE, all.data(), 2, MPI_DOUBLE, discretization.communicator);
       StretchAt best{all[0], all[1]};
       for (unsigned int r = 1; r < size; ++r)
         if (sign * all[2 * r] < sign * best.value || (std::isnan(all[2 * r]) && !std::isnan(best.value)))
           best = {all[2 * r], all[2 * r + 1]};
       return best;
     }
-
-    /// Places in a cell where the stretch is sampled: its ends and the quadrature points, from left to right.
-    std::vector<double>
-    sampled_places(const ReferenceElement &element)
-    {
-      std::vector<double> places = {0.};
-      places.insert(places.end(), element.points.begin(), element.points.end());
-      places.push_back(1.);
-      return places;
-    }
-
-    /// Sampler at these places, made once for each degree.
-    const StretchSampler &
-    stretch_sampler(const ReferenceElement &element)
-    {
-      static std::map<unsigned int, const StretchSampler> samplers;
-      const auto known = samplers.find(element.degree);
-      return known != samplers.end()
-               ? known->second
-               : samplers.try_emplace(element.degree, element, sampled_places(element)).first->second;
-    }
   } // namespace
 
   PositionForm::PositionForm(const Scene &scene, const Discretization &discretization)
     : Assembler(scene, discretization)
-    , kernels_(cell_kernels(discretization.element().degree))
+    , kernels_(cell_kernels(discretization.element.degree))
     , jacobian_(discretization)
-    , stress_(scene.active_stress->at(discretization.points(discretization.element().points)))
+    , stress_(scene.active_stress->at(discretization.points(discretization.element.points)))
     , stresses_(1)
-    , sampler_(stretch_sampler(discretization.element()))
   {
   }
 
   CellInput
   PositionForm::input(const double t, const ConstVector u, const ConstVector v)
   {
-    return {discretization_.n_local_cells(),
-            discretization_.cell_size().data(),
-            &discretization_.element(),
-            scene_.friction.get(),
-            scene_.body.elastic_modulus,
-            discretization_.to_local(u, u_local_).data(),
-            v.data() == nullptr ? nullptr : discretization_.to_local(v, v_local_).data(),
+    return {discretization.n_local_cells(),
+            discretization.cell_size.data(),
+            &discretization.element,
+            scene.friction.get(),
+            scene.body.elastic_modulus,
+            discretization.to_local(u, u_local_).data(),
+            v.data() == nullptr ? nullptr : discretization.to_local(v, v_local_).data(),
             stress_at(t).data()};
   }
 
@@ -81,7 +60,7 @@ namespace crawler
     {
       found          = stresses_.begin() + oldest_stress_;
       oldest_stress_ = (oldest_stress_ + 1) % stresses_.size();
-      found->m.resize(static_cast<std::size_t>(discretization_.n_local_cells()) * discretization_.element().n);
+      found->m.resize(static_cast<std::size_t>(discretization.n_local_cells()) * discretization.element.n);
       stress_->values(t, found->m);
       found->time = t;
     }
@@ -105,13 +84,14 @@ namespace crawler
   StretchRange
   PositionForm::stretch_range(const ConstVector y)
   {
-    const auto local          = discretization_.to_local(displacement(y), u_local_);
-    const unsigned n          = discretization_.element().n;
+    const auto local          = discretization.to_local(displacement(y), u_local_);
+    const auto &element       = discretization.element;
+    const unsigned int n      = element.n;
     constexpr double infinity = std::numeric_limits<double>::infinity();
 
-    const auto place      = [&](const unsigned int i) { return sampler_.places()[i]; };
+    const auto place      = [&](const unsigned int i) { return element.sample_places[i]; };
     const auto stretch_at = [&](const unsigned int c, const unsigned int i) {
-      return sampler_.stretch(local, c, discretization_.cell_size()[c], i);
+      return 1. + discretization.slope(local, c, &element.sample_derivatives[i * n]);
     };
 
     struct Found
@@ -120,7 +100,7 @@ namespace crawler
       unsigned int cell, i;
     };
     Found smallest{infinity, 0, 0}, largest{-infinity, 0, 0};
-    for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
+    for (unsigned int c = 0; c < discretization.n_local_cells(); ++c)
       for (unsigned int i = 0; i < n + 2; ++i)
       {
         const double w = stretch_at(c, i);
@@ -133,7 +113,7 @@ namespace crawler
     // Parabola through the neighbours: inside a cell it comes closer to the extreme than the sample.
     const auto sharpened = [&](const Found &found) {
       double x = place(found.i), w = found.w;
-      if (discretization_.n_local_cells() == 0)
+      if (discretization.n_local_cells() == 0)
         return StretchAt{w, 0.};
       if (found.i > 0 && found.i <= n && std::isfinite(w))
       {
@@ -149,28 +129,28 @@ namespace crawler
           w = vertex_w;
         }
       }
-      return StretchAt{w, discretization_.cell_left()[found.cell] + discretization_.cell_size()[found.cell] * x};
+      return StretchAt{w, discretization.cell_left[found.cell] + discretization.cell_size[found.cell] * x};
     };
-    return {reduce_minimum(sharpened(smallest), 1., discretization_),
-            reduce_minimum(sharpened(largest), -1., discretization_)};
+    return {reduce_minimum(sharpened(smallest), 1., discretization),
+            reduce_minimum(sharpened(largest), -1., discretization)};
   }
 
   void
   PositionForm::set_initial_state(const Vector y)
   {
     std::fill(y.begin(), y.end(), 0.);
-    const auto &initial = scene_.profiles.initial_stretch;
+    const auto &initial = scene.profiles.initial_stretch;
     if (!initial)
       return;
     // Displacement u: the integral of w - 1, from node to node by a Gauss formula, minus its mean.
-    const auto &element  = discretization_.element();
+    const auto &element  = discretization.element;
     const auto &formula  = reference_element(ReferenceElement::highest_degree);
     const unsigned int n = element.n;
-    std::vector<double> u(discretization_.n_unknowns(), 0.), places(formula.n), w(formula.n);
+    std::vector<double> u(discretization.n_unknowns(), 0.), places(formula.n), w(formula.n);
     double mean = 0.;
-    for (std::size_t c = 0; c < discretization_.n_cells(); ++c)
+    for (std::size_t c = 0; c < discretization.n_cells(); ++c)
     {
-      const Cell &cell = discretization_.cells()[c];
+      const Cell &cell = discretization.cells[c];
       for (unsigned int i = 0; i < n; ++i)
       {
         double &here = u[c * element.degree + i];
@@ -188,9 +168,9 @@ namespace crawler
         mean += cell.size * element.node_weights[i] * here;
       }
     }
-    const auto owned = discretization_.owned_part(u);
+    const auto owned = discretization.owned_part(u);
     for (std::size_t i = 0; i < owned.size(); ++i)
-      y[i] = owned[i] - mean / discretization_.length();
+      y[i] = owned[i] - mean / discretization.length;
   }
 
   long
@@ -203,48 +183,40 @@ namespace crawler
   PositionForm::residual(const double t, const ConstVector u, const ConstVector v, const Vector F)
   {
     CellInput in   = input(t, u, v);
-    const bool one = discretization_.n_active_ranks() == 1;
+    const bool one = discretization.n_active_ranks == 1;
     double *data   = F.data();
     if (one)
       std::fill(F.begin(), F.end(), 0.);
     else
     {
-      F_local_.assign(discretization_.n_local(), 0.);
+      F_local_.assign(discretization.n_local(), 0.);
       data = F_local_.data();
     }
     long bad = evaluate_laws(t, u, in);
     if (bad < 0)
       bad = kernels_.residual(in, data);
     if (!one)
-      discretization_.add_to_owned(F_local_, F);
-
-    int any = bad >= 0;
-    if (discretization_.n_ranks() > 1)
-      MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, discretization_.communicator());
-    return any == 0;
+      discretization.add_to_owned(F_local_, F);
+    return !is_true_anywhere(bad >= 0, discretization.communicator);
   }
 
   void
-  PositionForm::jacobian(
-    const double t, const ConstVector u, const ConstVector v, const double sigma, BlockTridiagonalMatrix<double> &A)
+  PositionForm::jacobian(const double t,
+                         const ConstVector u,
+                         const ConstVector v,
+                         const double by_u,
+                         const double by_v,
+                         BlockTridiagonalMatrix<double> &A)
   {
     CellInput in = input(t, u, v);
     evaluate_laws(t, u, in);
-    kernels_.blocks(in, 1., sigma, A.blocks().data());
-  }
-
-  void
-  PositionForm::mass(const double t, const ConstVector u, const ConstVector v, BlockTridiagonalMatrix<double> &M)
-  {
-    CellInput in = input(t, u, v);
-    evaluate_laws(t, u, in);
-    kernels_.blocks(in, 0., 1., M.blocks().data());
+    kernels_.blocks(in, by_u, by_v, A.blocks.data());
   }
 
   bool
   PositionForm::setup_jacobian(const double t, const ConstVector u, const ConstVector v, const double sigma)
   {
-    jacobian(t, u, v, sigma, jacobian_);
+    jacobian(t, u, v, 1., sigma, jacobian_);
     return jacobian_.factorize();
   }
 
@@ -271,9 +243,9 @@ namespace crawler
     for (std::size_t i = 0; i < sigma.size(); ++i)
     {
       if (complex_jacobians_.size() <= i)
-        complex_jacobians_.emplace_back(discretization_);
-      const auto &by_u = stages_[0].by_u.blocks(), &by_v = stages_[0].by_v.blocks();
-      auto &blocks = complex_jacobians_[i].blocks();
+        complex_jacobians_.emplace_back(discretization);
+      const auto &by_u = stages_[0].by_u.blocks, &by_v = stages_[0].by_v.blocks;
+      auto &blocks = complex_jacobians_[i].blocks;
       for (std::size_t j = 0; j < blocks.size(); ++j)
         blocks[j] = by_u[j] + sigma[i] * by_v[j];
       ok = complex_jacobians_[i].factorize() && ok;
@@ -294,9 +266,9 @@ namespace crawler
   {
     while (stages_.size() <= stage)
       stages_.push_back(
-        {BlockTridiagonalMatrix<double>(discretization_), BlockTridiagonalMatrix<double>(discretization_)});
-    jacobian(t, u, v, 0., stages_[stage].by_u);
-    mass(t, u, v, stages_[stage].by_v);
+        {BlockTridiagonalMatrix<double>(discretization), BlockTridiagonalMatrix<double>(discretization)});
+    jacobian(t, u, v, 1., 0., stages_[stage].by_u);
+    jacobian(t, u, v, 0., 1., stages_[stage].by_v);
   }
 
   void
@@ -323,8 +295,8 @@ namespace crawler
   PositionForm::solve_with_mass(const double t, const ConstVector u, const ConstVector v, const Vector x)
   {
     if (!mass_)
-      mass_ = std::make_unique<BlockTridiagonalMatrix<double>>(discretization_);
-    mass(t, u, v, *mass_);
+      mass_ = std::make_unique<BlockTridiagonalMatrix<double>>(discretization);
+    jacobian(t, u, v, 0., 1., *mass_);
     if (!mass_->factorize())
       return false;
     mass_->solve(x, x);
@@ -339,7 +311,7 @@ namespace crawler
     evaluate_laws(t, u, in);
     kernels_.integrals(in, sum);
     static_assert(sizeof(sum) % sizeof(double) == 0);
-    discretization_.sum_over_ranks({reinterpret_cast<double *>(&sum), sizeof(sum) / sizeof(double)});
+    discretization.sum_over_ranks({reinterpret_cast<double *>(&sum), sizeof(sum) / sizeof(double)});
     return sum;
   }
 } // namespace crawler

@@ -47,6 +47,7 @@ namespace crawler
 
   StretchLaws::StretchLaws(const Scene &scene, const std::vector<double> &middles)
     : friction(middles.size())
+    , force(scene, middles)
     , scene_(scene)
     , profile_(profile_at(scene.profiles.friction, middles))
     , w_(middles.size())
@@ -54,7 +55,6 @@ namespace crawler
     , strain_(middles.size())
     , mobility_(middles.size())
     , mobility_slope_(middles.size())
-    , force_(scene, middles)
   {
   }
 
@@ -88,7 +88,7 @@ namespace crawler
   {
     for (std::size_t j = 0; j < w.size(); ++j)
       strain_[j] = w[j] - 1.;
-    force_.evaluate(t, strain_, {w, rate, {}, {}}, known_m);
+    force.evaluate(t, strain_, {w, rate, {}, {}}, known_m);
   }
 
   CellLaws<double>
@@ -96,9 +96,9 @@ namespace crawler
   {
     return {mobility_.data(),
             mobility_slope_.data(),
-            force_.N.data(),
-            force_.by_w.data(),
-            force_.by_rate.empty() ? nullptr : force_.by_rate.data()};
+            force.N.data(),
+            force.by_w.data(),
+            force.by_rate.empty() ? nullptr : force.by_rate.data()};
   }
 
   StretchForm::StretchForm(const Scene &scene, const Discretization &discretization, const bool other)
@@ -109,7 +109,7 @@ namespace crawler
     , laws_(scene, discretization.points({0.5}))
     , nodes_{method_.node_rule,
              static_cast<int>(discretization.n_cells()),
-             discretization.cell_size().data(),
+             discretization.cell_size.data(),
              scene.ground.direction}
     , w_(discretization.n_cells())
     , u_(discretization.n_unknowns())
@@ -137,7 +137,7 @@ namespace crawler
     for (std::size_t j = 0; j < w.size(); ++j)
     {
       const double own = method_.is_power ? w[j] : y[j]; // the length of a cell may be negative within the tolerance
-      u_[j + 1]        = u_[j] + discretization_.cell_size()[j] * (own - 1.);
+      u_[j + 1]        = u_[j] + discretization.cell_size[j] * (own - 1.);
     }
     return u_;
   }
@@ -146,7 +146,7 @@ namespace crawler
   StretchForm::stretch_slopes(const ConstVector y) const
   {
     const auto w        = stretch(y);
-    const auto &h       = discretization_.cell_size();
+    const auto &h       = discretization.cell_size;
     const std::size_t n = w.size();
     std::vector<double> slopes(n, 0.);
     if (n == 1)
@@ -166,7 +166,7 @@ namespace crawler
   StretchForm::find_rate(const ConstVector v) const
   {
     for (std::size_t j = 0; j < rate_.size(); ++j)
-      rate_[j] = (v[j + 1] - v[j]) / discretization_.cell_size()[j];
+      rate_[j] = (v[j + 1] - v[j]) / discretization.cell_size[j];
   }
 
   long
@@ -193,7 +193,7 @@ namespace crawler
   {
     const auto w        = stretch(y);
     const std::size_t n = w.size();
-    const auto &left = discretization_.cell_left(), &size = discretization_.cell_size();
+    const auto &left = discretization.cell_left, &size = discretization.cell_size;
     const auto middle = [&](const std::size_t j) { return left[j] + 0.5 * size[j]; };
     if (n == 1)
       return {{w[0], middle(0)}, {w[0], middle(0)}};
@@ -214,7 +214,7 @@ namespace crawler
       {
         const std::size_t next = j == 0 ? 1 : n - 2, end = j == 0 ? 0 : n - 1;
         const double value = w[end] + (w[end] - w[next]) * 0.5 * size[end] / std::abs(middle(next) - middle(end));
-        return is_credible(value, w[end]) ? StretchAt{value, j == 0 ? 0. : discretization_.length()}
+        return is_credible(value, w[end]) ? StretchAt{value, j == 0 ? 0. : discretization.length}
                                           : StretchAt{w[j], middle(j)};
       }
       const auto [s, value] = parabola_vertex(middle(j - 1), w[j - 1], middle(j), w[j], middle(j + 1), w[j + 1]);
@@ -229,12 +229,12 @@ namespace crawler
   {
     const std::size_t n = w_.size();
     std::vector<double> w(n, 1.);
-    if (scene_.profiles.initial_stretch)
+    if (scene.profiles.initial_stretch)
     {
       const auto &formula = reference_element(ReferenceElement::highest_degree);
-      const auto places   = discretization_.points(formula.points);
+      const auto places   = discretization.points(formula.points);
       std::vector<double> values(places.size());
-      scene_.profiles.initial_stretch->values(places, values);
+      scene.profiles.initial_stretch->values(places, values);
       for (std::size_t j = 0; j < n; ++j)
       {
         w[j] = 0.;
@@ -248,8 +248,8 @@ namespace crawler
     const auto u = displacement(y);
     double mean  = 0.;
     for (std::size_t j = 0; j < n; ++j)
-      mean += 0.5 * discretization_.cell_size()[j] * (u[j] + u[j + 1]);
-    y[n] = -mean / discretization_.length();
+      mean += 0.5 * discretization.cell_size[j] * (u[j] + u[j + 1]);
+    y[n] = -mean / discretization.length;
   }
 
   bool
@@ -268,7 +268,7 @@ namespace crawler
       return true;
     };
     std::fill(v.begin(), v.end(), 0.);
-    const StretchFeedback *feedback = scene_.active_stress->feedback();
+    const StretchFeedback *feedback = scene.active_stress->feedback();
     if (feedback == nullptr || !feedback->facts.uses_rate) // the residual of rest is minus the velocity
     {
       if (!residual(v, v))
@@ -277,7 +277,7 @@ namespace crawler
         value = 0. - value;
       return std::ranges::all_of(v, [](const double value) { return std::isfinite(value); });
     }
-    BlockTridiagonalMatrix<double> matrix(discretization_);
+    BlockTridiagonalMatrix<double> matrix(discretization);
     const auto solve = [&](const ConstVector at, const Vector F) {
       evaluate(t, w, at);
       auto left = nodes_.with_derivatives(0);
@@ -285,7 +285,7 @@ namespace crawler
       {
         const auto right     = nodes_.with_derivatives(j + 1);
         const double by_left = left.by_right_rate / nodes_.h[j], by_right = right.by_left_rate / nodes_.h[j];
-        double *const block = matrix.blocks().data() + 4 * j;
+        double *const block = matrix.blocks.data() + 4 * j;
         block[0]            = 1. + by_left;
         block[1]            = -by_left;
         block[2]            = by_right;
@@ -297,7 +297,7 @@ namespace crawler
       matrix.solve(F, F);
       return true;
     };
-    return newton_velocity(discretization_, v, residual, solve);
+    return newton_velocity(discretization, v, residual, solve);
   }
 
   CellIntegrals
@@ -307,8 +307,8 @@ namespace crawler
     const auto w = ConstVector(w_);
     find_rate(v);
     laws_.evaluate_force(t, w, rate_);
-    const auto &h                  = discretization_.cell_size();
-    const BodyForceAtPoints &force = laws_.force();
+    const auto &h                  = discretization.cell_size;
+    const BodyForceAtPoints &force = laws_.force;
     CellIntegrals sum;
     for (std::size_t j = 0; j < w.size(); ++j)
     {
@@ -334,19 +334,19 @@ namespace crawler
   std::pair<double, double>
   StretchForm::lost_places(const double t, const ConstVector y, const double reach)
   {
-    std::vector<double> v(discretization_.n_unknowns());
+    std::vector<double> v(discretization.n_unknowns());
     if (!velocity(t, y, v))
       return {0., 0.};
     const auto w  = stretch(y);
-    const auto &h = discretization_.cell_size();
-    std::pair<double, double> places{discretization_.length(), 0.};
+    const auto &h = discretization.cell_size;
+    std::pair<double, double> places{discretization.length, 0.};
     for (std::size_t j = 0; j < w.size(); ++j)
     {
       // Power w^(1+a) goes linearly to 0.
       const double rate = power_ * (v[j + 1] - v[j]) / h[j];
       if (w[j] <= 0. || (rate < 0. && w[j] <= -rate * reach))
       {
-        const double s = discretization_.cell_left()[j] + 0.5 * h[j];
+        const double s = discretization.cell_left[j] + 0.5 * h[j];
         places         = {std::min(places.first, s), std::max(places.second, s)};
       }
     }

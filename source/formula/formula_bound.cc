@@ -28,7 +28,7 @@ namespace crawler
         {
           arguments_.push_back(values_[argument]);
           arguments_.back().number      = argument;
-          arguments_.back().jumps_known = leaves_out_jumps_ || formula_->dependence_[argument].on_s;
+          arguments_.back().jumps_known = leaves_out_jumps || formula_->dependence_[argument].on_s;
         }
         Enclosure &result = values_[operation.result];
         result            = operation.rules.bound(arguments_);

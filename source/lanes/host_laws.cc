@@ -17,21 +17,26 @@ namespace crawler
   } // namespace
 
   HostLaws::HostLaws(const Scene &scene, const std::vector<double> &points)
-    : scene_(scene)
+    : k(profile_at(scene.profiles.elastic_modulus, points))
+    , b(profile_at(scene.profiles.friction, points))
+    , scene_(scene)
     , points_(points)
-    , k_(profile_at(scene.profiles.elastic_modulus, points))
-    , b_(profile_at(scene.profiles.friction, points))
     , x_(points.size())
     , feedback_(scene.active_stress->feedback() != nullptr ? scene.active_stress->feedback()->at(points) : nullptr)
   {
   }
 
-  void
-  HostLaws::set(LaneJob &job) const
+  LaneBody
+  lane_body(const Scene &scene, const HostLaws *const laws)
   {
-    job.k_profile        = k_.data();
-    job.friction_profile = b_.data();
-    job.direction        = scene_.ground.direction;
+    LaneBody body{.k = scene.body.elastic_modulus, .a = scene.body.friction_exponent()};
+    if (laws != nullptr)
+    {
+      body.k_profile        = laws->k.data();
+      body.friction_profile = laws->b.data();
+      body.direction        = scene.ground.direction;
+    }
+    return body;
   }
 
   bool

@@ -91,7 +91,7 @@ namespace crawler
     for (std::size_t c = 0; c < setup.n_cells; ++c)
       for (std::size_t p = 0; p < n; ++p)
         for (std::size_t i = 0; i < n; ++i)
-          gradient[c * setup.degree + i] += setup.sizes[c] * setup.weights[p] * setup.values[p * n + i];
+          gradient[c * setup.degree + i] += setup.sizes[c] * setup.element.weights[p] * setup.element.values[p * n + i];
     return gradient;
   }
 
@@ -101,13 +101,11 @@ namespace crawler
                      const Seer &see,
                      const Source &source)
   {
-    see_    = &see;
-    source_ = &source;
-    LaneJob job{.k = scene_.body.elastic_modulus, .a = scene_.body.friction_exponent()};
-    if (laws_)
-      laws_->set(job);
+    see_                = &see;
+    source_             = &source;
+    const LaneBody body = lane_body(scene_, laws_ ? &*laws_ : nullptr);
     const LanePast past = record.past(gradient.data(), static_cast<bool>(source));
-    return single_engine().adjoint(tables_->setup, *this, job, past, memory_.data());
+    return single_engine().adjoint(tables_->setup, *this, body, past, memory_.data());
   }
 
   void

@@ -2,12 +2,10 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/lanes/lane_stepper.h>
 #include <crawler/time/radau_loops.h>
-#include <crawler/time/radau_tableau.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 namespace crawler
 {
@@ -31,21 +29,21 @@ namespace crawler
     : scene_(scene)
     , tables_(lane_tables(method))
     , setup_(tables_->setup)
-    , tableau_(radau_tableau(method.n_stages))
     , stress_(scene.active_stress->at(tables_->points))
   {
     if (method.is_stretch)
     {
       setup_.stretch   = stretch_method(scene, method.other_rule);
       setup_.direction = scene.ground.direction;
+      // Errors of the stretch are, on a stiff body, k times as large in the forces.
+      setup_.method.newton_fraction *= std::min(1., 10. / scene.body.elastic_modulus);
       if (!scene.is_plain())
         cell_laws_.emplace(scene, tables_->points);
     }
     else if (!scene.is_plain())
       laws_.emplace(scene, tables_->points);
     memory_.resize(single_engine().memory(setup_));
-    for (unsigned int i = 0; i < tableau_.n; ++i)
-      stage_places_.push_back(tableau_.c[i]);
+    stage_places_.assign(setup_.method.c, setup_.method.c + setup_.n_stages);
   }
 
   void
@@ -53,32 +51,26 @@ namespace crawler
   {
     course_ = course;
     y_.assign(y.begin(), y.end());
-    if (goes_on_ && (old_z_.size() != tableau_.n * y_.size() || progress_.output_time >= course_.ends.size()))
+    if (goes_on_ && (old_z_.size() != setup_.n_stages * y_.size() || progress_.output_time >= course_.ends.size()))
       throw FileError("a saved state does not match the program: its last step is from another run");
-    job_ = {.k         = scene_.body.elastic_modulus,
-            .a         = scene_.body.friction_exponent(),
-            .tolerance = course_.tolerance,
-            // Errors of the stretch are, on a stiff body, k times as large in the forces.
-            .newton_factor = setup_.is_stretch ? std::min(1., 10. / scene_.body.elastic_modulus) : 1.,
-            .initial_step  = course_.initial_step,
-            .limits        = course_.limits.data(),
-            .n_limits      = static_cast<unsigned int>(course_.limits.size()),
-            .max_steps     = std::numeric_limits<unsigned int>::max(), // the caller of the next step decides
-            // Empty cells are admitted where friction then holds them.
-            .least_stretch  = setup_.is_stretch && scene_.friction_exponent() < 0. ? -HUGE_VAL : 0.,
-            .is_last_resort = setup_.is_stretch,
-            .start_time     = course_.start,
-            .start          = y_.data(),
-            .output_times   = course_.ends.data(),
-            .n_output_times = static_cast<unsigned int>(course_.ends.size()),
-            .restarts       = nullptr, // each piece has a course of its own
-            .progress       = goes_on_ ? &progress_ : nullptr,
-            .old_z          = goes_on_ ? old_z_.data() : nullptr};
-    if (laws_)
-      laws_->set(job_);
+    job_ = LaneJob{.body         = lane_body(scene_, laws_ ? &*laws_ : nullptr),
+                   .tolerance    = course_.tolerance,
+                   .initial_step = course_.initial_step,
+                   .limits       = course_.limits.data(),
+                   .n_limits     = static_cast<unsigned int>(course_.limits.size()),
+                   .max_steps    = std::numeric_limits<unsigned int>::max(), // the caller of the next step decides
+                   // Empty cells are admitted where friction then holds them.
+                   .least_stretch  = setup_.is_stretch && scene_.friction_exponent() < 0. ? -HUGE_VAL : 0.,
+                   .start_time     = course_.start,
+                   .start          = y_.data(),
+                   .output_times   = course_.ends.data(),
+                   .n_output_times = static_cast<unsigned int>(course_.ends.size()),
+                   .restarts       = nullptr, // each piece has a course of its own
+                   .progress       = goes_on_ ? &progress_ : nullptr,
+                   .old_z          = goes_on_ ? old_z_.data() : nullptr};
     if (!goes_on_)
       progress_ = {.t = course_.start, .next = course_.initial_step};
-    started_ = goes_on_ = false;
+    goes_on_ = false;
     bad_friction_.reset();
     lane_step_ = {};
     end_.reset();
@@ -88,10 +80,10 @@ namespace crawler
   const Step *
   LaneStepper::next()
   {
-    has_step_ = false;
-    while (!has_step_ && !end_)
+    step_.reset();
+    while (!step_ && !end_)
       single_engine().advance(setup_, memory_.data());
-    return has_step_ ? &step_ : nullptr;
+    return step_ ? &*step_ : nullptr;
   }
 
   TimeOutcome
@@ -103,8 +95,11 @@ namespace crawler
   bool
   LaneStepper::take(unsigned int, LaneJob &job)
   {
-    job = job_;
-    return !std::exchange(started_, true);
+    if (!job_)
+      return false;
+    job = *job_;
+    job_.reset();
+    return true;
   }
 
   void
@@ -138,8 +133,7 @@ namespace crawler
   {
     lane_step_ = step;
     progress_  = *step.progress;
-    step_      = {step.time, step.size, progress_.steps, step.is_output_time, progress_.rejected, progress_.newton};
-    has_step_  = true;
+    step_      = Step{step.time, step.size, progress_.steps, step.is_output_time, progress_.rejected, progress_.newton};
     std::copy_n(step.y, y_.size(), y_.begin());
     if (stage_rates)
       show_rates();
@@ -158,7 +152,7 @@ namespace crawler
   LaneStepper::exchange(Archive &archive)
   {
     if (!archive.reads())
-      old_z_.assign(lane_step_.z, lane_step_.z + tableau_.n * y_.size());
+      old_z_.assign(lane_step_.z, lane_step_.z + setup_.n_stages * y_.size());
     archive(progress_, old_z_);
     goes_on_ = archive.reads();
     return true;
@@ -167,17 +161,12 @@ namespace crawler
   void
   LaneStepper::show_rates()
   {
-    rate_.resize(y_.size());
-    for (unsigned int i = 0; i < tableau_.n; ++i)
+    std::vector<double> rate(y_.size());
+    const int s = static_cast<int>(setup_.n_stages), n = static_cast<int>(rate.size());
+    for (int i = 0; i < s; ++i)
     {
-      radau::stage_rate(static_cast<int>(tableau_.n),
-                        tableau_.inverse.data(),
-                        static_cast<int>(i),
-                        1. / lane_step_.size,
-                        lane_step_.z,
-                        static_cast<int>(rate_.size()),
-                        rate_.data());
-      stage_rates(lane_step_.time - (1. - tableau_.c[i]) * lane_step_.size, rate_);
+      radau::stage_rate(s, setup_.method.inverse, i, 1. / lane_step_.size, lane_step_.z, n, rate.data());
+      stage_rates(lane_step_.time - (1. - setup_.method.c[i]) * lane_step_.size, rate);
     }
   }
 

@@ -4,21 +4,15 @@
 #include <crawler/time/radau_tableau.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 namespace crawler
 {
   LaneTables::LaneTables(const LaneMethod &method)
     : method_(method)
-    , element_(method.degree)
-    , sample_places_(method.is_stretch ? std::vector<double>{0.5} : element_.points)
+    , element_(reference_element(method.degree))
+    , sample_places_(method.is_stretch ? std::vector<double>{0.5} : element_.sample_places)
   {
-    if (!method.is_stretch)
-    {
-      sample_places_.insert(sample_places_.begin(), 0.);
-      sample_places_.push_back(1.);
-    }
     samples_                    = interpolation_matrix(element_.nodes, sample_places_, /*derivative=*/true);
     const RadauTableau &tableau = radau_tableau(method.n_stages);
     const bool uniform          = method.cell_ends.empty();
@@ -32,21 +26,18 @@ namespace crawler
                         method.n_cells,
                         method.n_stages,
                         sizes_.data(),
-                        element_.values.data(),
-                        element_.derivatives.data(),
-                        element_.weights.data(),
-                        element_.stiffness.data(),
+                        element_.tables(),
                         static_cast<unsigned int>(sample_places_.size()),
                         samples_.data(),
-                        tableau.c.data(),
-                        tableau.b.data(),
-                        tableau.inverse.data(),
-                        tableau.error_weights.data(),
-                        tableau.newton_fraction,
-                        tableau.real_eigenvalue,
-                        parts(tableau.eigenvalues),
-                        parts(tableau.vectors),
-                        parts(tableau.rows)};
+                        {tableau.c.data(),
+                         tableau.b.data(),
+                         tableau.inverse.data(),
+                         tableau.error_weights.data(),
+                         tableau.newton_fraction,
+                         tableau.real_eigenvalue,
+                         parts(tableau.eigenvalues),
+                         parts(tableau.vectors),
+                         parts(tableau.rows)}};
     setup.is_stretch = method.is_stretch;
     setup.laws       = method.laws;
   }
@@ -71,7 +62,7 @@ namespace crawler
   {
     const int s                       = static_cast<int>(setup.n_stages);
     double weights[radau::max_stages] = {};
-    radau::collocation_weights(s, setup.c, 1. - (step.time - time) / step.size, weights);
+    radau::collocation_weights(s, setup.method.c, 1. - (step.time - time) / step.size, weights);
     weights[s - 1] -= 1.; // weights are for the state relative to y at the end
     const std::size_t n = y.size();
     for (std::size_t d = 0; d < n; ++d)

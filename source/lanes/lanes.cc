@@ -51,11 +51,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     bool
-    adjoint(const LaneSetup &setup, LaneAdjointHost &host, const LaneJob &job, const LanePast &past, double *memory)
+    adjoint(const LaneSetup &setup, LaneAdjointHost &host, const LaneBody &body, const LanePast &past, double *memory)
     {
-      return setup.n_stages == 3   ? AdjointSweep<3>(setup, &host, memory).run(job, past)
-             : setup.n_stages == 5 ? AdjointSweep<5>(setup, &host, memory).run(job, past)
-                                   : AdjointSweep<7>(setup, &host, memory).run(job, past);
+      return setup.n_stages == 3   ? AdjointSweep<3>(setup, &host, memory).run(body, past)
+             : setup.n_stages == 5 ? AdjointSweep<5>(setup, &host, memory).run(body, past)
+                                   : AdjointSweep<7>(setup, &host, memory).run(body, past);
     }
 
 #define CRAWLER_TEXT(name) CRAWLER_TEXT_OF(name)

@@ -3,7 +3,6 @@
 #include <crawler/mesh/block_tridiagonal_matrix.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace crawler
 {
@@ -18,13 +17,13 @@ namespace crawler
   BlockTridiagonalMatrix<Number>::BlockTridiagonalMatrix(const Discretization &discretization)
     : discretization_(&discretization)
   {
-    const std::size_t n_cells = discretization.n_local_cells(), n = discretization.element().n;
-    blocks_.resize(n_cells * n * n);
+    const std::size_t n_cells = discretization.n_local_cells(), n = discretization.element.n;
+    blocks.resize(n_cells * n * n);
     schur_.resize(n_cells * 4);
     for (auto *array : {&inverse_, &row_zero_, &column_zero_, &next_, &below_})
       array->resize(n_cells + 1);
-    reduced_.resize(4 * discretization.n_active_ranks());
-    reduced_rhs_.resize(discretization.n_active_ranks() + 1);
+    reduced_.resize(4 * discretization.n_active_ranks);
+    reduced_rhs_.resize(discretization.n_active_ranks + 1);
   }
 
   template <>
@@ -34,8 +33,8 @@ namespace crawler
     const auto &d    = *discretization_;
     const auto local = d.to_local(x, x_local_);
     local_.assign(d.n_local(), 0.);
-    block_tridiagonal_kernels<double>(d.element().degree)
-      .multiply(d.n_local_cells(), blocks_.data(), local.data(), local_.data());
+    block_tridiagonal_kernels<double>(d.element.degree)
+      .multiply(d.n_local_cells(), blocks.data(), local.data(), local_.data());
     d.add_to_owned(local_, y);
   }
 
@@ -45,8 +44,8 @@ namespace crawler
   {
     const auto &d        = *discretization_;
     const unsigned int n = d.n_local_cells();
-    factors_             = blocks_;
-    bool ok = block_tridiagonal_kernels<Number>(d.element().degree).condense(n, factors_.data(), schur_.data());
+    factors_             = blocks;
+    bool ok = block_tridiagonal_kernels<Number>(d.element.degree).condense(n, factors_.data(), schur_.data());
 
     Number own[4] = {1., 0., 0., 1.};
     if (n > 0)
@@ -76,17 +75,17 @@ namespace crawler
       own[2] = column;
       own[3] = diagonal;
     }
-    const unsigned int ranks = d.n_active_ranks();
-    if (d.n_ranks() == 1)
+    const unsigned int ranks = d.n_active_ranks;
+    if (d.n_ranks == 1)
     {
       std::copy(own, own + 4, reduced_.begin());
       return ok && is_finite(own[0]) && is_finite(own[3]);
     }
     // Ranks without cells send numbers that are not read.
     Number sent[5] = {own[0], own[1], own[2], own[3], ok ? Number(1.) : Number(0.)};
-    std::vector<Number> all(5 * d.n_ranks());
+    std::vector<Number> all(5 * d.n_ranks);
     MPI_Allgather(
-      sent, 5 * doubles_in<Number>, MPI_DOUBLE, all.data(), 5 * doubles_in<Number>, MPI_DOUBLE, d.communicator());
+      sent, 5 * doubles_in<Number>, MPI_DOUBLE, all.data(), 5 * doubles_in<Number>, MPI_DOUBLE, d.communicator);
     for (unsigned int r = 0; r < ranks; ++r)
     {
       std::copy(&all[5 * r], &all[5 * r] + 4, reduced_.begin() + 4 * r);
@@ -102,7 +101,7 @@ namespace crawler
   BlockTridiagonalMatrix<Number>::solve_shared(const Number first, const Number last) const
   {
     const auto &d            = *discretization_;
-    const unsigned int ranks = d.n_active_ranks();
+    const unsigned int ranks = d.n_active_ranks;
     if (ranks == 1)
     {
       const Number *S = reduced_.data();
@@ -112,9 +111,9 @@ namespace crawler
       return {(first - S[1] * x_last) / S[0], x_last};
     }
     const Number sent[2] = {first, last};
-    std::vector<Number> all(2 * d.n_ranks()), diagonal(ranks + 1, 0.);
+    std::vector<Number> all(2 * d.n_ranks), diagonal(ranks + 1, 0.);
     MPI_Allgather(
-      sent, 2 * doubles_in<Number>, MPI_DOUBLE, all.data(), 2 * doubles_in<Number>, MPI_DOUBLE, d.communicator());
+      sent, 2 * doubles_in<Number>, MPI_DOUBLE, all.data(), 2 * doubles_in<Number>, MPI_DOUBLE, d.communicator);
     std::fill(reduced_rhs_.begin(), reduced_rhs_.end(), 0.);
     for (unsigned int r = 0; r < ranks; ++r)
     {
@@ -134,7 +133,7 @@ namespace crawler
       reduced_rhs_[r] = (reduced_rhs_[r] - reduced_[4 * r + 1] * reduced_rhs_[r + 1]) / diagonal[r];
     if (d.n_local_cells() == 0)
       return {0., 0.};
-    return {reduced_rhs_[d.rank()], reduced_rhs_[d.rank() + 1]};
+    return {reduced_rhs_[d.rank], reduced_rhs_[d.rank + 1]};
   }
 
   template <typename Number>
@@ -142,8 +141,8 @@ namespace crawler
   BlockTridiagonalMatrix<Number>::solve(const std::span<const Number> b, const std::span<Number> x) const
   {
     const auto &d        = *discretization_;
-    const auto &kernels  = block_tridiagonal_kernels<Number>(d.element().degree);
-    const unsigned int n = d.n_local_cells(), q = d.element().degree, ranks = d.n_active_ranks();
+    const auto &kernels  = block_tridiagonal_kernels<Number>(d.element.degree);
+    const unsigned int n = d.n_local_cells(), q = d.element.degree, ranks = d.n_active_ranks;
     const bool shared_first = d.has_left_neighbour();
 
     // Work on the local array; the right-hand side of a shared node stays with its owner.

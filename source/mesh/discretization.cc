@@ -52,32 +52,29 @@ namespace crawler
                                  const double length,
                                  const unsigned int degree,
                                  std::shared_ptr<Mesh> mesh)
-    : communicator_(communicator)
-    , length_(length)
-    , element_(reference_element(degree))
-    , rank_(rank_of(communicator))
-    , n_ranks_(size_of(communicator))
+    : communicator(communicator)
+    , length(length)
+    , element(reference_element(degree))
+    , rank(rank_of(communicator))
+    , n_ranks(size_of(communicator))
+    , cells(mesh->cells())
+    , n_active_ranks(std::min(n_cells(), n_ranks))
+    , first_cell(first_cell_of(rank, n_cells(), n_ranks))
+    , cell_left(of_own_cells(&Cell::left))
+    , cell_size(of_own_cells(&Cell::size))
     , mesh_(std::move(mesh))
   {
-    set_cells(mesh_->cells());
   }
 
   Discretization::~Discretization() = default;
 
-  void
-  Discretization::set_cells(std::vector<Cell> cells)
+  std::vector<double>
+  Discretization::of_own_cells(double Cell::*const part) const
   {
-    cells_          = std::move(cells);
-    n_active_ranks_ = std::min(n_cells(), n_ranks_);
-    for (unsigned int c = 0; c < n_cells(); ++c)
-    {
-      if (owner(c, n_cells(), n_ranks_) != rank_)
-        continue;
-      if (cell_left_.empty())
-        first_cell_ = c;
-      cell_left_.push_back(cells_[c].left);
-      cell_size_.push_back(cells_[c].size);
-    }
+    std::vector<double> own;
+    for (unsigned int c = first_cell; c < first_cell_of(rank + 1, n_cells(), n_ranks); ++c)
+      own.push_back(cells[c].*part);
+    return own;
   }
 
   std::unique_ptr<Discretization>
@@ -87,10 +84,10 @@ namespace crawler
     if (!mesh_->triangulation)
     {
       std::vector<double> ends;
-      for (const Cell &cell : cells_)
+      for (const Cell &cell : cells)
         ends.push_back(cell.left);
-      ends.push_back(length_);
-      mesh_->triangulation = create_triangulation(communicator_, ends);
+      ends.push_back(length);
+      mesh_->triangulation = create_triangulation(communicator, ends);
     }
     if (mesh_->triangulation->n_cells() != n)
       throw std::logic_error("only the latest of a sequence of meshes can be adapted");
@@ -99,7 +96,7 @@ namespace crawler
     for (unsigned int c = 0; c < n; ++c)
       if (changes[c] == CellChange::join)
       {
-        const bool is_pair = cells_[c].is_left_half && c + 1 < n && cells_[c + 1].level == cells_[c].level &&
+        const bool is_pair = cells[c].is_left_half && c + 1 < n && cells[c + 1].level == cells[c].level &&
                              changes[c + 1] == CellChange::join;
         if (is_pair)
           ++c;
@@ -108,12 +105,12 @@ namespace crawler
       }
     // Neighbours differ by one level at most.
     const auto level = [&](const unsigned int c) {
-      return static_cast<int>(cells_[c].level) + static_cast<int>(changes[c]);
+      return static_cast<int>(cells[c].level) + static_cast<int>(changes[c]);
     };
     const auto keep = [&](const unsigned int c) {
       // The other half is kept too: it cannot be joined alone.
-      changes[c]                                      = CellChange::keep;
-      changes[cells_[c].is_left_half ? c + 1 : c - 1] = CellChange::keep;
+      changes[c]                                     = CellChange::keep;
+      changes[cells[c].is_left_half ? c + 1 : c - 1] = CellChange::keep;
     };
     for (bool changed = true; changed;)
     {
@@ -131,17 +128,17 @@ namespace crawler
         }
     }
     mesh_->triangulation->change(changes);
-    return std::unique_ptr<Discretization>(new Discretization(communicator_, length_, element_.degree, mesh_));
+    return std::unique_ptr<Discretization>(new Discretization(communicator, length, element.degree, mesh_));
   }
 
   std::vector<double>
   Discretization::points(const std::vector<double> &places) const
   {
     std::vector<double> points;
-    points.reserve(cell_left_.size() * places.size());
-    for (std::size_t c = 0; c < cell_left_.size(); ++c)
+    points.reserve(cell_left.size() * places.size());
+    for (std::size_t c = 0; c < cell_left.size(); ++c)
       for (const double x : places)
-        points.push_back(cell_left_[c] + x * cell_size_[c]);
+        points.push_back(cell_left[c] + x * cell_size[c]);
     return points;
   }
 
@@ -150,42 +147,42 @@ namespace crawler
   {
     std::vector<double> points;
     for (const auto &[cell, x] : places)
-      points.push_back(cell_left_[cell] + x * cell_size_[cell]);
+      points.push_back(cell_left[cell] + x * cell_size[cell]);
     return points;
   }
 
   void
   Discretization::sum_over_ranks(const std::span<double> values) const
   {
-    if (n_ranks_ > 1)
-      MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, communicator_);
+    if (n_ranks > 1)
+      MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, communicator);
   }
 
   std::vector<double>
   Discretization::gather(const std::span<const double> own) const
   {
-    if (n_ranks_ == 1)
+    if (n_ranks == 1)
       return {own.begin(), own.end()};
     const int n = static_cast<int>(own.size());
-    std::vector<int> counts(n_ranks_), offsets(n_ranks_, 0);
-    MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, communicator_);
+    std::vector<int> counts(n_ranks), offsets(n_ranks, 0);
+    MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, communicator);
     for (unsigned int r = 1; r < counts.size(); ++r)
       offsets[r] = offsets[r - 1] + counts[r - 1];
     std::vector<double> all(static_cast<std::size_t>(offsets.back()) + static_cast<std::size_t>(counts.back()));
-    MPI_Allgatherv(own.data(), n, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE, communicator_);
+    MPI_Allgatherv(own.data(), n, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE, communicator);
     return all;
   }
 
   std::span<const double>
   Discretization::to_local(const std::span<const double> owned, std::vector<double> &buffer) const
   {
-    if (n_active_ranks_ == 1 || n_local() == 0)
+    if (n_active_ranks == 1 || n_local() == 0)
       return owned;
     double from_left = 0.;
-    const int left   = has_left_neighbour() ? static_cast<int>(rank_) - 1 : MPI_PROC_NULL;
-    const int right  = has_right_neighbour() ? static_cast<int>(rank_) + 1 : MPI_PROC_NULL;
+    const int left   = has_left_neighbour() ? static_cast<int>(rank) - 1 : MPI_PROC_NULL;
+    const int right  = has_right_neighbour() ? static_cast<int>(rank) + 1 : MPI_PROC_NULL;
     MPI_Sendrecv(
-      &owned.back(), 1, MPI_DOUBLE, right, 0, &from_left, 1, MPI_DOUBLE, left, 0, communicator_, MPI_STATUS_IGNORE);
+      &owned.back(), 1, MPI_DOUBLE, right, 0, &from_left, 1, MPI_DOUBLE, left, 0, communicator, MPI_STATUS_IGNORE);
     if (!has_left_neighbour())
       return owned;
     buffer.resize(n_local());
@@ -202,13 +199,13 @@ namespace crawler
     const bool skip_first = has_left_neighbour();
     if (owned.data() != local.data())
       std::copy(local.begin() + (skip_first ? 1 : 0), local.end(), owned.begin());
-    if (n_active_ranks_ == 1)
+    if (n_active_ranks == 1)
       return;
     double from_right = 0.;
-    const int left    = has_left_neighbour() ? static_cast<int>(rank_) - 1 : MPI_PROC_NULL;
-    const int right   = has_right_neighbour() ? static_cast<int>(rank_) + 1 : MPI_PROC_NULL;
+    const int left    = has_left_neighbour() ? static_cast<int>(rank) - 1 : MPI_PROC_NULL;
+    const int right   = has_right_neighbour() ? static_cast<int>(rank) + 1 : MPI_PROC_NULL;
     MPI_Sendrecv(
-      local.data(), 1, MPI_DOUBLE, left, 1, &from_right, 1, MPI_DOUBLE, right, 1, communicator_, MPI_STATUS_IGNORE);
+      local.data(), 1, MPI_DOUBLE, left, 1, &from_right, 1, MPI_DOUBLE, right, 1, communicator, MPI_STATUS_IGNORE);
     owned.back() += from_right;
   }
 
@@ -217,8 +214,8 @@ namespace crawler
   {
     std::vector<CellPlace> places;
     for (const double s : points)
-      if (const auto [cell, x] = place_in(cells_, s); cell >= first_cell_ && cell < first_cell_ + n_local_cells())
-        places.push_back({cell - first_cell_, x});
+      if (const auto [cell, x] = place_in(cells, s); cell >= first_cell && cell < first_cell + n_local_cells())
+        places.push_back({cell - first_cell, x});
     return places;
   }
 } // namespace crawler

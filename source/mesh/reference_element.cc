@@ -77,6 +77,9 @@ namespace crawler
 
     stretch_derivatives = interpolation_matrix(nodes, stretch_points, /*derivative=*/true);
     integrate_points    = integration_matrix(points, points);
+    sample_places       = {0., 1.};
+    sample_places.insert(sample_places.begin() + 1, points.begin(), points.end());
+    sample_derivatives = interpolation_matrix(nodes, sample_places, /*derivative=*/true);
   }
 
   const ReferenceElement &

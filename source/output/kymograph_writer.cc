@@ -23,7 +23,7 @@ namespace crawler
     , sampler_([points = this->points](const Discretization &mesh) {
       std::vector<double> s = points;
       for (double &point : s)
-        point *= mesh.length();
+        point *= mesh.length;
       return mesh.own_places(s);
     })
   {
@@ -49,7 +49,7 @@ namespace crawler
     Fields all; // empty except on rank 0
     for (const FieldName &field : field_names)
       if (field.in_kymograph)
-        all.*field.values = gather(own.*field.values, snapshot.assembler.discretization().communicator());
+        all.*field.values = gather(own.*field.values, snapshot.assembler.discretization.communicator);
     add(snapshot.step.time, all);
   }
 

@@ -9,7 +9,7 @@ namespace crawler
     std::vector<CellPlace>
     line_points(const Discretization &discretization)
     {
-      const unsigned int q = discretization.element().degree;
+      const unsigned int q = discretization.element.degree;
       std::vector<CellPlace> points;
       for (unsigned int c = 0; c < discretization.n_local_cells(); ++c)
         for (unsigned int i = 0; i <= q; ++i)
@@ -39,11 +39,11 @@ namespace crawler
   {
     if (!snapshot.pictures.is_snapshot)
       return;
-    const Discretization &d = snapshot.assembler.discretization();
-    communicator_           = d.communicator();
+    const Discretization &d = snapshot.assembler.discretization;
+    communicator_           = d.communicator;
     const Fields &own       = sampler_.sample(snapshot);
     Frame frame{
-      snapshot.step.time, snapshot.step.number, d.element().n, gather(sampler_.coordinates(), communicator_), {}};
+      snapshot.step.time, snapshot.step.number, d.element.n, gather(sampler_.coordinates(), communicator_), {}};
     for (const FieldName &field : field_names)
       frame.fields.*field.values = gather(own.*field.values, communicator_);
     on_first_rank(communicator_, [&]() { write(frame); });

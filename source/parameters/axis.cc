@@ -29,13 +29,10 @@ namespace crawler
     [[noreturn]] void
     refuse_call(const std::string &found, const std::string &function, const std::string &name)
     {
-      throw InputError(
-        fmt::format(
-          "\"{}\": found \"{}\", but \"{}(first, last, count)\" with three numbers, and nothing else, is expected",
-          name,
-          found,
-          function),
-        name);
+      refuse_entry(name,
+                   "found \"{}\", but \"{}(first, last, count)\" with three numbers, and nothing else, is expected",
+                   found,
+                   function);
     }
 
     /// The values of linspace(...) or logspace(...); @p text is the whole text behind the colon.
@@ -51,19 +48,18 @@ namespace crawler
         refuse_call(text, function, name);
       const double count = numbers[2];
       if (count != std::round(count) || count < 1 || count > max_values)
-        throw InputError(fmt::format("\"{}\": the count of {} is \"{}\", but a whole number from 1 to {:g} is expected",
-                                     name,
-                                     function,
-                                     arguments[2],
-                                     max_values),
-                         name);
+        refuse_entry(name,
+                     "the count of {} is \"{}\", but a whole number from 1 to {:g} is expected",
+                     function,
+                     arguments[2],
+                     max_values);
       std::vector<std::string> values;
       for (double i = 0; i < count; ++i)
       {
         const double x = count == 1 ? numbers[0] : numbers[0] + (numbers[1] - numbers[0]) * i / (count - 1);
         const double y = function == "logspace" ? std::pow(10., x) : x;
         if (!std::isfinite(y) || (function == "logspace" && y == 0.))
-          throw InputError(fmt::format("\"{}\": 10^{:g} is beyond the range of a double", name, x), name);
+          refuse_entry(name, "10^{:g} is beyond the range of a double", x);
         values.push_back(clean_text(y));
       }
       return values;
@@ -95,18 +91,14 @@ namespace crawler
     listed(const std::string &text, const std::string &name, const std::vector<std::string> &functions)
     {
       if (std::count(text.begin(), text.end(), '"') % 2 != 0)
-        throw InputError(fmt::format("\"{}\": found {}, but a second double quote is expected", name, text), name);
+        refuse_entry(name, "found {}, but a second double quote is expected", text);
       auto values = split_parts(text, ',');
       for (std::size_t i = 0; i < values.size(); ++i)
       {
         std::string &value = values[i];
         if (value.empty())
-          throw InputError(
-            fmt::format("\"{}\": value {} of the list \"{}\" is empty; values separated by single commas are expected",
-                        name,
-                        i + 1,
-                        text),
-            name);
+          refuse_entry(
+            name, "value {} of the list \"{}\" is empty; values separated by single commas are expected", i + 1, text);
         const std::string bare = without_quotes(value);
         if (bare == value)
         {
@@ -115,16 +107,13 @@ namespace crawler
           {
             if (std::find(own_functions.begin(), own_functions.end(), word) != own_functions.end())
               refuse_call(value, word, name);
-            throw InputError(
-              fmt::format("\"{}\": found \"{}\", but \"{}(...)\" and nothing else is expected", name, value, word),
-              name);
+            refuse_entry(name, "found \"{}\", but \"{}(...)\" and nothing else is expected", value, word);
           }
           if (!are_parentheses_balanced(value))
-            throw InputError(fmt::format("\"{}\": found \"{}\", but as many closing as opening parentheses are "
-                                         "expected; a value with a single one must be in double quotes",
-                                         name,
-                                         value),
-                             name);
+            refuse_entry(name,
+                         "found \"{}\", but as many closing as opening parentheses are "
+                         "expected; a value with a single one must be in double quotes",
+                         value);
         }
         value = bare;
       }
@@ -188,13 +177,12 @@ namespace crawler
     else
     {
       const auto near = nearest_names(call->function, functions, 1);
-      throw InputError(fmt::format("\"{}\": unknown function \"{}\", but {} is expected{}; a formula that is the only "
-                                   "value must be in double quotes",
-                                   name,
-                                   call->function,
-                                   quoted_list(functions),
-                                   near.empty() ? "" : ", the nearest is " + quoted_list(near)),
-                       name);
+      refuse_entry(name,
+                   "unknown function \"{}\", but {} is expected{}; a formula that is the only "
+                   "value must be in double quotes",
+                   call->function,
+                   quoted_list(functions),
+                   near.empty() ? "" : ", the nearest is " + quoted_list(near));
     }
     if (distinct)
       require_distinct(values, name);
@@ -209,9 +197,7 @@ namespace crawler
     {
       const auto number = to_number(value);
       if (!seen.insert(number ? to_text(*number) : value).second)
-        throw InputError(
-          fmt::format("\"{}\": the value {} occurs twice{}, but different ones are expected", name, value, where),
-          name);
+        refuse_entry(name, "the value {} occurs twice{}, but different ones are expected", value, where);
     }
   }
 
@@ -229,7 +215,7 @@ namespace crawler
     }
     catch (const InputError &error)
     {
-      throw InputError(fmt::format("\"{}\": {}", name, error.what()), name);
+      refuse_entry(name, "{}", error.what());
     }
   }
 } // namespace crawler

@@ -317,10 +317,12 @@ namespace crawler
     {
       const auto number = to_number(trimmed(value));
       if (!number)
-        throw InputError(
-          fmt::format(
-            "\"{}[{}]\" is \"{}\", but a number is expected{}", entry.path, *key, value, number_hint(trimmed(value))),
-          entry.path);
+        refuse(entry.path,
+               "\"{}[{}]\" is \"{}\", but a number is expected{}",
+               entry.path,
+               *key,
+               value,
+               number_hint(trimmed(value)));
       set(entry.path, with_listed_number(entry, values_[index], *key, *number));
       return;
     }
@@ -331,13 +333,13 @@ namespace crawler
       return;
     }
     const bool is_number = entry.expected.find("number") != std::string::npos;
-    throw InputError(fmt::format("\"{}\" is \"{}\", but {} is expected{}{}",
-                                 entry.path,
-                                 value,
-                                 entry.expected,
-                                 is_number ? number_hint(trimmed(value)) : "",
-                                 value.empty() ? "" : nearest_hint(value, entry.values.words)),
-                     entry.path);
+    refuse(entry.path,
+           "\"{}\" is \"{}\", but {} is expected{}{}",
+           entry.path,
+           value,
+           entry.expected,
+           is_number ? number_hint(trimmed(value)) : "",
+           value.empty() ? "" : nearest_hint(value, entry.values.words));
   }
 
   std::string
@@ -350,7 +352,7 @@ namespace crawler
     if (!entry.names_file || text.empty() || !text.ends_with(entry.file_ending))
       return text;
     if (const std::string sign = home_sign(text); !sign.empty())
-      throw InputError(fmt::format("\"{}\": {}", entry.path, sign), entry.path);
+      refuse_entry(entry.path, "{}", sign);
     const auto absolute = [&](const std::string &name) {
       return std::filesystem::absolute(folder / name).lexically_normal().string();
     };
@@ -401,20 +403,20 @@ namespace crawler
         elsewhere.push_back(e.path);
     }
     if (std::find(sections_.begin(), sections_.end(), full) != sections_.end())
-      throw InputError(fmt::format("\"{}\" is a section; the name of an entry in it is expected", full), full);
+      refuse(full, "\"{}\" is a section; the name of an entry in it is expected", full);
     std::vector<std::string> near = nearest_names(words.back(), same_section);
     if (near.empty())
       near.assign(elsewhere.begin(), elsewhere.begin() + std::min<std::size_t>(3, elsewhere.size()));
     const bool is_of_top =
       std::any_of(elsewhere.begin(), elsewhere.end(), [&](const std::string &path) { return path == words.back(); });
-    throw InputError(fmt::format("unknown entry \"{}\" {}; {}",
-                                 words.back(),
-                                 section.empty() ? top : "in section \"" + section + "\"",
-                                 is_of_top          ? "it is expected " + top
-                                 : near.empty()     ? "entries there are " + quoted_list(same_section)
-                                 : near.size() == 1 ? "the nearest name is " + quoted_list(near)
-                                                    : "the nearest names are " + quoted_list(near)),
-                     full);
+    refuse(full,
+           "unknown entry \"{}\" {}; {}",
+           words.back(),
+           section.empty() ? top : "in section \"" + section + "\"",
+           is_of_top          ? "it is expected " + top
+           : near.empty()     ? "entries there are " + quoted_list(same_section)
+           : near.size() == 1 ? "the nearest name is " + quoted_list(near)
+                              : "the nearest names are " + quoted_list(near));
   }
 
   void
@@ -423,20 +425,20 @@ namespace crawler
     if (std::find(sections_.begin(), sections_.end(), path) != sections_.end())
       return;
     if (const std::string now = successor_of(path); !now.empty())
-      throw InputError(fmt::format("the section \"{}\" was removed; {} is expected", path, now), path);
+      refuse(path, "the section \"{}\" was removed; {} is expected", path, now);
     const auto near = nearest_names(path, sections_);
     if (near.empty())
     {
       std::vector<std::string> outer;
       std::ranges::copy_if(
         sections_, std::back_inserter(outer), [](const std::string &s) { return s.find('/') == std::string::npos; });
-      throw InputError(fmt::format("unknown section \"{}\"; {} is expected", path, quoted_list(outer)), path);
+      refuse(path, "unknown section \"{}\"; {} is expected", path, quoted_list(outer));
     }
-    throw InputError(fmt::format("unknown section \"{}\"; the nearest {} {}",
-                                 path,
-                                 near.size() > 1 ? "names are" : "name is",
-                                 quoted_list(near)),
-                     path);
+    refuse(path,
+           "unknown section \"{}\"; the nearest {} {}",
+           path,
+           near.size() > 1 ? "names are" : "name is",
+           quoted_list(near));
   }
 
   std::vector<std::string>

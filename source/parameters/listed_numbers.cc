@@ -41,12 +41,6 @@ namespace crawler
       return list;
     }
 
-    [[noreturn]] void
-    refuse(const EntryInfo &entry, const std::string &key, const std::string &reason)
-    {
-      throw InputError(fmt::format("\"{}[{}]\" {}", entry.path, key, reason), entry.path);
-    }
-
     /// Throws InputError that says which keys are admissible.
     [[noreturn]] void
     refuse_key(const EntryInfo &entry,
@@ -54,44 +48,45 @@ namespace crawler
                const std::string &key,
                const std::vector<ListedNumber> &list)
     {
+      const std::string number = fmt::format("\"{}[{}]\"", entry.path, key);
+      std::vector<std::string> names, near;
+      for (const ListedNumber &one : list)
+        names.push_back(one.key);
       switch (entry.values.kind)
       {
         case EntryKind::constants:
-        {
-          std::vector<std::string> names;
-          for (const ListedNumber &one : list)
-            names.push_back(one.key);
-          const auto near = nearest_names(key, names, 1);
-          refuse(
-            entry,
-            key,
-            names.empty()
-              ? fmt::format("names a constant, but \"{}\" has none; {} is expected there", entry.path, entry.expected)
-              : fmt::format("names no constant: {} is expected{}",
-                            quoted_list(names),
-                            near.empty() || names.size() == 1 ? "" : "; the nearest name is " + quoted_list(near)));
-        }
+          near = nearest_names(key, names, 1);
+          if (names.empty())
+            refuse(entry.path,
+                   "{} names a constant, but \"{}\" has none; {} is expected there",
+                   number,
+                   entry.path,
+                   entry.expected);
+          refuse(entry.path,
+                 "{} names no constant: {} is expected{}",
+                 number,
+                 quoted_list(names),
+                 near.empty() || names.size() == 1 ? "" : "; the nearest name is " + quoted_list(near));
         case EntryKind::profile:
-          refuse(entry,
-                 key,
-                 list.empty() ? fmt::format("names a number of a list, but \"{}\" is \"{}\"; numbers at equally spaced "
-                                            "places from tail to head are expected there, like 1, 1, 1, 1",
-                                            entry.path,
-                                            text)
-                              : fmt::format("names no number of the list; \"{}\" has {} of them, so [1] to [{}] are "
-                                            "expected",
-                                            entry.path,
-                                            list.size(),
-                                            list.size()));
+          if (list.empty())
+            refuse(entry.path,
+                   "{} names a number of a list, but \"{}\" is \"{}\"; numbers at equally spaced places from tail to "
+                   "head are expected there, like 1, 1, 1, 1",
+                   number,
+                   entry.path,
+                   text);
+          refuse(entry.path,
+                 "{0} names no number of the list; \"{1}\" has {2} of them, so [1] to [{2}] are expected",
+                 number,
+                 entry.path,
+                 list.size());
         case EntryKind::numbers:
-          throw InputError(
-            fmt::format("\"{}\" should name a number of a list, but a whole number from 1 to {} is expected "
-                        "in the brackets",
-                        entry.path,
-                        longest_list),
-            entry.path);
+          refuse(entry.path,
+                 "\"{}\" should name a number of a list, but a whole number from 1 to {} is expected in the brackets",
+                 entry.path,
+                 longest_list);
         default:
-          refuse(entry, key, fmt::format("names a number of a list, but \"{}\" is {}", entry.path, entry.expected));
+          refuse(entry.path, "{} names a number of a list, but \"{}\" is {}", number, entry.path, entry.expected);
       }
     }
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/parameters/parameter_file.h>
@@ -8,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <sstream>
@@ -110,7 +108,7 @@ namespace crawler
 
     /// Throws InputError for a statement that is not of the parameter files.
     [[noreturn]] void
-    refuse(const std::string &statement, const std::string &place)
+    refuse_statement(const std::string &statement, const std::string &place)
     {
       const std::string sign = foreign_sign(statement);
       throw InputError(!sign.empty() ? fmt::format("{}: {}", place, sign)
@@ -210,7 +208,7 @@ namespace crawler
         include(rest, folder, place, depth);
       }
       else
-        refuse(statement, place);
+        refuse_statement(statement, place);
     }
     if (!open.empty())
       throw InputError(

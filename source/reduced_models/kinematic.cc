@@ -16,14 +16,6 @@ namespace crawler
   {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-    std::vector<double>
-    with_ends(std::vector<double> points)
-    {
-      points.push_back(0.);
-      points.push_back(1.);
-      return points;
-    }
-
     /// Result of the quadrature with some numbers of panels.
     struct Sums
     {
@@ -197,7 +189,7 @@ namespace crawler
                                const std::vector<double> &points)
     : panels_(panels)
     , points_(points)
-    , inside_(with_ends(panels_.points()))
+    , inside_(panels_.points_and_ends())
     , strain_(strain.at(inside_))
     , rate_(strain.rate_at(inside_))
     , strain_at_points_(strain.at(points))
@@ -206,7 +198,6 @@ namespace crawler
     , places_(panels_, points)
     , e_(inside_.size())
     , e_t_(inside_.size())
-    , B_(panels_.points().size())
     , m_(panels_.points().size())
   {
   }
@@ -261,8 +252,9 @@ namespace crawler
     places_.running_integral({e_.data(), n}, fields.displacement);
     places_.running_integral({e_t_.data(), n}, fields.velocity);
     places_.running_integral(motion_.gv, fields.active_stress);
-    panels_.running_integral({e_.data(), n}, B_);
-    const double B_mean = panels_.integral(B_);
+    std::vector<double> B(n);
+    panels_.running_integral({e_.data(), n}, B);
+    const double B_mean = panels_.integral(B);
     for (std::size_t i = 0; i < n_points; ++i)
     {
       fields.displacement[i] += displacement - B_mean;

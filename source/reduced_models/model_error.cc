@@ -2,7 +2,6 @@
 #include <crawler/reduced_models/model_error.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 

@@ -2,7 +2,6 @@
 #include <crawler/reduced_models/strain_functional.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace crawler
 {
@@ -21,15 +20,13 @@ namespace crawler
   };
 
   StrainFunctional::StrainFunctional(const unsigned int n_space_panels, const unsigned int n_time_panels)
-    : space_(0., 1., n_space_panels)
+    : points(GaussPanels(0., 1., n_space_panels).points_and_ends())
+    , times(GaussPanels(0., 1., n_time_panels).points_and_ends())
+    , space_(0., 1., n_space_panels)
     , time_(0., 1., n_time_panels)
     , n_(space_.points().size())
-    , points_(space_.points())
-    , times_(time_.points())
     , time_weights_(time_.weights())
   {
-    points_.insert(points_.end(), {0., 1.});
-    times_.insert(times_.end(), {0., 1.});
     time_weights_.insert(time_weights_.end(), {0., 0.});
   }
 
@@ -37,12 +34,12 @@ namespace crawler
   StrainFunctional::sample(const ActiveStress &strain) const
   {
     StrainSamples samples;
-    samples.resize(points_.size() * times_.size());
-    const auto at = strain.at(points_), rate_at = strain.rate_at(points_);
-    for (std::size_t i = 0; i < times_.size(); ++i)
+    samples.resize(points.size() * times.size());
+    const auto at = strain.at(points), rate_at = strain.rate_at(points);
+    for (std::size_t i = 0; i < times.size(); ++i)
     {
-      at->values(times_[i], {&samples.strain[i * points_.size()], points_.size()});
-      rate_at->values(times_[i], {&samples.rate[i * points_.size()], points_.size()});
+      at->values(times[i], {&samples.strain[i * points.size()], points.size()});
+      rate_at->values(times[i], {&samples.rate[i * points.size()], points.size()});
     }
     return samples;
   }
@@ -53,8 +50,8 @@ namespace crawler
                              const BodyAtPoints &body,
                              State &state) const
   {
-    const double *const e = &samples.strain[time * points_.size()], *const e_t = &samples.rate[time * points_.size()];
-    if (!std::all_of(e, e + points_.size(), [](const double one) { return 1. + one > 0.; }))
+    const double *const e = &samples.strain[time * points.size()], *const e_t = &samples.rate[time * points.size()];
+    if (!std::all_of(e, e + points.size(), [](const double one) { return 1. + one > 0.; }))
       return false;
     state.motion.find(space_, {e, n_}, {e_t, n_}, body, /*with_slopes=*/true);
     space_.running_integral(state.motion.gv, state.m);
@@ -69,11 +66,11 @@ namespace crawler
     const auto &weights = space_.weights();
     State state(n_);
     Values values{};
-    for (std::size_t time = 0; time < times_.size(); ++time)
+    for (std::size_t time = 0; time < times.size(); ++time)
     {
       if (!evaluate(time, samples, body, state))
         return std::nullopt;
-      const double *const e = &samples.strain[time * points_.size()], *const e_t = &samples.rate[time * points_.size()];
+      const double *const e = &samples.strain[time * points.size()], *const e_t = &samples.rate[time * points.size()];
       double dissipation_rate = 0., positive_power = 0., square = 0., elastic_energy = 0.;
       for (std::size_t i = 0; i < n_; ++i)
       {
@@ -86,9 +83,9 @@ namespace crawler
       values[dissipation] += time_weights_[time] * dissipation_rate;
       values[positive_work] += time_weights_[time] * positive_power;
       values[mean_square] += time_weights_[time] * square;
-      if (time + 2 == times_.size()) // the start
+      if (time + 2 == times.size()) // the start
         values[stress_work] -= elastic_energy;
-      if (time + 1 == times_.size())
+      if (time + 1 == times.size())
         values[stress_work] += elastic_energy;
     }
     values[stress_work] += values[dissipation];
@@ -103,15 +100,15 @@ namespace crawler
     State state(n_);
     StrainSamples result;
     result.resize(samples.strain.size());
-    for (std::size_t time = 0; time < times_.size(); ++time)
+    for (std::size_t time = 0; time < times.size(); ++time)
     {
-      const std::size_t first = time * points_.size();
+      const std::size_t first = time * points.size();
       const double *const e = &samples.strain[first], *const e_t = &samples.rate[first];
       double *const by_e = &result.strain[first], *const by_rate = &result.rate[first];
       const double weight = time_weights_[time];
       if (number == stress_work && weight == 0.) // energies at start and end
         for (std::size_t i = 0; i < n_; ++i)
-          by_e[i] = (time + 1 == times_.size() ? 1. : -1.) * k[i] * w[i] * e[i];
+          by_e[i] = (time + 1 == times.size() ? 1. : -1.) * k[i] * w[i] * e[i];
       if (weight == 0.)
         continue;
       if (number == mean_square)

@@ -113,27 +113,22 @@ namespace crawler
         lane.m.resize(points.size());
         lane.end_stress.resize(tableau_.n);
         lane.end_moduli = scene.end_moduli();
-        job             = {.k              = scene.body.elastic_modulus,
-                           .a              = scene.body.friction_exponent(),
-                           .tolerance      = numerics.tolerance,
-                           .newton_factor  = 1.,
-                           .initial_step   = numerics.initial_step,
-                           .limits         = lane.limits.data(),
-                           .n_limits       = static_cast<unsigned int>(lane.limits.size()),
-                           .max_steps      = run.time->max_steps,
-                           .least_stretch  = small_stretch,
-                           .is_last_resort = false,
-                           .start_time     = 0.,
-                           .start          = nullptr,
-                           .output_times   = lane.output_times.data(),
-                           .n_output_times = static_cast<unsigned int>(lane.output_times.size()),
-                           .restarts       = lane.restarts.data()};
-        if (scene.is_plain())
-          return;
-        lane.laws.emplace(scene, tables_->points);
-        lane.laws->set(job);
+        if (!scene.is_plain())
+          lane.laws.emplace(scene, tables_->points);
         if (const StretchFeedback *feedback = scene.active_stress->feedback())
           lane.end_feedback = feedback->at({0., 1.});
+        job = {.body           = lane_body(scene, lane.laws ? &*lane.laws : nullptr),
+               .tolerance      = numerics.tolerance,
+               .initial_step   = numerics.initial_step,
+               .limits         = lane.limits.data(),
+               .n_limits       = static_cast<unsigned int>(lane.limits.size()),
+               .max_steps      = run.time->max_steps,
+               .least_stretch  = small_stretch,
+               .start_time     = 0.,
+               .start          = nullptr,
+               .output_times   = lane.output_times.data(),
+               .n_output_times = static_cast<unsigned int>(lane.output_times.size()),
+               .restarts       = lane.restarts.data()};
       }
 
       bool

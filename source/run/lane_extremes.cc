@@ -85,7 +85,7 @@ namespace crawler
   {
     const LaneSetup &setup = tables.setup;
     const LaneStage &stage = step.stages[i];
-    const double t         = i + 1 < setup.n_stages ? step.time - (1. - setup.c[i]) * step.size : step.time;
+    const double t         = i + 1 < setup.n_stages ? step.time - (1. - setup.method.c[i]) * step.size : step.time;
     const auto sharpened =
       [&](const double value, const unsigned int sample, const bool is_beyond, const double record) {
         Extreme now{value, tables.place_of_sample(sample), t};

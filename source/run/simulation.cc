@@ -120,10 +120,10 @@ namespace crawler
     mesh_.velocity = std::make_unique<StateVelocity>(*mesh_.assembler, mesh_.position, is_adaptive(), n_stages);
     if (past_.delay > 0.)
     {
-      mesh_.assembler->set_history(&past_.history);
-      past_.cells = std::make_shared<const std::vector<Cell>>(mesh_.discretization->cells());
+      mesh_.assembler->history = &past_.history;
+      past_.cells              = std::make_shared<const std::vector<Cell>>(mesh_.discretization->cells);
     }
-    y_.resize(mesh_.assembler->n_owned());
+    y_.resize(mesh_.discretization->n_owned());
     v_.resize(mesh_.discretization->n_owned());
     ++mesh_number_;
     choose_stepper(); // options of PETSc are read now
@@ -175,7 +175,7 @@ namespace crawler
     Recorder recorder(
       physical_scene_, units_, options, numerics_.tolerance, mesh_.discretization->n_unknowns() <= max_unknowns);
     if (mesh_.position != nullptr && !is_adaptive())
-      recorder.set_smallest_cell(std::ranges::min_element(mesh_.discretization->cells(), {}, &Cell::size)->size);
+      recorder.set_smallest_cell(std::ranges::min_element(mesh_.discretization->cells, {}, &Cell::size)->size);
     OutputTimes output_times(pictures, recorder.step_ends(), !integrators_.present->stage_places().empty());
     run_.emplace(
       Run{.options      = options,
@@ -251,9 +251,9 @@ namespace crawler
     result.output_seconds += now() - before;
     if (mesh_.assembler) // not if the next mesh could not be built
       result.mesh = {discretization().n_cells(),
-                     discretization().element().degree,
+                     discretization().element.degree,
                      discretization().n_unknowns(),
-                     discretization().n_ranks() > 1};
+                     discretization().n_ranks > 1};
     result.integrator = time_.integrator;
     result.engine     = !integrators_.lanes                         ? "petsc"
                         : run_->lanes_gave_up || integrators_.petsc ? "fused, petsc"

@@ -60,7 +60,7 @@ namespace crawler
   {
     if (!is_adaptive())
       return;
-    std::vector<Cell> wanted = mesh_.discretization->cells();
+    std::vector<Cell> wanted = mesh_.discretization->cells;
     archive(wanted);
     if (!archive.reads())
       return;
@@ -68,7 +68,7 @@ namespace crawler
     std::vector<CellChange> changes;
     for (bool is_changed = true; is_changed;)
     {
-      const std::vector<Cell> &cells = (next ? *next : *mesh_.discretization).cells();
+      const std::vector<Cell> &cells = (next ? *next : *mesh_.discretization).cells;
       if (cells.size() > wanted.size()) // a damaged state, with endless levels
         break;
       changes.assign(cells.size(), CellChange::keep);
@@ -87,7 +87,7 @@ namespace crawler
         next = (next ? *next : *mesh_.discretization).adapted(changes);
     }
     const auto is_same = [](const Cell &a, const Cell &b) { return a.left == b.left && a.size == b.size; };
-    if (!std::ranges::equal((next ? *next : *mesh_.discretization).cells(), wanted, is_same))
+    if (!std::ranges::equal((next ? *next : *mesh_.discretization).cells, wanted, is_same))
       throw FileError("a saved state does not match the program: its mesh cannot be rebuilt");
     if (next)
       build(std::move(next));

@@ -100,7 +100,7 @@ namespace crawler
   Simulation::locate_inversion(const Step &step)
   {
     const double threshold = lost_stretch();
-    std::vector<double> y(mesh_.assembler->n_owned());
+    std::vector<double> y(mesh_.discretization->n_owned());
     StretchAt smallest = run_->stretch.min;
     const auto above   = [&](const double t) {
       integrators_.present->interpolate(t, y);
@@ -216,7 +216,7 @@ namespace crawler
                     a <= -1. ? "where the body itself stays uninverted (a <= -1)"
                              : "for which only the stretch form is trusted at a < 0",
                     mesh_.discretization->n_cells(),
-                    mesh_.discretization->element().degree,
+                    mesh_.discretization->element.degree,
                     mesh_.position != nullptr ? "Discretization/Formulation = stretch, or " : "")};
     else
     {

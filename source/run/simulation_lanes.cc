@@ -55,7 +55,7 @@ namespace crawler
   {
     const LaneStepper &lanes = *integrators_.lanes;
     const LaneStage &stage   = lanes.lane_step().stages[i];
-    const double place       = lanes.tables().setup.c[i];
+    const double place       = lanes.tables().setup.method.c[i];
     see_stretch_of_lanes(i);
     if (!mesh_.end_power)
       mesh_.end_power = std::make_unique<EndPower>(*mesh_.assembler);

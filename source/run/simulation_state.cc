@@ -219,7 +219,7 @@ namespace crawler
     if (past_.delay == 0. || step.size == 0.)
       return;
     // Start of the step from the last accepted state: the integrator may know it less well than the states inside.
-    StretchHistory::Step record{run_->accepted.time, step.time, past_.cells, &mesh_.discretization->element(), {}};
+    StretchHistory::Step record{run_->accepted.time, step.time, past_.cells, &mesh_.discretization->element, {}};
     for (std::size_t i = 0; i < record.coefficients.size(); ++i)
     {
       const double place     = StretchHistory::places()[i];

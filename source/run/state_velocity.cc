@@ -18,11 +18,11 @@ namespace crawler
     double
     relaxation_time(const Assembler &assembler, const bool is_adaptive)
     {
-      const Discretization &mesh = assembler.discretization();
+      const Discretization &mesh = assembler.discretization;
       double h                   = is_adaptive ? 0. : 1.;
-      for (const Cell &cell : mesh.cells())
+      for (const Cell &cell : mesh.cells)
         h = is_adaptive ? std::max(h, cell.size) : std::min(h, cell.size);
-      return h * h / (assembler.scene().body.elastic_modulus * std::pow(mesh.element().degree, 4.));
+      return h * h / (assembler.scene.body.elastic_modulus * std::pow(mesh.element.degree, 4.));
     }
   } // namespace
 
@@ -46,7 +46,7 @@ namespace crawler
   bool
   StateVelocity::keeps_rates() const
   {
-    const Scene &scene   = assembler_.scene();
+    const Scene &scene   = assembler_.scene;
     const bool amplifies = relaxation_time_ < fast_relaxation || scene.friction_exponent() > 0.;
     return amplifies && position_ != nullptr;
   }
@@ -80,7 +80,7 @@ namespace crawler
     });
     if (!keeps_rates() || known == rates_.end())
       return assembler_.velocity(t, y, v);
-    const bool is_plain = assembler_.scene().is_plain();
+    const bool is_plain = assembler_.scene.is_plain();
     std::vector<double> F(y.size()), correction(y.size());
     // Jacobian M/h + K without a velocity; but friction that is not linear in it has to be that of the rate.
     const std::vector<double> at = is_plain ? std::vector<double>(y.size(), 0.) : known->y_dot;
@@ -98,7 +98,7 @@ namespace crawler
   void
   StateVelocity::remove_rigid_motion(const double t, const ConstVector y, const std::span<double> v)
   {
-    const bool is_linear       = !assembler_.scene().ground.direction.is_uneven();
+    const bool is_linear       = !assembler_.scene.ground.direction.is_uneven();
     const unsigned int n_tries = is_linear ? 1 : 4;
     const std::vector<double> rigid(v.size(), 1.);
     double friction = assembler_.integrals(t, y, v).net_friction;

@@ -31,7 +31,7 @@ namespace crawler::test
         , F(u)
       {
         assembler.residual(0.3, u, v, F);
-        assembler.jacobian(0.3, u, v, 100., matrix);
+        assembler.jacobian(0.3, u, v, 1., 100., matrix);
         matrix.factorize();
       }
       Scene scene;
@@ -159,7 +159,7 @@ namespace crawler::test
       {
         t += 1e-6; // the active stress is evaluated once in a step
         bench.assembler.residual(t, bench.u, bench.v, bench.F);
-        bench.assembler.jacobian(t, bench.u, bench.v, 100., bench.matrix);
+        bench.assembler.jacobian(t, bench.u, bench.v, 1., 100., bench.matrix);
         bench.matrix.factorize();
         bench.matrix.solve(bench.F, bench.F);
       }
@@ -177,7 +177,7 @@ namespace crawler::test
       benchmark::RegisterBenchmark(name, kernel, action)->Arg(12)->Arg(1200)->Unit(benchmark::kMicrosecond);
     };
     add_kernel("kernel/residual", [](Bench &b) { b.assembler.residual(0.3, b.u, b.v, b.F); });
-    add_kernel("kernel/jacobian", [](Bench &b) { b.assembler.jacobian(0.3, b.u, b.v, 100., b.matrix); });
+    add_kernel("kernel/jacobian", [](Bench &b) { b.assembler.jacobian(0.3, b.u, b.v, 1., 100., b.matrix); });
     add_kernel("kernel/elimination", [](Bench &b) { b.matrix.factorize(); });
     add_kernel("kernel/solution", [](Bench &b) { b.matrix.solve(b.F, b.F); });
     add_kernel("kernel/velocity", [](Bench &b) { b.assembler.velocity(0.3, b.u, b.v); });

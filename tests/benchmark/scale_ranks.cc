@@ -109,11 +109,11 @@ namespace
       cpu = std::min(cpu, repetition.cpu);
     }
     std::sort(seconds.begin(), seconds.end());
-    const std::size_t unknowns = bench.assembler->n_unknowns();
+    const std::size_t unknowns = bench.discretization.n_unknowns();
     const double median        = seconds[seconds.size() / 2];
-    if (bench.discretization.rank() == 0)
+    if (bench.discretization.rank == 0)
       fmt::print("| {} | {} | {} | {} | {:.4g} | {:.4g} | {:.4g} | {:.1f} |\n",
-                 bench.discretization.n_ranks(),
+                 bench.discretization.n_ranks,
                  is_complex ? "complex" : "real",
                  n_cells,
                  unknowns,

@@ -19,7 +19,7 @@ namespace
   l2_error(const Snapshot &snapshot)
   {
     const ReferenceElement fine(8);
-    const Discretization &d = snapshot.assembler.discretization();
+    const Discretization &d = snapshot.assembler.discretization;
     std::vector<CellPlace> points;
     for (unsigned int c = 0; c < d.n_local_cells(); ++c)
       for (const double x : fine.points)
@@ -33,7 +33,7 @@ namespace
         const std::size_t i = static_cast<std::size_t>(c) * fine.n + p;
         const double error =
           fields.displacement[i] - test::ExactSolution().u(sampler.coordinates()[i], snapshot.step.time);
-        sum += snapshot.units.length * d.cell_size()[c] * fine.weights[p] * error * error;
+        sum += snapshot.units.length * d.cell_size[c] * fine.weights[p] * error * error;
       }
     return std::sqrt(sum);
   }

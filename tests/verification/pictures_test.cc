@@ -24,7 +24,7 @@ namespace
   Seen
   seen_in(const Snapshot &snapshot)
   {
-    const Discretization &d = snapshot.assembler.discretization();
+    const Discretization &d = snapshot.assembler.discretization;
     std::vector<CellPlace> points;
     for (unsigned int i = 0; i <= 20; ++i)
     {

@@ -297,7 +297,7 @@ TEST(RunGradient, LocalSensitivitiesAddUp)
   double by_k = 0., by_gamma = 0.;
   for (std::size_t p = 0; p < tables.points.size(); ++p)
   {
-    const double ds = tables.setup.sizes[p / 7] * tables.setup.weights[p % 7];
+    const double ds = tables.setup.sizes[p / 7] * tables.setup.element.weights[p % 7];
     by_k += ds * gradient.local.elastic_modulus[p];
     by_gamma += ds * gradient.local.friction[p];
   }

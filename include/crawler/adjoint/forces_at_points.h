@@ -50,7 +50,7 @@ namespace crawler
     double
     friction(const std::size_t point) const
     {
-      return longer_[point] * g_[point] * sliding_->force[point];
+      return longer_[point] * friction_->g[point] * friction_->sliding[point];
     }
     double
     longer(const std::size_t point) const
@@ -70,7 +70,7 @@ namespace crawler
     };
     /// Slopes at all points, for the state that was evaluated last. Of the scene itself only, not of others.
     std::vector<Slopes>
-    slopes();
+    slopes() const;
 
     double
     elastic(const std::size_t point, const double e) const
@@ -87,9 +87,8 @@ namespace crawler
     const BreakMap in_time_;
     std::vector<double> longer_;
     std::optional<BodyForceAtPoints> body_;
-    std::optional<SlidingAtPoints> sliding_;
+    std::optional<FrictionAtPoints> friction_;
     StateAtPoints at_;      ///< the state in this body, at the time of this scene
     std::size_t piece_ = 0; ///< of the active stress there
-    std::vector<double> g_, w_dg_;
   };
 } // namespace crawler

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -13,17 +14,12 @@ namespace crawler
   class Mistakes
   {
   public:
-    /// Notes a row. Returns true for the first mistake: then say() must be called.
-    bool
-    is_first(std::size_t row);
+    /// Notes a row; @p sentence says what is wrong with it.
     void
-    say(const std::string &sentence)
-    {
-      sentence_ = sentence;
-    }
+    note(std::size_t row, const std::function<std::string()> &sentence);
     /// Throws InputError for @p entry if there are any.
     void
-    refuse(const std::string &entry) const;
+    report(const std::string &entry) const;
 
   private:
     std::string sentence_; ///< about the first

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace crawler
 {
@@ -35,6 +38,21 @@ namespace crawler
 
     const std::string entry;
   };
+
+  /// Throws InputError for @p entry, empty if there is none, with this sentence.
+  template <typename... Arguments>
+  [[noreturn]] void
+  refuse(const std::string &entry, fmt::format_string<Arguments...> sentence, Arguments &&...arguments)
+  {
+    throw InputError(fmt::format(sentence, std::forward<Arguments>(arguments)...), entry);
+  }
+  /// Version that begins the sentence with the name of the entry.
+  template <typename... Arguments>
+  [[noreturn]] void
+  refuse_entry(const std::string &entry, fmt::format_string<Arguments...> sentence, Arguments &&...arguments)
+  {
+    throw InputError("\"" + entry + "\": " + fmt::format(sentence, std::forward<Arguments>(arguments)...), entry);
+  }
 
   /// Thrown by all ranks of a collective write if an active stress to be written is not a finite number.
   class NonfiniteStress : public std::runtime_error

@@ -26,6 +26,10 @@ namespace crawler
       return points_;
     }
 
+    /// All points, and then both ends.
+    std::vector<double>
+    points_and_ends() const;
+
     /// The weights of the points.
     const std::vector<double> &
     weights() const

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace crawler
@@ -20,7 +21,11 @@ namespace crawler
       , close_(close)
     {
     }
-    Hdf5Handle(const Hdf5Handle &) = delete;
+    Hdf5Handle(Hdf5Handle &&other) noexcept
+      : id_(std::exchange(other.id_, -1))
+      , close_(other.close_)
+    {
+    }
     ~Hdf5Handle()
     {
       if (id_ >= 0)
@@ -32,7 +37,7 @@ namespace crawler
     }
 
   private:
-    const hid_t id_;
+    hid_t id_;
     herr_t (*const close_)(hid_t);
   };
 

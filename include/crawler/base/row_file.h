@@ -108,9 +108,7 @@ namespace crawler
   private:
     struct Handles;
 
-    explicit RowReader(std::filesystem::path path);
-    void
-    open(std::int64_t access, const std::string &group);
+    RowReader(const std::filesystem::path &path, const std::string &group, std::int64_t access);
 
     const std::filesystem::path path_;
     std::unique_ptr<Handles> handles_;

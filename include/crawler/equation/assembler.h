@@ -3,7 +3,6 @@
 
 #include <crawler/equation/cell_kernels.h>
 #include <crawler/equation/general_laws.h>
-#include <crawler/equation/stretch_sampler.h>
 #include <crawler/mesh/discretization.h>
 #include <crawler/scene/scene.h>
 
@@ -38,7 +37,7 @@ namespace crawler
 
   /**
    * Semi-discrete crawler in one of its formulations: the part that evaluates states, i.e. the meaning of the unknowns
-   * y of a rank. Vectors are the owned values of each rank; all functions are collective.
+   * y of a rank, as many as nodes of the mesh. Vectors are the owned values of each rank; all functions are collective.
    */
   class Assembler
   {
@@ -48,12 +47,6 @@ namespace crawler
 
     virtual ~Assembler()         = default;
     Assembler(const Assembler &) = delete;
-
-    /// Number of unknowns of this rank, and of all ranks.
-    virtual std::size_t
-    n_owned() const = 0;
-    virtual std::size_t
-    n_unknowns() const = 0;
 
     /// Forgets kept values: the active stress is another one from now on, at the same times, too.
     virtual void
@@ -115,7 +108,7 @@ namespace crawler
     bool
     has_known_ends() const
     {
-      return scene_.active_stress->feedback() == nullptr;
+      return scene.active_stress->feedback() == nullptr;
     }
 
     /// Sets the unknowns of the body at t = 0: its initial stretch, with the centre of mass where it is without one.
@@ -126,17 +119,10 @@ namespace crawler
     std::vector<double>
     stretch_coefficients(ConstVector y) const;
 
-    /// Sets the history for a feedback with delay; none: the body was at its initial stretch before. Must outlive this.
-    void
-    set_history(const StretchHistory *history)
-    {
-      history_ = history;
-    }
-    const StretchHistory *
-    history() const
-    {
-      return history_;
-    }
+    const Scene &scene;
+    const Discretization &discretization;
+    /// History for a feedback with delay; none: the body was at its initial stretch before.
+    const StretchHistory *history = nullptr;
 
     /// First law that was not positive, of the last state that was refused for that reason (on each rank its own). @p
     /// units are those of the user.
@@ -151,24 +137,10 @@ namespace crawler
     long
     look_at_friction(std::span<const double> w, std::span<const double> g);
 
-    const Discretization &
-    discretization() const
-    {
-      return discretization_;
-    }
-    const Scene &
-    scene() const
-    {
-      return scene_;
-    }
-
   protected:
     Assembler(const Scene &scene, const Discretization &discretization);
 
-    const Scene &scene_;
-    const Discretization &discretization_;
     std::function<BadLaw(const Units &)> describe_bad_law_;
-    const StretchHistory *history_ = nullptr;
 
   private:
     const std::pair<double, double> end_moduli_;

@@ -4,8 +4,6 @@
 #include <crawler/equation/point_laws.h>
 #include <crawler/mesh/reference_element.h>
 
-#include <vector>
-
 namespace crawler
 {
   class FrictionLaw;

@@ -3,6 +3,7 @@
 
 #include <crawler/base/instruction_set.h>
 #include <crawler/equation/crawler_equation.h>
+#include <crawler/mesh/element_tables.h>
 
 /**
  * Integrals over one cell in the position form, for one body (Number is double) or for several side by side (Number is
@@ -10,15 +11,6 @@
  */
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  /// Tables of a ReferenceElement.
-  struct ElementTables
-  {
-    const double *values;      ///< [n points][n nodes] shape functions
-    const double *derivatives; ///< [n points][n nodes]
-    const double *weights;     ///< [n points]
-    const double *stiffness;   ///< [n nodes][n nodes]
-  };
-
   /// Interpolation to the points: at_points = offset + factor * table nodal.
   template <int n, typename Number, typename Factor>
   inline void

@@ -25,21 +25,21 @@ namespace crawler
     std::string message, entry;
   };
 
-  /// Sliding b(s) c(x) d(v) v at fixed points, and its derivatives.
-  class SlidingAtPoints
+  /// Friction f at fixed points, its factors and its derivatives.
+  class FrictionAtPoints
   {
   public:
     /// @p scene must outlive it.
-    SlidingAtPoints(const Scene &scene, std::vector<double> points);
+    FrictionAtPoints(const Scene &scene, std::vector<double> points);
 
-    /// Evaluates for displacements @p u and velocities @p v at the points. Returns the number of the first point where
-    /// the profile of the ground is not positive, or -1.
+    /// Evaluates for displacements @p u, velocities @p v and stretches @p w at the points. Returns the number of the
+    /// first point where the profile of the ground is not positive, or -1.
     long
-    evaluate(std::span<const double> u, std::span<const double> v);
+    evaluate(std::span<const double> u, std::span<const double> v, std::span<const double> w);
 
-    std::vector<double> force; ///< b c d v [velocity]; times g(w) it is the friction per reference length
-    std::vector<double> by_v;  ///< derivative by v
-    std::vector<double> by_u;  ///< derivative by u
+    std::vector<double> g, w_dg;            ///< friction law, and its derivative by log w
+    std::vector<double> sliding;            ///< b c d v [velocity]
+    std::vector<double> f, f_u, f_v, w_f_w; ///< friction per reference length, its derivatives by u, v and log w
 
     BadLaw
     describe(long point, const Units &units) const;

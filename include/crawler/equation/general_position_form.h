@@ -38,23 +38,18 @@ namespace crawler
     evaluate_laws(double t, ConstVector u, CellInput &in) override;
 
   private:
-    /// Contribution of the stretch at another place to a product with the Jacobian.
-    struct Far
-    {
-      std::vector<double> by_near;
-    };
-    Far
-    far() const;
+    /// Adds the contribution of the stretch at another place to a product with the Jacobian.
     void
-    add_far(const Far &far, ConstVector x, Vector result) const;
+    add_far(const std::vector<double> &by_near, ConstVector x, Vector result) const;
 
-    SlidingAtPoints sliding_;
+    FrictionAtPoints friction_laws_;
     BodyForceAtPoints force_;
     StretchElsewhere elsewhere_;
-    std::vector<double> e_, w_, u_, v_, rate_, g_, w_dg_, f_, f_u_, f_v_, w_f_w_;
+    std::vector<double> e_, w_, u_, v_, rate_; ///< state at the quadrature points
     PointLaws<double> laws_;
-    Far jacobian_far_;
-    std::vector<Far> stage_far_;
+    // Derivatives of the force by the stretch at the other place, at the states of the Jacobian and of the stages.
+    std::vector<double> jacobian_by_near_;
+    std::vector<std::vector<double>> stage_by_near_;
   };
 
   /// Creates the form for a plain or a general scene.

@@ -15,26 +15,15 @@ namespace crawler
     void
     sample(double t, std::span<const double> y, std::span<const double> v);
 
-    /// Force N, m and k of the latest sample.
-    const BodyForceAtPoints &
-    force() const
-    {
-      return force_;
-    }
-    /// Friction per reference length [force/length].
-    const std::vector<double> &
-    friction() const
-    {
-      return friction_;
-    }
+    // Of the latest sample.
+    FrictionAtPoints friction;
+    BodyForceAtPoints force;
 
   private:
     const Assembler &assembler_;
     const std::vector<CellPlace> places_;
     const std::vector<double> values_, derivatives_; ///< [point][node]
-    SlidingAtPoints sliding_;
-    BodyForceAtPoints force_;
     StretchElsewhere elsewhere_;
-    std::vector<double> u_local_, v_local_, u_, v_, e_, w_, rate_, friction_;
+    std::vector<double> u_local_, v_local_, u_, v_, e_, w_, rate_;
   };
 } // namespace crawler

@@ -9,6 +9,7 @@ namespace crawler
   template <typename Number>
   struct PointLaws
   {
-    const Number *N, *f, *f_u, *f_v, *w_f_w, *N_w, *N_rate, *k, *m;
+    Number *N, *f, *f_u, *f_v, *w_f_w, *N_w, *N_rate, *k;
+    const Number *m;
   };
 } // namespace crawler

@@ -29,12 +29,7 @@ namespace crawler
     std::size_t
     n_owned() const override
     {
-      return discretization_.n_owned();
-    }
-    std::size_t
-    n_unknowns() const override
-    {
-      return discretization_.n_unknowns();
+      return discretization.n_owned();
     }
     ConstVector
     displacement(const ConstVector y) const override
@@ -75,9 +70,9 @@ namespace crawler
     CellIntegrals
     integrals(double t, ConstVector u, ConstVector v) override;
 
-    /// Jacobian A = dF/du + sigma dF/dv.
+    /// Jacobian A = by_u dF/du + by_v dF/dv; the mass matrix is dF/dv.
     void
-    jacobian(double t, ConstVector u, ConstVector v, double sigma, BlockTridiagonalMatrix<double> &A);
+    jacobian(double t, ConstVector u, ConstVector v, double by_u, double by_v, BlockTridiagonalMatrix<double> &A);
 
     Resolution
     resolution(ConstVector y);
@@ -108,10 +103,6 @@ namespace crawler
     const CellKernels &kernels_;
 
   private:
-    /// Mass matrix M = dF/dv.
-    void
-    mass(double t, ConstVector u, ConstVector v, BlockTridiagonalMatrix<double> &M);
-
     const std::vector<double> &
     stress_at(double t);
 
@@ -127,7 +118,6 @@ namespace crawler
     std::vector<StressAtTime> stresses_; ///< latest stresses
     std::size_t oldest_stress_ = 0;
     std::vector<double> u_local_, v_local_, F_local_;
-    const StretchSampler &sampler_;        ///< samples at the left end, the quadrature points and the right end
     std::vector<double> force_, friction_; ///< values at the quadrature points
     std::vector<BlockTridiagonalMatrix<Complex>> complex_jacobians_;
     struct Stage

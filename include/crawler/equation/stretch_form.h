@@ -31,11 +31,7 @@ namespace crawler
     evaluate_force(double t, std::span<const double> w, std::span<const double> rate, const double *known_m = nullptr);
 
     std::vector<double> friction; ///< g(w), without the body's profile
-    const BodyForceAtPoints &
-    force() const
-    {
-      return force_;
-    }
+    BodyForceAtPoints force;
     /// Laws for the unknown w; the mobility is 0 where a cell is empty and sticks.
     CellLaws<double>
     at_cells() const;
@@ -43,7 +39,6 @@ namespace crawler
   private:
     const Scene &scene_;
     std::vector<double> profile_, w_, w_dg_, strain_, mobility_, mobility_slope_;
-    BodyForceAtPoints force_;
   };
 
   /**
@@ -57,16 +52,6 @@ namespace crawler
     /// @p other as in stretch_method().
     StretchForm(const Scene &scene, const Discretization &discretization, bool other = false);
 
-    std::size_t
-    n_owned() const override
-    {
-      return discretization_.n_unknowns();
-    }
-    std::size_t
-    n_unknowns() const override
-    {
-      return discretization_.n_unknowns();
-    }
     ConstVector
     displacement(ConstVector y) const override;
     /// Stretches of the cells; that of an empty cell is 0.

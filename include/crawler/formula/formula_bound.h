@@ -16,17 +16,12 @@ namespace crawler
   public:
     explicit FormulaBound(std::shared_ptr<const Formula> formula);
 
+    bool leaves_out_jumps = false; ///< at the times that formula_breaks() finds
+
     /// Encloses for s and t in these intervals. Infinite where the formula may jump at a time, or where nothing is
     /// known.
     Enclosure
     operator()(const Interval &s, const Interval &t);
-
-    /// Leaves out jumps at the times that formula_breaks() finds.
-    void
-    leave_out_jumps()
-    {
-      leaves_out_jumps_ = true;
-    }
 
     enum class Variable
     {
@@ -47,6 +42,5 @@ namespace crawler
 
     const std::shared_ptr<const Formula> formula_;
     std::vector<Enclosure> values_, arguments_;
-    bool leaves_out_jumps_ = false;
   };
 } // namespace crawler

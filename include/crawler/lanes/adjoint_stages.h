@@ -24,15 +24,15 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     AdjointStages(const LaneSetup &setup, System &system)
       : setup_(setup)
       , system_(system)
-      , n_(system.n_unknowns())
+      , n_(system.n_unknowns)
     {
       constexpr int columns = 1 + pairs;
       for (int i = 0; i < s; ++i)
         for (int j = 0; j < columns; ++j)
           for (int part = 0; part < 2; ++part)
           {
-            rows_[2 * (j * s + i) + part]          = setup.vectors[2 * (i * columns + j) + part];
-            vectors_[2 * (i * columns + j) + part] = setup.rows[2 * (j * s + i) + part];
+            rows_[2 * (j * s + i) + part]          = setup.method.vectors[2 * (i * columns + j) + part];
+            vectors_[2 * (i * columns + j) + part] = setup.method.rows[2 * (j * s + i) + part];
           }
     }
 
@@ -114,9 +114,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int i = 0; i < s; ++i)
         for (int d = 0; d < n_; ++d)
         {
-          double sum = setup_.inverse[i] * M_mu_[d];
+          double sum = setup_.method.inverse[i] * M_mu_[d];
           for (int j = 1; j < s; ++j)
-            sum += setup_.inverse[j * s + i] * M_mu_[j * n_ + d];
+            sum += setup_.method.inverse[j * s + i] * M_mu_[j * n_ + d];
           result[i * n_ + d] = K_mu[i * n_ + d] + inverse_h_ * sum;
         }
     }

@@ -33,7 +33,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       : setup_(setup)
       , host_(host)
       , system_(setup, host)
-      , n_(system_.n_unknowns())
+      , n_(system_.n_unknowns)
       , stages_(setup, system_)
       , memory_(memory)
       , states_{setup, n_}
@@ -56,9 +56,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 
     /// Returns false if the iteration for the stages of a step does not converge.
     bool
-    run(const LaneJob &job, const LanePast &past)
+    run(const LaneBody &body, const LanePast &past)
     {
-      system_.set_body(0, job, true);
+      system_.set_body(0, body, true);
       for (int d = 0; d < n_; ++d)
       {
         lambda_[d]   = past.gradient[d];
@@ -101,7 +101,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int d = 0; d < n_; ++d)
         states_.y[d] -= z[(s - 1) * n_ + d];
       for (int i = 0; i < s; ++i)
-        times_[i] = past.times[step] - (1. - setup_.c[i]) * h_;
+        times_[i] = past.times[step] - (1. - setup_.method.c[i]) * h_;
     }
 
     /// Adds the sources of this step itself.
@@ -126,7 +126,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       states_.go_to_stage(s - 1, 1. / h_);
       system_.template factorize<true>(&times_[s - 1], states_.u, states_.v, nullptr, inverse);
       for (int d = 0; d < n_; ++d)
-        zeta_[d] = (setup_.real_eigenvalue * inverse) * lambda_[d];
+        zeta_[d] = (setup_.method.real_eigenvalue * inverse) * lambda_[d];
       system_.solve(zeta_);
     }
 
@@ -141,7 +141,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
             continue;
           double sum = 0.;
           for (int j = 0; j < s; ++j)
-            sum += setup_.inverse[j * s + i] * sources_.by_velocity[j * n_ + d];
+            sum += setup_.method.inverse[j * s + i] * sources_.by_velocity[j * n_ + d];
           right_[i * n_ + d] -= sources_.by_u[i * n_ + d] + 1. / h_ * sum;
         }
       return stages_.solve(right_);
@@ -159,10 +159,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         double weights[s] = {};
         for (int j = 0; j < s && is_near; ++j)
         {
-          weights[j] = h_ * (1. / old_h) * (setup_.b[i] / setup_.b[j]);
+          weights[j] = h_ * (1. / old_h) * (setup_.method.b[i] / setup_.method.b[j]);
           for (int k = 0; k < s; ++k)
             if (k != j)
-              weights[j] *= ((setup_.c[i] - 1.) * ratio - setup_.c[k]) * (1. / (setup_.c[j] - setup_.c[k]));
+              weights[j] *= ((setup_.method.c[i] - 1.) * ratio - setup_.method.c[k]) *
+                            (1. / (setup_.method.c[j] - setup_.method.c[k]));
         }
         radau::combine(radau::Stages<s>{}, weights, old_mu_, n_, stages_.mu + i * n_);
       }

@@ -26,26 +26,16 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 
   /// Some neighbouring cells of a mesh, one in each lane. Lanes beyond the last cell of the mesh repeat it, and nothing
   /// is written from them.
-  class CellGroup
+  struct CellGroup
   {
-  public:
     static constexpr int width = PackTraits<Cells>::size;
 
-    CellGroup(const int first, const int n_cells)
-      : first_(first)
-      , n_(n_cells - first < width ? n_cells - first : width)
-    {
-    }
+    const int first, n; ///< number of the first cell, and of cells
 
-    int
-    first() const
+    CellGroup(const int first, const int n_cells)
+      : first(first)
+      , n(n_cells - first < width ? n_cells - first : width)
     {
-      return first_;
-    }
-    int
-    n() const
-    {
-      return n_;
     }
 
     /// Number of the cell of each lane.
@@ -54,7 +44,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       Cells result;
       for (int l = 0; l < width; ++l)
-        result[l] = first_ + (l < n_ ? l : n_ - 1);
+        result[l] = first + (l < n ? l : n - 1);
       return result;
     }
 
@@ -62,14 +52,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Cells
     load(const double *values, const int stride, const int i) const
     {
-      values += first_ * stride + i;
+      values += first * stride + i;
       Cells result;
-      if (n_ == width)
+      if (n == width)
         for (int l = 0; l < width; ++l)
           result[l] = values[l * stride];
       else
         for (int l = 0; l < width; ++l)
-          result[l] = values[(l < n_ ? l : n_ - 1) * stride];
+          result[l] = values[(l < n ? l : n - 1) * stride];
       return result;
     }
     Complex<Cells>
@@ -82,12 +72,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     store(const Cells &some, double *values, const int stride, const int i) const
     {
-      values += first_ * stride + i;
-      if (n_ == width)
+      values += first * stride + i;
+      if (n == width)
         for (int l = 0; l < width; ++l)
           values[l * stride] = some[l];
       else
-        for (int l = 0; l < n_; ++l)
+        for (int l = 0; l < n; ++l)
           values[l * stride] = some[l];
     }
     void
@@ -97,9 +87,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       store(some.re, parts, 2 * stride, 2 * i);
       store(some.im, parts, 2 * stride, 2 * i + 1);
     }
-
-  private:
-    int first_, n_;
   };
 
   /// Friction law of a body for its cells.
@@ -154,7 +141,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
     }
 
-    const Cells *
+    Cells *
     load(const double *from, const CellGroup &group, const int i)
     {
       for (int p = 0; from != nullptr && p < n; ++p)

@@ -65,7 +65,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int i = 1; i < n; ++i)
         group.store(sums[i], F, q, i);
       // The first node of a cell is the last of the one before it, which comes first in its sum.
-      sums[0][0] = group.first() == 0 ? 0. : F[group.first() * q];
+      sums[0][0] = group.first == 0 ? 0. : F[group.first * q];
       for (int l = 1; l < width; ++l)
         sums[0][l] = sums[q][l - 1];
       add_forces<n, Cells>(tables, h, N, both, sums, 0, 1);
@@ -96,7 +96,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       typename CellsOf<Number>::Type corners[4];
       condense_cell<q>(A, corners, [](const auto &) {}); // what is not finite is seen in the solution
-      auto *own = reinterpret_cast<typename CellsOf<Number>::Type *>(blocks + group.first() * n * n);
+      auto *own = reinterpret_cast<typename CellsOf<Number>::Type *>(blocks + group.first * n * n);
       for (int i = 0; i < n * n; ++i)
         own[i] = A[i];
       for (int i = 0; i < 4; ++i)
@@ -163,7 +163,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for_groups<Wanted::forces | Wanted::energies>(
         mesh, m, [&](const auto &laws, const Cells &h, const CellGroup &group) {
           const CellDensities<n, Cells> all(mesh.tables, h, laws, Nodal<q>(group, u).begin, Nodal<q>(group, v).begin);
-          for (int l = 0; l < group.n(); ++l)
+          for (int l = 0; l < group.n; ++l)
             for (int p = 0; p < n; ++p)
             {
               const double ds = h[l] * mesh.tables.weights[p];

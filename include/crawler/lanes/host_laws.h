@@ -16,19 +16,20 @@ namespace crawler
     /// @p scene is in natural units and must outlive it.
     HostLaws(const Scene &scene, const std::vector<double> &points);
 
-    /// Sets the part of @p job that describes the scene.
-    void
-    set(LaneJob &job) const;
-
     /// Writes the laws that the engine requests; false if one is not a positive number there.
     bool
     evaluate(const LanePoints &at);
 
+    const std::vector<double> k, b; ///< profiles k(s)/k and b(s)
+
   private:
     const Scene &scene_;
     const std::vector<double> points_;
-    std::vector<double> k_, b_; ///< profiles k(s)/k and b(s)
     std::vector<double> x_;
     std::unique_ptr<FeedbackAtPoints> feedback_;
   };
+
+  /// Laws of @p scene for the engine; null: of a plain one, or in the stretch form.
+  LaneBody
+  lane_body(const Scene &scene, const HostLaws *laws);
 } // namespace crawler

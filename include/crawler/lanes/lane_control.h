@@ -147,11 +147,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         ++rejected;
     }
 
+    /// @p is_last_resort: no other engine can take over where Newton's method often fails.
     bool
-    cannot_converge() const
+    cannot_converge(const bool is_last_resort) const
     {
       return failures > max_failures || next < min_step ||
-             (!job.is_last_resort && all_failures > many_failures && all_failures > large_part * steps);
+             (!is_last_resort && all_failures > many_failures && all_failures > large_part * steps);
     }
 
     /// Starts anew: from here on the past is no guide.

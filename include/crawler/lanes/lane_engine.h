@@ -3,6 +3,7 @@
 
 #include <crawler/base/step_limits.h>
 #include <crawler/equation/stretch_method.h>
+#include <crawler/mesh/element_tables.h>
 #include <crawler/scene/direction.h>
 
 #include <cstddef>
@@ -35,21 +36,26 @@ namespace crawler
     };
   };
 
-  /// Setup shared by all lanes: the mesh, the element (mesh/reference_element.h) and the method (time/radau_tableau.h).
-  /// All arrays belong to the caller.
+  /// Coefficients of a RadauTableau (time/radau_tableau.h), with real and imaginary parts in alternation.
+  struct LaneTableau
+  {
+    const double *c, *b, *inverse, *error_weights;
+    double newton_fraction; ///< remaining error of Newton's method, relative to the tolerance
+    double real_eigenvalue;
+    const double *eigenvalues; ///< [pairs]
+    const double *vectors;     ///< [stages][1 + pairs]
+    const double *rows;        ///< [1 + pairs][stages]
+  };
+
+  /// Setup shared by all lanes: the mesh, the element and the method. All arrays belong to the caller.
   struct LaneSetup
   {
     unsigned int degree, n_cells, n_stages;
-    const double *sizes;                                      ///< [n_cells] sizes of the cells
-    const double *values, *derivatives, *weights, *stiffness; ///< tables of the element
-    unsigned int n_samples;                                   ///< samples of the stretch per cell
-    const double *sample_derivatives;                         ///< [n_samples][degree+1]
-    const double *c, *b, *inverse, *error_weights;            ///< coefficients of the method
-    double newton_fraction; ///< remaining error of Newton's method, relative to the tolerance
-    double real_eigenvalue;
-    const double *eigenvalues; ///< [pairs][real, imaginary]
-    const double *vectors;     ///< [stages][1 + pairs][real, imaginary]
-    const double *rows;        ///< [1 + pairs][stages][real, imaginary]
+    const double *sizes; ///< [n_cells] sizes of the cells
+    ElementTables element;
+    unsigned int n_samples;           ///< samples of the stretch per cell
+    const double *sample_derivatives; ///< [n_samples][degree+1]
+    LaneTableau method;
 
     unsigned int laws = LaneLaws::plain; ///< LaneLaws of the bodies and grounds of a run
 
@@ -79,18 +85,25 @@ namespace crawler
     }
   };
 
-  /// Body to compute; by default one that stays at rest.
+  /// Laws of a body, and of its ground.
+  struct LaneBody
+  {
+    double k = 1., a = 0.; ///< elastic modulus, friction exponent
+    // Profiles and ground of a general body in the position form.
+    const double *k_profile = nullptr, *friction_profile = nullptr; ///< [points] k(s)/k and b(s)
+    Direction direction{};                                          ///< of the ground
+  };
+
+  /// Run of a body; by default it stays at rest.
   struct LaneJob
   {
-    double k = 1., a = 0.;        ///< elastic modulus, friction exponent
+    LaneBody body;
     double tolerance        = 1.; ///< root mean square error of a step; in the stretch form the largest error
-    double newton_factor    = 1.; ///< factor on LaneSetup::newton_fraction
     double initial_step     = 1.;
     const StepLimit *limits = nullptr; ///< limits of its steps
     unsigned int n_limits   = 0;
     unsigned int max_steps  = 0;
-    double least_stretch    = 0.;    ///< smaller stretches are given up; the full path must tell what they mean
-    bool is_last_resort     = false; ///< no other engine can take over where Newton's method often fails
+    double least_stretch    = 0.; ///< smaller stretches are given up; the full path must tell what they mean
     double start_time       = 0.;
     const double *start     = nullptr; ///< [unknowns] displacement at start_time; null: rest
     /// Ascending times after start_time where steps must end; the run ends at the last.
@@ -102,10 +115,6 @@ namespace crawler
     // State between two steps, for a body that continues from `start`; null: it starts.
     const LaneProgress *progress = nullptr;
     const double *old_z          = nullptr; ///< [stages][unknowns] of the step before, as in LaneStep
-
-    // Profiles and ground of a general body in the position form.
-    const double *k_profile = nullptr, *friction_profile = nullptr; ///< [points] k(s)/k and b(s)
-    Direction direction{};                                          ///< of the ground
   };
 
   /// State of a lane at all quadrature points, and the arrays into which the host writes the values of the laws there.
@@ -241,11 +250,11 @@ namespace crawler
     /// Tries one step of all bodies in the lanes, after lanes without a body took the next one; false if there is none
     /// left. The data that the host sees of a step are valid until then.
     bool (*advance)(const LaneSetup &setup, double *memory);
-    /// Memory for the adjoint of a run in the position form, and its computation, with one lane in any case; of @p job
-    /// the laws of the body alone count. False if the iteration for the stages of a step does not converge.
+    /// Memory for the adjoint of a run in the position form, and its computation, with one lane in any case. False if
+    /// the iteration for the stages of a step does not converge.
     std::size_t (*adjoint_memory)(const LaneSetup &setup);
     bool (*adjoint)(
-      const LaneSetup &setup, LaneAdjointHost &host, const LaneJob &job, const LanePast &past, double *memory);
+      const LaneSetup &setup, LaneAdjointHost &host, const LaneBody &body, const LanePast &past, double *memory);
   };
 
   /// Best engine for this processor: for many bodies, or with one lane for one body.

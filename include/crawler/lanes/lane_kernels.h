@@ -50,11 +50,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 
     /// States for the laws of general bodies, at all points.
     [[gnu::flatten]] static void
-    states(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, Pack *u_at, Pack *v_at, Pack *e, Pack *rate)
+    states(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const LaneStateAtPoints<Pack> &at)
     {
       for (int c = 0; c < mesh.n_cells; ++c)
         cell_states<n, Pack>(
-          mesh.tables, mesh.sizes[c], u + c * q, v + c * q, u_at + c * n, v_at + c * n, e + c * n, rate + c * n);
+          mesh.tables, mesh.sizes[c], u + c * q, v + c * q, at.u + c * n, at.v + c * n, at.e + c * n, at.rate + c * n);
     }
 
     /// Sets the nodes of cell @p c that no cell before it has to zero.
@@ -97,17 +97,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         F[i] = -F[i];
     }
 
-    static const Pack &
-    modulus(const Laws &laws, const PointDerivatives<n, Pack> &, int)
-    {
-      return laws.k;
-    }
-    static const Pack &
-    modulus(const KnownLaws<n, Pack> &, const PointDerivatives<n, Pack> &D, const int p)
-    {
-      return D.N_w[p];
-    }
-
     [[gnu::flatten]] static void
     slopes(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const LaneSlopes<Pack> &at)
     {
@@ -118,7 +107,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           const int i = c * n + p;
           at.f_v[i]   = D.f_v[p];
           at.f_w[i]   = D.f_w[p];
-          at.N_w[i]   = modulus(laws, D, p);
+          if constexpr (requires { laws.k; }) // one modulus
+            at.N_w[i] = laws.k;
+          else
+            at.N_w[i] = D.N_w[p];
           if (at.f_u != nullptr)
             at.f_u[i] = D.f_u[p];
           if (at.N_rate != nullptr)

@@ -6,8 +6,7 @@
 #include <crawler/lanes/lane_engine.h>
 #include <crawler/lanes/lane_friction.h>
 #include <crawler/lanes/lane_memory.h>
-
-#include <cstddef>
+#include <crawler/lanes/lane_mesh.h>
 
 /// Laws of general bodies and grounds in the position form (included by lane_systems.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
@@ -34,32 +33,33 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       if (!has(LaneLaws::general))
         return;
-      memory.pieces(n_, u, v, e, rate, w_, k_, b_, g_, w_dg_, N_, f_, f_v_, w_f_w_);
+      memory.pieces(n_, at.u, at.v, at.e, at.rate, w_, laws.k, b_, g_, w_dg_, laws.N, laws.f, laws.f_v, laws.w_f_w);
+      laws.N_w = laws.k;
       if (has(LaneLaws::direction))
-        memory.pieces(n_, tanh_);
+        memory.pieces(n_, direction_.tanh);
       if (has(LaneLaws::host_ground))
-        memory.pieces(n_, c_, c_x_, f_u_);
+        memory.pieces(n_, c_, c_x_, laws.f_u);
       if (has(LaneLaws::feedback))
-        memory.pieces(n_, m_, N_w_);
+        memory.pieces(n_, m_, laws.N_w);
       if (has(LaneLaws::rate))
-        memory.pieces(n_, N_rate_);
+        memory.pieces(n_, laws.N_rate);
       if (lanes > 1 && asks_host())
         for (double *&array : scratch_)
           memory.pieces(n_, array);
     }
 
     void
-    set_body(const int l, const LaneJob &job, const bool is_busy)
+    set_body(const int l, const LaneBody &body, const bool is_busy)
     {
       if (!has(LaneLaws::general))
         return;
       is_busy_[l] = is_busy;
-      set_lane(ratio_, l, job.direction.ratio);
-      set_lane(switching_velocity_, l, job.direction.switching_velocity);
+      set_lane(direction_.ratio, l, body.direction.ratio);
+      set_lane(direction_.switching_velocity, l, body.direction.switching_velocity);
       for (int p = 0; p < n_; ++p)
       {
-        set_lane(k_[p], l, is_busy ? job.k * job.k_profile[p] : 1.);
-        set_lane(b_[p], l, is_busy ? job.friction_profile[p] : 1.);
+        set_lane(laws.k[p], l, is_busy ? body.k * body.k_profile[p] : 1.);
+        set_lane(b_[p], l, is_busy ? body.friction_profile[p] : 1.);
         // Lanes at rest keep these values: the host does not write there.
         set_lane(g_[p], l, 1.);
         set_lane(w_dg_[p], l, 0.);
@@ -71,10 +71,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         if (has(LaneLaws::feedback))
         {
           set_lane(m_[p], l, 0.);
-          set_lane(N_w_[p], l, job.k);
+          set_lane(laws.N_w[p], l, body.k);
         }
         if (has(LaneLaws::rate))
-          set_lane(N_rate_[p], l, 0.);
+          set_lane(laws.N_rate[p], l, 0.);
       }
     }
 
@@ -85,7 +85,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return (bits_ & LaneLaws::nonlinear_in_velocity) == 0;
     }
 
-    /// Evaluates for the states in u, v, e and rate at the times @p t, with the active stress @p m where that is known;
+    /// Evaluates for the states @p at at the times @p t, with the active stress @p m where that is known;
     /// with derivatives if @p slopes. Returns a number that is not positive where the laws have no meaning.
     Pack
     evaluate(const double *t, const LaneFriction<Pack> &friction, const Pack *m, const bool slopes)
@@ -93,7 +93,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       Pack least = broadcast<Pack>(HUGE_VAL);
       for (int p = 0; p < n_; ++p)
       {
-        w_[p] = 1. + e[p];
+        w_[p] = 1. + at.e[p];
         least = smaller(w_[p], least);
       }
       if (!has(LaneLaws::host_friction))
@@ -107,14 +107,13 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           if (is_busy_[l] && get_lane(least, l) > 0. && !ask_host(l, t[l], slopes))
             set_lane(least, l, -1.);
       if (has(LaneLaws::direction))
-        tanh_at_points(v, switching_velocity_, tanh_, n_);
+        tanh_at_points(at.v, direction_.switching_velocity, direction_.tanh, n_);
       add_up(has(LaneLaws::feedback) ? m_ : m, slopes);
       return least;
     }
 
-    PointLaws<Pack> laws{}; ///< laws at the last evaluation
-
-    Pack *u, *v, *e, *rate; ///< [points] displacement, velocity, strain and its rate: to be written first
+    PointLaws<Pack> laws{};     ///< laws at the last evaluation
+    LaneStateAtPoints<Pack> at; ///< state, to be written first
 
   private:
     bool
@@ -138,27 +137,20 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int p = 0; p < n_; ++p)
       {
         if (has_direction)
-          direction = equation::direction_factor<Pack>(ratio_, switching_velocity_, v[p], tanh_[p]);
+          direction = equation::direction_factor<Pack>(
+            direction_.ratio, direction_.switching_velocity, at.v[p], direction_.tanh[p]);
         const auto here =
-          equation::sliding<Pack>(b_[p], has_ground ? c_[p] : one, has_ground ? c_x_[p] : none, direction, v[p]);
-        f_[p] = equation::friction_force<Pack>(g_[p], here.force);
-        N_[p] = equation::body_force<Pack>(e[p], m != nullptr ? m[p] : none, k_[p]);
+          equation::sliding<Pack>(b_[p], has_ground ? c_[p] : one, has_ground ? c_x_[p] : none, direction, at.v[p]);
+        laws.f[p] = equation::friction_force<Pack>(g_[p], here.force);
+        laws.N[p] = equation::body_force<Pack>(at.e[p], m != nullptr ? m[p] : none, laws.k[p]);
         if (!slopes)
           continue;
-        f_v_[p]   = g_[p] * here.by_v;
-        w_f_w_[p] = w_dg_[p] * here.force;
+        laws.f_v[p]   = g_[p] * here.by_v;
+        laws.w_f_w[p] = w_dg_[p] * here.force;
         if (has_ground)
-          f_u_[p] = g_[p] * here.by_u;
+          laws.f_u[p] = g_[p] * here.by_u;
       }
-      laws = {N_,
-              f_,
-              has_ground ? f_u_ : nullptr,
-              f_v_,
-              w_f_w_,
-              has(LaneLaws::feedback) ? N_w_ : k_,
-              has(LaneLaws::rate) ? N_rate_ : nullptr,
-              k_,
-              m};
+      laws.m = m;
     }
 
     bool
@@ -166,14 +158,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       const bool friction = has(LaneLaws::host_friction), ground = has(LaneLaws::host_ground),
                  force = has(LaneLaws::feedback), by_rate = has(LaneLaws::rate);
-      Pack *const read[]  = {u, v, w_, rate};
+      Pack *const read[]  = {at.u, at.v, w_, at.rate};
       Pack *const write[] = {friction ? g_ : nullptr,
                              friction && slopes ? w_dg_ : nullptr,
                              ground ? c_ : nullptr,
                              ground && slopes ? c_x_ : nullptr,
                              force ? m_ : nullptr,
-                             force && slopes ? N_w_ : nullptr,
-                             by_rate && slopes ? N_rate_ : nullptr};
+                             force && slopes ? laws.N_w : nullptr,
+                             by_rate && slopes ? laws.N_rate : nullptr};
       double *own[n_arrays];
       for (int i = 0; i < n_arrays; ++i)
       {
@@ -196,7 +188,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
               set_lane(write[i - n_read][p], l, own[i][p]);
       if (force && slopes)
         for (int p = 0; p < n_; ++p)
-          set_lane(N_w_[p], l, get_lane(N_w_[p], l) + get_lane(k_[p], l));
+          set_lane(laws.N_w[p], l, get_lane(laws.N_w[p], l) + get_lane(laws.k[p], l));
       return good;
     }
 
@@ -206,8 +198,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     LawHost *const host_;
     const int n_; ///< points
     bool is_busy_[lanes] = {};
-    Pack ratio_, switching_velocity_;
-    Pack *w_, *k_, *b_, *g_, *w_dg_, *N_, *f_, *f_v_, *w_f_w_, *tanh_, *c_, *c_x_, *f_u_, *m_, *N_w_, *N_rate_;
+    struct
+    {
+      Pack ratio, switching_velocity, *tanh;
+    } direction_; ///< of the ground
+    Pack *w_, *b_, *g_, *w_dg_, *c_, *c_x_, *m_;
     double *scratch_[n_arrays]; ///< scratch of one lane
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

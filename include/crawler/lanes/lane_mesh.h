@@ -3,6 +3,7 @@
 
 #include <crawler/equation/cell_loops.h>
 #include <crawler/equation/point_laws.h>
+#include <crawler/lanes/lane_engine.h>
 #include <crawler/lanes/lane_friction.h>
 
 /// Input and results of the loops over all cells (included by lane_kernels.h).
@@ -17,6 +18,22 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Pack k;
     LaneFriction<Pack> friction;
     const PointLaws<Pack> *laws = nullptr; ///< laws of general bodies for the present state, replacing k and friction
+  };
+
+  /// Eigenvalues of A^-1, divided by the size of the step: the systems of Newton's method are K + shift M.
+  template <typename Pack, int pairs>
+  struct LaneShifts
+  {
+    Pack real;
+    Complex<Pack> complex[pairs];
+
+    void
+    set(const LaneSetup &setup, const Pack &inverse_h)
+    {
+      real = setup.method.real_eigenvalue * inverse_h;
+      for (int j = 0; j < pairs; ++j)
+        complex[j] = {setup.method.eigenvalues[2 * j] * inverse_h, setup.method.eigenvalues[2 * j + 1] * inverse_h};
+    }
   };
 
   /// CellIntegrals of a pack of bodies.
@@ -34,6 +51,13 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Pack least = broadcast<Pack>(HUGE_VAL), most = broadcast<Pack>(-HUGE_VAL), min_at{}, max_at{};
     LaneIntegrals<Pack> sums;
     Pack end_stretch[2] = {}, end_rate[2] = {}; ///< stretch at both ends, and its rate
+  };
+
+  /// State at all points: displacement, velocity, strain and its rate.
+  template <typename Pack>
+  struct LaneStateAtPoints
+  {
+    Pack *u, *v, *e, *rate;
   };
 
   /// Derivatives of friction f and force N at all points of a state: by velocity, stretch, place and stretch rate.

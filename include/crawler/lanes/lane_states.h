@@ -75,7 +75,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int i = 0; i < s; ++i)
       {
         Pack weights[s];
-        radau::guess_weights(stages, setup.c, setup.inverse, i, start, ratio, weights);
+        radau::guess_weights(stages, setup.method.c, setup.method.inverse, i, start, ratio, weights);
         for (int j = 0; j < s; ++j)
           weights[j] = use * weights[j];
         radau::combine(stages, weights, old_z, n, z + i * n);
@@ -94,7 +94,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     go_to_rate(const int i, const Pack &inverse_h)
     {
-      radau::stage_rate(stages, setup.inverse, i, inverse_h, z, n, v);
+      radau::stage_rate(stages, setup.method.inverse, i, inverse_h, z, n, v);
     }
 
     /// Subtracts a correction in the basis of the eigenvectors of A^-1 from z where @p moves; returns the sum of its
@@ -109,7 +109,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         Pack *const moved = z + i * n;
 #pragma GCC ivdep
         for (int d = 0; d < n; ++d)
-          u[d] = radau::from_eigenbasis(stages, setup.vectors, i, d, n, real, complex);
+          u[d] = radau::from_eigenbasis(stages, setup.method.vectors, i, d, n, real, complex);
 #pragma GCC ivdep
         for (int d = 0; d < n; ++d)
           moved[d] = moves ? moved[d] - u[d] : moved[d];
@@ -122,7 +122,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     go_to_start(const Pack &inverse_h)
     {
-      radau::error_rate(stages, setup.error_weights, setup.real_eigenvalue, inverse_h, z, n, v);
+      radau::error_rate(stages, setup.method.error_weights, setup.method.real_eigenvalue, inverse_h, z, n, v);
       for (int d = 0; d < n; ++d)
         u[d] = y[d];
     }

@@ -78,20 +78,19 @@ namespace crawler
     LaneSetup setup_;
     std::optional<HostLaws> laws_;         ///< laws of a general body in the position form
     std::optional<StretchLaws> cell_laws_; ///< laws in the stretch form
-    const RadauTableau &tableau_;
     const std::unique_ptr<ActiveStressAtPoints> stress_;
     LaneStorage memory_;
 
     // State since begin().
     std::optional<std::pair<double, double>> bad_friction_;
     Course course_;
-    LaneJob job_;
-    bool started_ = false, goes_on_ = false, has_step_ = false;
+    std::optional<LaneJob> job_; ///< until the engine takes it
+    bool goes_on_ = false;
     LaneProgress progress_;     ///< progress at the last accepted state
     std::vector<double> old_z_; ///< stages of the last step of a run that continues
-    std::vector<double> y_, rate_;
+    std::vector<double> y_;
     LaneStep lane_step_;
-    Step step_;
+    std::optional<Step> step_;       ///< step that next() makes
     std::optional<TimeOutcome> end_; ///< outcome, if the run has ended
   };
 } // namespace crawler

@@ -7,8 +7,6 @@
 #include <crawler/lanes/lane_memory.h>
 #include <crawler/lanes/lane_tridiagonal.h>
 
-#include <cstddef>
-
 /// Equations and linear systems of the stretch form for a pack of bodies (included by radau_lanes.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
@@ -32,45 +30,31 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static constexpr bool keeps_tries = false;
 
     StretchSystem(const LaneSetup &setup, LawHost *host)
-      : setup_(setup)
+      : n_points(static_cast<int>(setup.n_cells))
+      , setup_(setup)
       , host_(host)
-      , n_(static_cast<int>(setup.n_cells))
-      , nodes_{setup.stretch.node_rule, n_, setup.sizes, setup.direction}
-      , cells_(n_)
+      , nodes_{setup.stretch.node_rule, n_points, setup.sizes, setup.direction}
+      , cells_(n_points)
     {
     }
 
-    int
-    n_unknowns() const
-    {
-      return n_ + 1;
-    }
-    /// Number of unknowns whose error is controlled.
-    int
-    n_controlled() const
-    {
-      return n_;
-    }
-    int
-    n_points() const
-    {
-      return n_;
-    }
+    const int n_points;                                           ///< cells
+    const int n_unknowns = n_points + 1, n_controlled = n_points; ///< all, and those whose error is controlled
 
     void
     lay_out(LaneMemory &memory)
     {
-      memory.pieces(n_, power_, slope_, mobility_, mobility_slope_, force_, force_slope_);
-      memory.pieces(n_ + 1, scratch_);
+      memory.pieces(n_points, power_, slope_, mobility_, mobility_slope_, force_, force_slope_);
+      memory.pieces(n_points + 1, scratch_);
       cells_.lay_out(memory);
     }
 
     void
-    set_body(const int l, const LaneJob &job, const bool)
+    set_body(const int l, const LaneBody &body, const bool)
     {
-      set_lane(k_, l, job.k);
-      set_lane(a_, l, job.a);
-      friction_.set(l, -job.a);
+      set_lane(k_, l, body.k);
+      set_lane(a_, l, body.a);
+      friction_.set(l, -body.a);
     }
 
     /// Residual of the state @p q with the rates @p q_dot and the active stress @p m, at a time for each lane. Returns
@@ -81,8 +65,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       const Pack least = evaluate(t, q, q_dot, m, /*slopes=*/false);
       Pack *const v    = scratch_;
       nodes_.velocities(v);
-      F[n_] = q_dot[n_] - v[0];
-      for (int j = 0; j < n_; ++j)
+      F[n_points] = q_dot[n_points] - v[0];
+      for (int j = 0; j < n_points; ++j)
       {
         const Pack change = (v[j + 1] - v[j]) * (1. / setup_.sizes[j]);
         F[j]              = setup_.stretch.is_power ? q_dot[j] - change / slope_[j] : q_dot[j] - change;
@@ -95,15 +79,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     factorize(const double *t, const Pack *q, const Pack *q_dot, const Pack *m, const Pack &inverse_h)
     {
       evaluate(t, q, q_dot, m, /*slopes=*/true);
-      for (int p = 0; p < pairs; ++p)
-        shifts_[p] = {setup_.eigenvalues[2 * p] * inverse_h, setup_.eigenvalues[2 * p + 1] * inverse_h};
-      shift_               = setup_.real_eigenvalue * inverse_h;
+      shifts_.set(setup_, inverse_h);
       const bool sees_rate = nodes_.laws.force_by_rate != nullptr;
       const double *h      = setup_.sizes;
       auto left            = nodes_.with_derivatives(0);
-      end_by_w_            = -left.by_right;
-      end_by_rate_         = -left.by_right_rate;
-      for (int j = 0; j < n_; ++j)
+      end_                 = {-left.by_right, -left.by_right_rate};
+      for (int j = 0; j < n_points; ++j)
       {
         const auto right = nodes_.with_derivatives(j + 1);
         const Pack c     = setup_.stretch.is_power ? -1. / (h[j] * slope_[j]) : broadcast<Pack>(-1. / h[j]);
@@ -121,21 +102,21 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         }
         left = right;
       }
-      cells_.factorize(shift_, shifts_, sees_rate);
+      cells_.factorize(shifts_, sees_rate);
     }
 
     /// Solves the real system and those of all pairs, @p y [pair][unknown]; null: the real one alone.
     void
     solve(Pack *x, Number *y = nullptr) const
     {
-      cells_.solve(x, y, n_unknowns());
-      x[n_] = (x[n_] - (end_by_w_ + shift_ * end_by_rate_) * x[0]) / shift_;
+      cells_.solve(x, y, n_unknowns);
+      x[n_points] = (x[n_points] - (end_.K + shifts_.real * end_.M) * x[0]) / shifts_.real;
       for (int p = 0; p < pairs && y != nullptr; ++p)
       {
-        Number *own    = y + p * n_unknowns();
-        const Number c = {end_by_w_ + shifts_[p].re * end_by_rate_, shifts_[p].im * end_by_rate_};
-        own[n_] -= c * own[0];
-        own[n_] *= 1. / shifts_[p];
+        Number *own    = y + p * n_unknowns;
+        const Number c = {end_.K + shifts_.complex[p].re * end_.M, shifts_.complex[p].im * end_.M};
+        own[n_points] -= c * own[0];
+        own[n_points] *= 1. / shifts_.complex[p];
       }
     }
 
@@ -144,7 +125,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     look(const double *, const Pack *q, const Pack *, const Pack *, const bool, LaneLook<Pack> &result)
     {
       find_stretch(q);
-      for (int j = 0; j < n_; ++j)
+      for (int j = 0; j < n_points; ++j)
       {
         const Pack place = broadcast<Pack>(j);
         result.min_at    = w_[j] < result.least ? place : result.min_at;
@@ -159,8 +140,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     integral(const Pack *q)
     {
       find_stretch(q);
-      Pack u = q[n_], sum = Pack{};
-      for (int j = 0; j < n_; ++j)
+      Pack u = q[n_points], sum = Pack{};
+      for (int j = 0; j < n_points; ++j)
       {
         const Pack change = setup_.sizes[j] * (w_[j] - 1.);
         sum += setup_.sizes[j] * (u + 0.5 * change);
@@ -178,10 +159,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       if (!setup_.stretch.is_power)
         return;
       const Pack b = 1. + a_, inverse = 1. / b, least = min_power * inverse;
-      for (int j = 0; j < n_; ++j)
+      for (int j = 0; j < n_points; ++j)
         scratch_[j] = b * (q[j] > least ? q[j] : least);
-      power_at_points(scratch_, inverse, power_, n_);
-      for (int j = 0; j < n_; ++j)
+      power_at_points(scratch_, inverse, power_, n_points);
+      for (int j = 0; j < n_points; ++j)
         slope_[j] = w_[j] / scratch_[j];
     }
 
@@ -194,16 +175,16 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           return host_->cell_laws(*t, m, q, q_dot, nodes_.laws);
       find_stretch(q);
       Pack least = broadcast<Pack>(1.);
-      for (int j = 0; j < n_; ++j)
+      for (int j = 0; j < n_points; ++j)
       {
         force_[j]   = equation::body_force<Pack>(w_[j] - 1., m[j], k_);
         scratch_[j] = w_[j] > nothing ? w_[j] : broadcast<Pack>(nothing);
         least       = a_ < 0. ? least : smaller(w_[j], least);
       }
-      friction_(scratch_, mobility_, n_);
-      for (int j = 0; j < n_; ++j)
+      friction_(scratch_, mobility_, n_points);
+      for (int j = 0; j < n_points; ++j)
         mobility_[j] = w_[j] > nothing ? mobility_[j] : Pack{};
-      for (int j = 0; slopes && j < n_; ++j)
+      for (int j = 0; slopes && j < n_points; ++j)
       {
         const Pack slope   = setup_.stretch.is_power ? slope_[j] : broadcast<Pack>(1.);
         mobility_slope_[j] = -a_ * mobility_[j] / scratch_[j] * slope;
@@ -215,12 +196,16 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 
     const LaneSetup &setup_;
     LawHost *const host_;
-    const int n_;
     StretchNodes<Pack> nodes_;
     LaneFriction<Pack> friction_; ///< friction that gives the mobility, w^-a
-    Pack k_, a_, shift_, end_by_w_, end_by_rate_;
-    Number shifts_[pairs];
+    Pack k_, a_;
+    LaneShifts<Pack, pairs> shifts_;
     LaneTridiagonal<Pack, pairs> cells_;
+    /// Entries of the last row, that of u_0, in the column of the first cell.
+    struct
+    {
+      Pack K, M;
+    } end_;
     const Pack *w_;                                            ///< [cell]
     Pack *power_, *slope_;                                     ///< [cell] w and dw/dq if q is a power
     Pack *mobility_, *mobility_slope_, *force_, *force_slope_; ///< [cell] laws of plain bodies

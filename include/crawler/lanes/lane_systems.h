@@ -25,41 +25,30 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static constexpr bool keeps_tries = true;  ///< a failed try is a guess, see Lane::control_step
 
     PositionSystem(const LaneSetup &setup, LawHost *host)
-      : setup_(setup)
+      : n_unknowns(static_cast<int>(setup.n_cells * setup.degree + 1))
+      , n_points(static_cast<int>(setup.n_cells * (setup.degree + 1)))
+      , setup_(setup)
       , is_general_((setup.laws & LaneLaws::general) != 0)
       , general_(setup, host)
       , kernels_(lane_kernels<Pack>(setup.degree, setup.n_cells))
     {
       mesh_.n_cells = static_cast<int>(setup.n_cells);
       mesh_.sizes   = setup.sizes;
-      mesh_.tables  = {setup.values, setup.derivatives, setup.weights, setup.stiffness};
+      mesh_.tables  = setup.element;
       if (is_general_)
         mesh_.laws = &general_.laws;
     }
     PositionSystem(const PositionSystem &) = delete;
 
-    int
-    n_unknowns() const
-    {
-      return static_cast<int>(setup_.n_cells * setup_.degree + 1);
-    }
-    int
-    n_controlled() const
-    {
-      return n_unknowns();
-    }
-    int
-    n_points() const
-    {
-      return static_cast<int>(setup_.n_cells * (setup_.degree + 1));
-    }
+    const int n_unknowns, n_points;
+    const int n_controlled = n_unknowns; ///< unknowns whose error is controlled
 
     void
-    set_body(const int l, const LaneJob &job, const bool is_busy)
+    set_body(const int l, const LaneBody &body, const bool is_busy)
     {
-      set_lane(mesh_.k, l, job.k);
-      mesh_.friction.set(l, job.a);
-      general_.set_body(l, job, is_busy);
+      set_lane(mesh_.k, l, body.k);
+      mesh_.friction.set(l, body.a);
+      general_.set_body(l, body, is_busy);
     }
 
     Pack
@@ -115,7 +104,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     lay_out(LaneSlopes<Pack> &slopes, LaneMemory &memory) const
     {
-      const std::size_t points = n_points();
+      const std::size_t points = n_points;
       memory.pieces(points, slopes.f_v, slopes.f_w, slopes.N_w);
       if ((setup_.laws & LaneLaws::host_ground) != 0)
         memory.pieces(points, slopes.f_u);
@@ -146,20 +135,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       if (is_general_)
         evaluate(t, u, v, m, /*slopes=*/true);
-      Number shifts[pairs];
-      for (int j = 0; j < pairs; ++j)
-        shifts[j] = {setup_.eigenvalues[2 * j] * inverse_h, setup_.eigenvalues[2 * j + 1] * inverse_h};
+      LaneShifts<Pack, pairs> shifts;
+      shifts.set(setup_, inverse_h);
       const auto factorize = is_transposed ? kernels_.factorize_transposed : kernels_.factorize;
-      factorize(mesh_,
-                u,
-                v,
-                setup_.real_eigenvalue * inverse_h,
-                pairs,
-                shifts,
-                blocks_,
-                schur_,
-                complex_blocks_,
-                complex_schur_);
+      factorize(mesh_, u, v, shifts.real, pairs, shifts.complex, blocks_, schur_, complex_blocks_, complex_schur_);
       factorize_corners(pairs);
     }
 
@@ -167,26 +146,21 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     solve(Pack *x, Number *y = nullptr) const
     {
-      const int N = mesh_.n_cells, q = static_cast<int>(setup_.degree), n = n_unknowns();
+      const int N = mesh_.n_cells, q = static_cast<int>(setup_.degree), n = n_unknowns;
       const int n_pairs = y != nullptr ? pairs : 0;
+      const auto in_all = [&](const auto &use) {
+        use(real_, x);
+        for (int j = 0; j < n_pairs; ++j)
+          use(complex_[j], y + j * n);
+      };
       kernels_.forward(N, blocks_, x);
       for (int j = 0; j < n_pairs; ++j)
         kernels_.complex_forward(N, complex_blocks_ + j * block_size(), y + j * n);
       for (int c = 0; c < N; ++c)
-      {
-        real_.eliminate(c, q, x);
-        for (int j = 0; j < n_pairs; ++j)
-          complex_[j].eliminate(c, q, y + j * n);
-      }
-      x[N * q] *= real_.pivot[N];
-      for (int j = 0; j < n_pairs; ++j)
-        y[j * n + N * q] *= complex_[j].pivot[N];
+        in_all([c, q](const auto &corners, auto *right) { corners.eliminate(c, q, right); });
+      in_all([N, q](const auto &corners, auto *right) { right[N * q] *= corners.pivot[N]; });
       for (int c = N - 1; c >= 0; --c)
-      {
-        real_.substitute(c, q, x);
-        for (int j = 0; j < n_pairs; ++j)
-          complex_[j].substitute(c, q, y + j * n);
-      }
+        in_all([c, q](const auto &corners, auto *right) { corners.substitute(c, q, right); });
       kernels_.backward(N, blocks_, x);
       for (int j = 0; j < n_pairs; ++j)
         kernels_.complex_backward(N, complex_blocks_ + j * block_size(), y + j * n);
@@ -215,7 +189,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         solve(correction);
         const auto is_done = left <= 1.; // a lane does not change because others do
         Pack change{}, size{};
-        for (int d = 0; d < n_unknowns(); ++d)
+        for (int d = 0; d < n_unknowns; ++d)
         {
           v[d]   = is_done ? v[d] : v[d] + correction[d];
           change = added<true>(change, correction[d] < 0. ? -correction[d] : correction[d]);
@@ -238,7 +212,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Pack
     evaluate(const double *t, const Pack *u, const Pack *v, const Pack *m, const bool slopes)
     {
-      kernels_.states(mesh_, u, v, general_.u, general_.v, general_.e, general_.rate);
+      kernels_.states(mesh_, u, v, general_.at);
       return general_.evaluate(t, mesh_.friction, m, slopes);
     }
 

@@ -49,7 +49,7 @@ namespace crawler
 
   private:
     const LaneMethod method_;
-    const ReferenceElement element_;
+    const ReferenceElement &element_;
     std::vector<double> sizes_, sample_places_, samples_;
   };
 

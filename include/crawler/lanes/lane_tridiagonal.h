@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/lanes/lane_memory.h>
+#include <crawler/lanes/lane_mesh.h>
 #include <crawler/lanes/pack.h>
 
 #include <cstddef>
@@ -46,13 +47,13 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 
     /// Factorizes the rows; M is the identity unless @p has_M.
     void
-    factorize(const Pack &real, const Number *shifts, const bool has_M)
+    factorize(const LaneShifts<Pack, pairs> &shifts, const bool has_M)
     {
       for (int j = 0; j < n_; ++j)
       {
-        real_[j] = shifted(rows_[j], real, has_M);
+        real_[j] = shifted(rows_[j], shifts.real, has_M);
         for (int p = 0; p < pairs; ++p)
-          complex_[p][j] = shifted(rows_[j], shifts[p], has_M);
+          complex_[p][j] = shifted(rows_[j], shifts.complex[p], has_M);
       }
       to_the_middle([this](const int from, const int to) {
         eliminate(real_[from], real_[to], to > from);

@@ -81,7 +81,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       lane.next = lane.job.initial_step;
       if (lane.job.progress != nullptr)
         static_cast<LaneProgress &>(lane) = *lane.job.progress;
-      step_.system.set_body(l, lane.job, lane.busy);
+      step_.system.set_body(l, lane.job.body, lane.busy);
       set_lane(step_.tolerance, l, lane.job.tolerance);
       step_.states.start(l, lane.job.start, lane.job.old_z);
       for (int i = 0; i < s * step_.n_points; ++i)
@@ -111,7 +111,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           step_.start[l] = lane.t;
           for (int i = 0; i < s; ++i)
           {
-            step_.times[i][l] = i + 1 < s ? lane.t + setup_.c[i] * lane.h : lane.end_of_step();
+            step_.times[i][l] = i + 1 < s ? lane.t + setup_.method.c[i] * lane.h : lane.end_of_step();
             stress(l, step_.times[i][l], step_.m + i * step_.n_points);
           }
         }
@@ -141,7 +141,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       if (any)
         advance(accepted > 0.);
       for (int l = 0; l < lanes; ++l)
-        if (step_.bodies[l].busy && !step_.bodies[l].accepted && step_.bodies[l].cannot_converge())
+        if (step_.bodies[l].busy && !step_.bodies[l].accepted && step_.bodies[l].cannot_converge(setup_.is_stretch))
           end(l, LaneOutcome::gave_up);
     }
 

@@ -33,8 +33,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     RadauStep(const LaneSetup &all, LawHost *host)
       : setup(all)
       , system(all, host)
-      , n(system.n_unknowns())
-      , n_points(system.n_points())
+      , n(system.n_unknowns)
+      , n_points(system.n_points)
       , states{all, n}
     {
     }
@@ -92,10 +92,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         const Pack correction = correct();
         for (int l = 0; l < lanes; ++l)
           if (bodies[l].iterating)
-            bodies[l].look_at_correction(it,
-                                         get_lane(least, l),
-                                         ::sqrt(get_lane(correction, l)),
-                                         setup.newton_fraction * bodies[l].job.newton_factor);
+            bodies[l].look_at_correction(
+              it, get_lane(least, l), ::sqrt(get_lane(correction, l)), setup.method.newton_fraction);
       }
       for (Lane &lane : bodies)
         if (lane.iterating)
@@ -118,7 +116,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       Pack mask{};
       for (int l = 0; l < lanes; ++l)
         set_lane(mask, l, bodies[l].iterating);
-      radau::to_eigenbasis(radau::Stages<s>{}, setup.rows, F, n, real, complex);
+      radau::to_eigenbasis(radau::Stages<s>{}, setup.method.rows, F, n, real, complex);
       system.solve(real, complex);
       const Pack square = states.template correct<System::largest>(real, complex, mask > 0.);
       return relative(square, s * n);
@@ -133,7 +131,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       {
         system.residual(start, states.u, states.v, m_start, real);
         system.solve(real);
-        const Pack square = relative(squared_size<System::largest>(real, system.n_controlled()), n);
+        const Pack square = relative(squared_size<System::largest>(real, system.n_controlled), n);
         for (int d = 0; d < n; ++d)
           states.u[d] = states.y[d] - real[d];
         bool again = false;

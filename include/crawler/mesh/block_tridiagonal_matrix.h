@@ -3,7 +3,6 @@
 
 #include <crawler/mesh/discretization.h>
 
-#include <complex>
 #include <utility>
 
 namespace crawler
@@ -21,16 +20,7 @@ namespace crawler
     explicit BlockTridiagonalMatrix(const Discretization &discretization);
 
     /// The blocks [local cell][degree+1][degree+1], row by row, to be filled. Filling them invalidates the factors.
-    std::vector<Number> &
-    blocks()
-    {
-      return blocks_;
-    }
-    const std::vector<Number> &
-    blocks() const
-    {
-      return blocks_;
-    }
+    std::vector<Number> blocks;
 
     /// y = A x for owned vectors (collective); only of a real matrix.
     void
@@ -49,7 +39,7 @@ namespace crawler
     solve_shared(Number first, Number last) const;
 
     const Discretization *discretization_;
-    std::vector<Number> blocks_, factors_, schur_;
+    std::vector<Number> factors_, schur_;
 
     // Elimination of the end nodes 1 ... n-1 of the own cells, keeping nodes 0 and n. For node i: its inverse pivot,
     // and its couplings in row/column 0 and to the next node.

@@ -62,4 +62,12 @@ namespace crawler
   {
     return static_cast<unsigned int>(cell * std::min(n_cells, n_ranks) / n_cells);
   }
+
+  /// The first cell of a rank; the number of cells if it owns none.
+  inline unsigned int
+  first_cell_of(const std::uint64_t rank, const std::uint64_t n_cells, const std::uint64_t n_ranks)
+  {
+    const std::uint64_t n_owners = std::min(n_cells, n_ranks);
+    return static_cast<unsigned int>((std::min(rank, n_owners) * n_cells + n_owners - 1) / n_owners);
+  }
 } // namespace crawler

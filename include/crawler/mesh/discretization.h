@@ -36,58 +36,31 @@ namespace crawler
     std::unique_ptr<Discretization>
     adapted(std::vector<CellChange> changes) const;
 
-    MPI_Comm
-    communicator() const
-    {
-      return communicator_;
-    }
-    const ReferenceElement &
-    element() const
-    {
-      return element_;
-    }
-    double
-    length() const
-    {
-      return length_;
-    }
-    /// The whole mesh from left to right, the same on all ranks; this rank's cells start with number first_cell().
-    const std::vector<Cell> &
-    cells() const
-    {
-      return cells_;
-    }
+    const MPI_Comm communicator;
+    const double length;
+    const ReferenceElement &element;
+    const unsigned int rank, n_ranks; ///< this rank, and all of the communicator
+    /// The whole mesh from left to right, the same on all ranks; this rank's cells start with number first_cell.
+    const std::vector<Cell> cells;
+    const unsigned int n_active_ranks; ///< ranks that own cells: 0 ... n_active_ranks - 1
+    const unsigned int first_cell;
+    const std::vector<double> cell_left, cell_size; ///< left ends and sizes of this rank's cells [length]
+
     unsigned int
     n_cells() const
     {
-      return static_cast<unsigned int>(cells_.size());
-    }
-    unsigned int
-    first_cell() const
-    {
-      return first_cell_;
+      return static_cast<unsigned int>(cells.size());
     }
     std::size_t
     n_unknowns() const
     {
-      return cells_.size() * element_.degree + 1;
+      return cells.size() * element.degree + 1;
     }
 
-    /// Left ends of this rank's cells [length]; below, their sizes [length].
-    const std::vector<double> &
-    cell_left() const
-    {
-      return cell_left_;
-    }
-    const std::vector<double> &
-    cell_size() const
-    {
-      return cell_size_;
-    }
     unsigned int
     n_local_cells() const
     {
-      return static_cast<unsigned int>(cell_left_.size());
+      return static_cast<unsigned int>(cell_left.size());
     }
     /// Places of those of ascending points that are in this rank's cells, which they are numbered among.
     std::vector<CellPlace>
@@ -97,7 +70,7 @@ namespace crawler
     std::size_t
     n_local() const
     {
-      return cell_left_.empty() ? 0 : cell_left_.size() * element_.degree + 1;
+      return cell_left.empty() ? 0 : cell_left.size() * element.degree + 1;
     }
     /// Number of unknowns that this rank owns.
     std::size_t
@@ -109,34 +82,17 @@ namespace crawler
     std::span<const double>
     owned_part(const std::span<const double> all) const
     {
-      return all.subspan(first_cell_ * element_.degree + (has_left_neighbour() ? 1 : 0), n_owned());
+      return all.subspan(first_cell * element.degree + (has_left_neighbour() ? 1 : 0), n_owned());
     }
     bool
     has_left_neighbour() const
     {
-      return rank_ > 0 && !cell_left_.empty();
+      return rank > 0 && !cell_left.empty();
     }
     bool
     has_right_neighbour() const
     {
-      return rank_ + 1 < n_active_ranks_;
-    }
-    unsigned int
-    rank() const
-    {
-      return rank_;
-    }
-    /// Number of ranks of the communicator.
-    unsigned int
-    n_ranks() const
-    {
-      return n_ranks_;
-    }
-    /// Number of ranks that own cells: 0 ... n_active_ranks() - 1.
-    unsigned int
-    n_active_ranks() const
-    {
-      return n_active_ranks_;
+      return rank + 1 < n_active_ranks;
     }
 
     /// Material coordinates [length] of @p places (0 to 1) in the own cells, cell by cell.
@@ -145,6 +101,17 @@ namespace crawler
     /// Those of @p places in own cells, numbered as by own_places().
     std::vector<double>
     points_of(const std::vector<CellPlace> &places) const;
+
+    /// Slope of a field in one of this rank's cells, from its @p local values and the derivatives [n nodes] of the
+    /// shape functions at the place.
+    double
+    slope(const std::span<const double> local, const std::size_t cell, const double *derivatives) const
+    {
+      double sum = 0.;
+      for (std::size_t i = 0; i < element.n; ++i)
+        sum += derivatives[i] * local[cell * element.degree + i];
+      return sum / cell_size[cell];
+    }
 
     /// Completes a local array from the owned values of all ranks (collective). Returns @p owned itself where nothing
     /// is missing; else fills and returns @p buffer.
@@ -168,16 +135,9 @@ namespace crawler
 
     Discretization(MPI_Comm communicator, double length, unsigned int degree, std::shared_ptr<Mesh> mesh);
 
-    void
-    set_cells(std::vector<Cell> cells);
+    std::vector<double>
+    of_own_cells(double Cell::*part) const;
 
-    const MPI_Comm communicator_;
-    const double length_;
-    const ReferenceElement &element_;
-    const unsigned int rank_, n_ranks_;
-    unsigned int n_active_ranks_ = 0, first_cell_ = 0;
-    std::vector<Cell> cells_;
-    std::vector<double> cell_left_, cell_size_;
     std::shared_ptr<Mesh> mesh_; ///< shared by a sequence of adapted meshes; in the state of the latest
   };
 } // namespace crawler

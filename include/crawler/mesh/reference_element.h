@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/mesh/element_tables.h>
+
 #include <type_traits>
 #include <vector>
 
@@ -33,9 +35,19 @@ namespace crawler
     std::vector<double> stretch_weights;     ///< [q]
     std::vector<double> stretch_derivatives; ///< [q stretch points][n nodes] derivatives of the shape functions
 
+    // Samples of the stretch: at the ends of the cell, and at the quadrature points in between.
+    std::vector<double> sample_places;      ///< [n + 2]
+    std::vector<double> sample_derivatives; ///< [n + 2][n nodes] derivatives of the shape functions
+
     /// [n points][n] integrals from the left end of the cell to each quadrature point, of the polynomial through values
     /// at the quadrature points.
     std::vector<double> integrate_points;
+
+    ElementTables
+    tables() const
+    {
+      return {values.data(), derivatives.data(), weights.data(), stiffness.data()};
+    }
   };
 
   /// Result of @p use for a degree, 1 to highest_degree, as a constant of the compiler: std::integral_constant<int, q>.

@@ -32,11 +32,10 @@ namespace crawler
 
     const Places places_;
     // Of the mesh mesh_number_.
-    unsigned int mesh_number_ = 0;
+    std::optional<unsigned int> mesh_number_;
     std::vector<CellPlace> points_;
     std::vector<double> coordinates_;
-    std::vector<double> values_;            ///< [point][node] shape functions
-    std::optional<StretchSampler> stretch_; ///< at the x of the points
+    std::vector<double> values_, derivatives_; ///< [point][node] of the shape functions
     std::unique_ptr<ActiveStressAtPoints> stress_;
     std::unique_ptr<GeneralSampler> general_; ///< of a general scene
     std::vector<double> u_local_, v_local_;

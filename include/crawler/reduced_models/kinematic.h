@@ -64,7 +64,7 @@ namespace crawler
     double time_ = 0.;
     std::vector<double> e_, e_t_;
     GivenMotion motion_;
-    std::vector<double> B_, m_;
+    std::vector<double> m_;
     Integrals integrals_;
   };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/equation/cell_kernels.h>
 #include <crawler/equation/energy_balance.h>
 #include <crawler/reduced_models/reduced_fields.h>
 #include <crawler/reduced_models/strain.h>

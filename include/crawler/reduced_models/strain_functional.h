@@ -49,17 +49,7 @@ namespace crawler
 
     StrainFunctional(unsigned int n_space_panels, unsigned int n_time_panels);
 
-    /// Places and times of the grid: those of the quadrature, and both ends.
-    const std::vector<double> &
-    points() const
-    {
-      return points_;
-    }
-    const std::vector<double> &
-    times() const
-    {
-      return times_;
-    }
+    const std::vector<double> points, times; ///< places and times of the grid: those of the quadrature, and both ends
 
     StrainSamples
     sample(const ActiveStress &strain) const;
@@ -80,6 +70,6 @@ namespace crawler
 
     const GaussPanels space_, time_;
     const std::size_t n_; ///< points of the quadrature over the body
-    std::vector<double> points_, times_, time_weights_;
+    std::vector<double> time_weights_;
   };
 } // namespace crawler

@@ -44,7 +44,7 @@ namespace crawler
     const Discretization &
     discretization() const
     {
-      return mesh_.assembler->discretization();
+      return mesh_.assembler->discretization;
     }
     const Units &
     units() const

@@ -30,8 +30,7 @@ namespace crawler
     const FormulaBreaks breaks = formula_breaks(compiled_, length, end_time);
     facts_.breaks_in_space     = breaks.in_space.value_or(std::vector<double>());
     facts_.breaks_in_time      = breaks.in_time.value_or(std::vector<double>());
-    if (breaks.in_time)
-      bound_.leave_out_jumps();
+    bound_.leaves_out_jumps    = breaks.in_time.has_value();
     require_finite_values(*this, input, "", length, end_time);
   }
 

@@ -53,7 +53,7 @@ namespace crawler
       refine(const std::vector<double> &x) override
       {
         constexpr std::size_t most = 400000;
-        const bool is_large        = grid_->points().size() * grid_->times().size() > most;
+        const bool is_large        = grid_->points.size() * grid_->times.size() > most;
         const auto refine_in       = [&](const bool space, const bool time, const std::vector<double> &somewhere) {
           n_space_ *= space ? 2 : 1;
           n_time_ *= time ? 2 : 1;
@@ -106,8 +106,8 @@ namespace crawler
       description() const override
       {
         return fmt::format("kinematic level, {} x {} points of quadrature in s and t{}",
-                           grid_->points().size(),
-                           grid_->times().size(),
+                           grid_->points.size(),
+                           grid_->times.size(),
                            linear_ ? ", the strain is linear in the variables" : "");
       }
 
@@ -150,7 +150,7 @@ namespace crawler
         BodyAtPoints
         body(const StrainFunctional &grid) const
         {
-          return {reduced.scene(), grid.points()};
+          return {reduced.scene(), grid.points};
         }
 
         /// True if body, ground, units and time are those of another state, so that only the strain may differ.

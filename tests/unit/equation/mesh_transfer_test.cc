@@ -32,9 +32,9 @@ namespace
   Invariants
   invariants(PositionForm &form, const std::vector<double> &u)
   {
-    const Discretization &d = form.discretization();
+    const Discretization &d = form.discretization;
     double own              = 0.;
-    if (d.rank() == 0)
+    if (d.rank == 0)
       own -= u.front();
     if (d.n_local() > 0 && !d.has_right_neighbour())
       own += u.back();
@@ -68,17 +68,17 @@ namespace
   std::vector<double>
   state(const PositionForm &form, const double roughness)
   {
-    const Discretization &d = form.discretization();
-    const auto &element     = d.element();
+    const Discretization &d = form.discretization;
+    const auto &element     = d.element;
     const unsigned int q    = element.degree;
     std::vector<double> local(d.n_local());
     for (unsigned int c = 0; c < d.n_local_cells(); ++c)
       for (unsigned int i = 0; i < element.n; ++i)
       {
-        const double s = d.cell_left()[c] + d.cell_size()[c] * element.nodes[i];
+        const double s = d.cell_left[c] + d.cell_size[c] * element.nodes[i];
         local[c * q + i] =
           0.06 * std::sin(5. * s) + 0.02 * s * s +
-          roughness * d.cell_size()[c] / (q * q) * scattered((d.first_cell() + c) * static_cast<std::size_t>(q) + i);
+          roughness * d.cell_size[c] / (q * q) * scattered((d.first_cell + c) * static_cast<std::size_t>(q) + i);
       }
     return {local.begin() + (d.has_left_neighbour() ? 1 : 0), local.end()};
   }

@@ -61,12 +61,12 @@ namespace
       , y(form->n_owned())
       , y_dot(form->n_owned())
     {
-      const auto &element  = d.element();
+      const auto &element  = d.element;
       const unsigned int q = degree;
       for (unsigned int c = 0; c < d.n_cells(); ++c)
         for (unsigned int i = 0; i < element.n; ++i)
         {
-          const double s         = d.cell_left()[c] + d.cell_size()[c] * element.nodes[i];
+          const double s         = d.cell_left[c] + d.cell_size[c] * element.nodes[i];
           const std::size_t node = c * q + i;
           y[node]                = 0.06 * std::sin(5. * s) + 0.02 * s * s;
           y_dot[node]            = 0.3 * std::cos(4. * s) - 0.1;
@@ -241,7 +241,7 @@ TEST(PositionForm, ResolutionSeesTheHighestMode)
   const auto set = [&](auto function) {
     for (unsigned int c = 0; c < 2; ++c)
       for (unsigned int i = 0; i < 4; ++i)
-        u[c * 3 + i] = function(d.cell_left()[c] + d.cell_size()[c] * d.element().nodes[i]);
+        u[c * 3 + i] = function(d.cell_left[c] + d.cell_size[c] * d.element.nodes[i]);
   };
   set([](const double s) { return 0.1 * s * s; }); // linear strain, no second mode
   EXPECT_LT(assembler.resolution(u).highest_mode, 1e-25);

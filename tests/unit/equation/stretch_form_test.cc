@@ -61,7 +61,7 @@ namespace
       , v(d.n_unknowns())
     {
       for (std::size_t j = 0; j < w.size(); ++j)
-        w[j] = 1. + 0.35 * std::cos(5. * (d.cell_left()[j] + 0.5 * d.cell_size()[j]) + 0.4);
+        w[j] = 1. + 0.35 * std::cos(5. * (d.cell_left[j] + 0.5 * d.cell_size[j]) + 0.4);
       y = state(w, 0.1);
     }
 
@@ -84,7 +84,7 @@ namespace
     {
       std::vector<double> result(y.size());
       for (std::size_t j = 0; j < w.size(); ++j)
-        result[j] = (v[j + 1] - v[j]) / d.cell_size()[j] * (is_power ? std::pow(w[j], scene.friction_exponent()) : 1.);
+        result[j] = (v[j + 1] - v[j]) / d.cell_size[j] * (is_power ? std::pow(w[j], scene.friction_exponent()) : 1.);
       result.back() = v[0];
       return result;
     }
@@ -167,7 +167,7 @@ TEST(StretchForm, FrictionIsThatOfTheLaws)
     for (std::size_t j = 0; j < n; ++j)
       for (const double v : {test.v[j], test.v[j + 1]})
       {
-        const double f = 0.5 * test.d.cell_size()[j] * g[j] * b[j] * factor(test.scene.ground.direction, v) * v;
+        const double f = 0.5 * test.d.cell_size[j] * g[j] * b[j] * factor(test.scene.ground.direction, v) * v;
         net += f;
         size += std::abs(f);
         power += f * v;
@@ -187,7 +187,7 @@ TEST(StretchForm, StatesAreShapes)
     for (std::size_t j = 0; j < test.w.size(); ++j)
     {
       EXPECT_NEAR(w[j], test.w[j], 1e-14) << name;
-      EXPECT_NEAR((u[j + 1] - u[j]) / test.d.cell_size()[j], test.w[j] - 1., 1e-13) << name;
+      EXPECT_NEAR((u[j + 1] - u[j]) / test.d.cell_size[j], test.w[j] - 1., 1e-13) << name;
     }
   });
 }

@@ -53,15 +53,15 @@ namespace
       , y_dot(n + 1)
       , m(n)
     {
-      setup.n_cells         = static_cast<unsigned int>(n);
-      setup.sizes           = d.cell_size().data();
-      setup.real_eigenvalue = real_shift;
-      setup.eigenvalues     = complex_shift;
-      setup.is_stretch      = true;
-      setup.laws            = lane_laws(scene);
-      setup.stretch         = stretch_method(scene, other);
-      setup.direction       = scene.ground.direction;
-      const double power    = 1. + scene.friction_exponent();
+      setup.n_cells                = static_cast<unsigned int>(n);
+      setup.sizes                  = d.cell_size.data();
+      setup.method.real_eigenvalue = real_shift;
+      setup.method.eigenvalues     = complex_shift;
+      setup.is_stretch             = true;
+      setup.laws                   = lane_laws(scene);
+      setup.stretch                = stretch_method(scene, other);
+      setup.direction              = scene.ground.direction;
+      const double power           = 1. + scene.friction_exponent();
       for (int j = 0; j < n; ++j)
       {
         const double w = 1. + 0.35 * std::cos(5. * (j + 0.5) / n + 0.4);
@@ -73,7 +73,7 @@ namespace
       EXPECT_TRUE(form.velocity(t, y, v));
       const auto w = form.stretch(y);
       for (int j = 0; j < n; ++j)
-        y_dot[j] = (v[j + 1] - v[j]) / d.cell_size()[j] * (setup.stretch.is_power ? std::pow(w[j], power - 1.) : 1.);
+        y_dot[j] = (v[j + 1] - v[j]) / d.cell_size[j] * (setup.stretch.is_power ? std::pow(w[j], power - 1.) : 1.);
       y_dot[n] = v[0];
     }
     Case(const Case &) = delete;
@@ -114,10 +114,7 @@ namespace
     void
     set_body(const int lane, const double k, const double a)
     {
-      LaneJob job{};
-      job.k = k;
-      job.a = a;
-      system.set_body(lane, job, true);
+      system.set_body(lane, {.k = k, .a = a}, true);
     }
 
     System<Pack> system;

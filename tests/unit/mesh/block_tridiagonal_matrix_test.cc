@@ -26,11 +26,11 @@ namespace
   void
   fill(BlockTridiagonalMatrix<double> &matrix, const Discretization &d, const std::size_t first_cell)
   {
-    const unsigned int n = d.element().n;
+    const unsigned int n = d.element.n;
     for (std::size_t c = 0; c < d.n_local_cells(); ++c)
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = 0; j < n; ++j)
-          matrix.blocks()[(c * n + i) * n + j] = entry(first_cell + c, i, j, n);
+          matrix.blocks[(c * n + i) * n + j] = entry(first_cell + c, i, j, n);
   }
 } // namespace
 
@@ -42,7 +42,7 @@ TEST(BlockTridiagonalMatrix, IsTheSumOfItsCells)
       const Discretization d(MPI_COMM_WORLD, 1., n_cells, q);
       BlockTridiagonalMatrix<double> matrix(d);
       const auto first_cell =
-        static_cast<std::size_t>(d.n_local_cells() == 0 ? 0 : std::lround(d.cell_left()[0] * n_cells));
+        static_cast<std::size_t>(d.n_local_cells() == 0 ? 0 : std::lround(d.cell_left[0] * n_cells));
       fill(matrix, d, first_cell);
 
       const unsigned int N = n_cells * q + 1;
@@ -75,7 +75,7 @@ TEST(BlockTridiagonalMatrix, ReportsASingularMatrix)
   BlockTridiagonalMatrix<double> matrix(d);
   EXPECT_FALSE(matrix.factorize()); // all zeros
   fill(matrix, d, 0);
-  if (d.rank() == 0)
-    matrix.blocks()[5] = std::numeric_limits<double>::quiet_NaN();
+  if (d.rank == 0)
+    matrix.blocks[5] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(matrix.factorize()); // on every rank
 }

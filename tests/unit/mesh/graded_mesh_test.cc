@@ -79,7 +79,7 @@ TEST(GradedMesh, CanBeAdapted)
 {
   const std::vector<double> ends = cell_ends(3, {0.3}, {2, 0.3});
   auto mesh                      = std::make_unique<Discretization>(MPI_COMM_WORLD, ends, 3);
-  const auto first               = mesh->cells();
+  const auto first               = mesh->cells;
   ASSERT_EQ(first.size(), ends.size() - 1);
   for (std::size_t c = 0; c < first.size(); ++c)
   {
@@ -94,7 +94,7 @@ TEST(GradedMesh, CanBeAdapted)
   }
   EXPECT_GE(mesh->n_cells(), first.size() + 3);
   double left = 0.;
-  for (const Cell &cell : mesh->cells())
+  for (const Cell &cell : mesh->cells)
   {
     EXPECT_NEAR(cell.left, left, 1e-15);
     left = cell.left + cell.size;
@@ -105,7 +105,7 @@ TEST(GradedMesh, CanBeAdapted)
     mesh = mesh->adapted(std::vector<CellChange>(mesh->n_cells(), CellChange::join));
   ASSERT_EQ(mesh->n_cells(), first.size());
   for (std::size_t c = 0; c < first.size(); ++c)
-    EXPECT_NEAR(mesh->cells()[c].size, first[c].size, 1e-15);
+    EXPECT_NEAR(mesh->cells[c].size, first[c].size, 1e-15);
 }
 
 TEST(LayeredMesh, EndsAtTheBreaks)

@@ -24,7 +24,7 @@ namespace
   highest_level(const Discretization &mesh)
   {
     unsigned int level = 0;
-    for (const Cell &cell : mesh.cells())
+    for (const Cell &cell : mesh.cells)
       level = std::max(level, cell.level);
     return level;
   }
@@ -36,12 +36,12 @@ namespace
     double end = 0.;
     for (unsigned int c = 0; c < mesh.n_cells(); ++c)
     {
-      const Cell &cell = mesh.cells()[c];
+      const Cell &cell = mesh.cells[c];
       EXPECT_NEAR(cell.left, end, 1e-14 * length) << c;
       EXPECT_NEAR(cell.size, std::ldexp(length / coarse_cells, -static_cast<int>(cell.level)), 1e-15 * length);
       if (c > 0)
       {
-        EXPECT_LE(std::abs(static_cast<int>(cell.level) - static_cast<int>(mesh.cells()[c - 1].level)), 1) << c;
+        EXPECT_LE(std::abs(static_cast<int>(cell.level) - static_cast<int>(mesh.cells[c - 1].level)), 1) << c;
       }
       end = cell.left + cell.size;
     }
@@ -50,8 +50,8 @@ namespace
     EXPECT_EQ(test::over_ranks(static_cast<unsigned int>(mesh.n_owned())), mesh.n_unknowns());
     for (unsigned int c = 0; c < mesh.n_local_cells(); ++c)
     {
-      EXPECT_EQ(mesh.cell_left()[c], mesh.cells()[mesh.first_cell() + c].left);
-      EXPECT_EQ(mesh.cell_size()[c], mesh.cells()[mesh.first_cell() + c].size);
+      EXPECT_EQ(mesh.cell_left[c], mesh.cells[mesh.first_cell + c].left);
+      EXPECT_EQ(mesh.cell_size[c], mesh.cells[mesh.first_cell + c].size);
     }
   }
 
@@ -61,8 +61,8 @@ namespace
     ASSERT_EQ(a.n_cells(), b.n_cells());
     for (unsigned int c = 0; c < a.n_cells(); ++c)
     {
-      EXPECT_NEAR(a.cells()[c].left, b.cells()[c].left, 1e-15);
-      EXPECT_EQ(a.cells()[c].level, b.cells()[c].level);
+      EXPECT_NEAR(a.cells[c].left, b.cells[c].left, 1e-15);
+      EXPECT_EQ(a.cells[c].level, b.cells[c].level);
     }
   }
 } // namespace
@@ -74,7 +74,7 @@ TEST(MeshMarking, IndicatorsOfAllRanks)
     const Mesh mesh = uniform(n);
     std::vector<double> own;
     for (unsigned int c = 0; c < mesh->n_local_cells(); ++c)
-      own.push_back(1. + mesh->first_cell() + c);
+      own.push_back(1. + mesh->first_cell + c);
     const auto all = mesh->gather(own);
     ASSERT_EQ(all.size(), n);
     for (unsigned int c = 0; c < n; ++c)
@@ -141,7 +141,7 @@ TEST(MeshMarking, RespectsTheLimits)
   {
     indicators.assign(mesh->n_cells(), 0.);
     for (unsigned int c = 0; c < mesh->n_cells(); ++c)
-      if (mesh->cells()[c].left <= 0.3 && 0.3 < mesh->cells()[c].left + mesh->cells()[c].size)
+      if (mesh->cells[c].left <= 0.3 && 0.3 < mesh->cells[c].left + mesh->cells[c].size)
         indicators[c] = 2.;
     const Changes changes = mark_for_division(indicators, *mesh, limits);
     EXPECT_EQ(changes.empty(), round >= 4) << round;
@@ -164,7 +164,7 @@ TEST(MeshMarking, NeighboursDifferByOneLevel)
     for (unsigned int round = 0; round < 6; ++round)
     {
       Changes changes(mesh->n_cells(), keep);
-      const auto &cells = mesh->cells();
+      const auto &cells = mesh->cells;
       const auto worst =
         std::max_element(cells.begin(), cells.end(), [](const Cell &a, const Cell &b) { return a.level < b.level; });
       changes[static_cast<std::size_t>(worst - cells.begin())] = divide;
@@ -187,12 +187,12 @@ TEST(MeshMarking, NeighboursDifferByOneLevel)
       std::vector<Cell> divided;
       for (unsigned int c = 0; c < mesh->n_cells(); ++c)
         if (changes[c] == divide)
-          divided.push_back(mesh->cells()[c]);
+          divided.push_back(mesh->cells[c]);
       mesh = mesh->adapted(changes);
       expect_sound(*mesh, length, n_cells);
       EXPECT_LE(highest_level(*mesh), level + 1);
       for (const Cell &was : divided)
-        for (const Cell &cell : mesh->cells())
+        for (const Cell &cell : mesh->cells)
           if (cell.left + 0.5 * cell.size > was.left && cell.left + 0.5 * cell.size < was.left + was.size)
           {
             EXPECT_EQ(cell.level, was.level + 1);

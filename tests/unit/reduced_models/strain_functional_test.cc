@@ -50,7 +50,7 @@ TEST(StrainFunctional, OfASineWaveIsExact)
   });
   const StrainFunctional grid(4, 2);
   const Scene scene = body(1., -1.);
-  const auto values = grid.values(grid.sample(wave), {scene, grid.points()});
+  const auto values = grid.values(grid.sample(wave), {scene, grid.points});
   ASSERT_TRUE(values);
   const double exact = 1. - std::sqrt(1. - 0.09);
   EXPECT_NEAR((*values)[StrainFunctional::displacement], exact, 1e-10);
@@ -71,7 +71,7 @@ TEST(StrainFunctional, WeightsAreDerivatives)
     Scene scene = body(0.7, a);
     if (a == 3.)
       scene.profiles = read_profiles({.elastic_modulus_profile = "0.5+s", .friction_profile = "1.5-s"}, 1.);
-    const BodyAtPoints at_points(scene, grid.points());
+    const BodyAtPoints at_points(scene, grid.points);
     for (const auto number : {StrainFunctional::displacement,
                               StrainFunctional::dissipation,
                               StrainFunctional::stress_work,
@@ -106,7 +106,7 @@ TEST(StrainFunctional, RefusesABodyThatInverts)
   StrainSamples samples = grid.sample(strain());
   samples.strain[5]     = -1.;
   const Scene scene     = body(1., -1.);
-  EXPECT_FALSE(grid.values(samples, {scene, grid.points()}));
+  EXPECT_FALSE(grid.values(samples, {scene, grid.points}));
 }
 
 TEST(GaussPanels, EndAtBreaks)
