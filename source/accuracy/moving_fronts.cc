@@ -186,4 +186,10 @@ namespace crawler
   {
     return Fronts(problem, answer_of).compute();
   }
+
+  Scene
+  shown_scene(const NumericsChoice &choice, const Scene &scene)
+  {
+    return choice.front_part > 0. ? with_fronts(scene, choice.front_part).value_or(scene) : scene;
+  }
 } // namespace crawler

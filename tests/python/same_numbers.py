@@ -22,6 +22,7 @@ K, P = "Body/Elastic modulus", "Body/Anchoring exponent"
 WAVE = {"Accuracy": 1e-4,
         "Active stress": {"Optimal wave": {"Perturbation parameter": 0.3, "Choose wave by": "wave speed"}}}
 INVERTS = {"Active stress": {"Generator": "expression", "Expression": {"Active stress": "3*sin(2*pi*(s+t))"}}}
+JUMPS = {"Accuracy": 1e-2, "Active stress": {"Generator": "travelling wave", "Travelling wave": {"Profile": "square"}}}
 # Name: scene, overrides.
 RUNS = {
     "paper": (PRM / "paper/fig_s1.prm", {}),
@@ -35,6 +36,7 @@ RUNS = {
     "petsc": (WAVE, {"Time/Engine": "petsc", "Time/Integrator": "bdf"}),
     "adaptive": (WAVE, {"Discretization/Mesh": "adaptive"}),
     "inverted": (INVERTS, {}),
+    "jumps that move": (JUMPS, {}),
 }
 
 

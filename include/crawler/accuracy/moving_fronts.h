@@ -20,4 +20,8 @@ namespace crawler
    */
   Answer
   answer_of_fronts(const Problem &problem, const std::function<Answer(const Problem &)> &answer_of);
+
+  /// Scene of the run whose pictures and fields are shown: with the steepest fronts in place of jumps that move.
+  Scene
+  shown_scene(const NumericsChoice &choice, const Scene &scene);
 } // namespace crawler

@@ -2,6 +2,7 @@
 #include <crawler/accuracy/choose_numerics.h>
 #include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/model_choice.h>
+#include <crawler/accuracy/moving_fronts.h>
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/base/archive.h>
 #include <crawler/base/clock.h>
@@ -185,12 +186,9 @@ namespace crawler
       build(const NumericsChoice &choice)
       {
         simulation_.reset();
-        if (choice.front_part > 0.)
-          scene_with_fronts_ = with_fronts(input_.scene, choice.front_part);
-        simulation_ = std::make_unique<Simulation>(sharing_.ranks,
-                                                   scene_with_fronts_ ? *scene_with_fronts_ : input_.scene,
-                                                   input_.parameters.time,
-                                                   choice.numerics);
+        shown_scene_ = shown_scene(choice, input_.scene);
+        simulation_ =
+          std::make_unique<Simulation>(sharing_.ranks, *shown_scene_, input_.parameters.time, choice.numerics);
       }
 
       /// Makes the files, now that nothing in the input can be refused any more.
@@ -430,7 +428,7 @@ namespace crawler
       std::optional<NumericsChoice> choice_; ///< numerics of a level with a mesh
       Sharing sharing_;
       PictureTimes pictures_;
-      std::optional<Scene> scene_with_fronts_;
+      std::optional<Scene> shown_scene_;
       std::unique_ptr<Simulation> simulation_;
       std::optional<WaitProgress> other_runs_; ///< progress of runs without one of their own
       unsigned int n_runs_ = 0;

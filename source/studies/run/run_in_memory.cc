@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/choose_numerics.h>
 #include <crawler/accuracy/error_estimate.h>
+#include <crawler/accuracy/moving_fronts.h>
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/base/clock.h>
 #include <crawler/output/kymograph_writer.h>
@@ -85,8 +86,9 @@ namespace crawler
                                            .gait =
                                              wanted.is_all ? Simulation::GaitWish::none : Simulation::GaitWish::any};
       const auto simulate               = [&](const NumericsChoice &choice) {
-        const Observers tables = begin_tables(parameters.output, input.scene, wanted, run);
-        return Simulation(MPI_COMM_SELF, input.scene, parameters.time, choice.numerics)
+        const Scene scene      = shown_scene(choice, input.scene);
+        const Observers tables = begin_tables(parameters.output, scene, wanted, run);
+        return Simulation(MPI_COMM_SELF, scene, parameters.time, choice.numerics)
           .run(pictures, options, tables, keep_going);
       };
       Answer answer =
