@@ -12,7 +12,7 @@ namespace crawler
     constexpr unsigned int max_corrections = 50, max_halvings = 20;
     /// Correction, as a part of the velocity, below which it is the last one: more change nothing.
     constexpr double small = 1e-10;
-    /// Corrections below this part, or below tiny in natural units, are round-off.
+    /// Corrections below this part, or below tiny in natural units, are round-off; and below tiny as a part.
     constexpr double acceptable = 1e-7, tiny = 1e-13;
 
     double
@@ -61,8 +61,9 @@ namespace crawler
       // Linear friction leaves round-off alone: the next correction would be smaller by as much as the residual is.
       const double next = correction * new_norm / norm;
       std::copy(trial.begin(), trial.end(), v.begin());
-      norm = new_norm;
-      if (part == 1. && std::min(correction, next) <= small * largest(v, discretization))
+      norm              = new_norm;
+      const double size = largest(v, discretization);
+      if (part == 1. && (correction <= small * size || next <= tiny * size))
         return true;
     }
     return norm == 0.;
