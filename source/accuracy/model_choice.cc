@@ -36,34 +36,32 @@ namespace crawler
       const StrainExtreme &worst =
         std::abs(start.smallest.strain) > std::abs(start.largest.strain) ? start.smallest : start.largest;
       if (size(start) > round_off * size(all))
-        throw InputError(fmt::format("the strain at t = 0 is {:.6g} at s = {:.6g}, but 0 is expected everywhere, since "
-                                     "the {} model starts from rest (Model = kinematic does not)",
-                                     worst.strain,
-                                     worst.s,
-                                     word_of(model)),
-                         "Active stress/Generator");
+        refuse("Active stress/Generator",
+               "the strain at t = 0 is {:.6g} at s = {:.6g}, but 0 is expected everywhere, since "
+               "the {} model starts from rest (Model = kinematic does not)",
+               worst.strain,
+               worst.s,
+               word_of(model));
     }
 
     void
     require_fit(const Model model, const RunParameters &parameters, const ReducedScene &levels)
     {
       if (model == Model::perturbation && !levels.wave() && parameters.active_stress.generator == "optimal wave")
-        throw InputError(
-          fmt::format("Model is perturbation, which is a series for Fourier coefficients, but the Shape of "
-                      "the optimal wave is {}; Model = kinematic, nonlinear or auto is expected",
-                      parameters.active_stress.optimal_wave.shape),
-          "Model");
+        refuse("Model",
+               "Model is perturbation, which is a series for Fourier coefficients, but the Shape of "
+               "the optimal wave is {}; Model = kinematic, nonlinear or auto is expected",
+               parameters.active_stress.optimal_wave.shape);
       if (model == Model::perturbation && !levels.wave())
-        throw InputError(fmt::format("Model is perturbation, which is a series for the optimal wave, but the Generator "
-                                     "is {}; Model = kinematic, nonlinear or auto is expected",
-                                     parameters.active_stress.generator),
-                         "Model");
+        refuse("Model",
+               "Model is perturbation, which is a series for the optimal wave, but the Generator "
+               "is {}; Model = kinematic, nonlinear or auto is expected",
+               parameters.active_stress.generator);
       if (model == Model::kinematic && levels.strain() == nullptr)
-        throw InputError(
-          fmt::format("Model is kinematic, which needs the rate of the active stress, but that of Generator = "
-                      "{} is not known, or jumps; Model = nonlinear or auto is expected",
-                      parameters.active_stress.generator),
-          "Model");
+        refuse("Model",
+               "Model is kinematic, which needs the rate of the active stress, but that of Generator = "
+               "{} is not known, or jumps; Model = nonlinear or auto is expected",
+               parameters.active_stress.generator);
     }
 
     /// Approximate level to try.
@@ -114,20 +112,19 @@ namespace crawler
   {
     ModelChoice choice{parameters.model, fmt::format("Model {}: as set", word_of(parameters.model))};
     if (parameters.model == Model::linear && scene.body.friction_exponent() != 0.)
-      throw InputError(
-        fmt::format("Model is linear, but a = 1 - p is {:g}; a = 0 is expected (Anchoring exponent p = 1)",
-                    scene.body.friction_exponent()),
-        "Model");
+      refuse("Model",
+             "Model is linear, but a = 1 - p is {:g}; a = 0 is expected (Anchoring exponent p = 1)",
+             scene.body.friction_exponent());
     if (parameters.model != Model::linear && parameters.model != Model::nonlinear)
     {
       const bool is_prescribed = scene.active_stress->prescribed_strain() != nullptr;
       if (parameters.output.differentiates() && parameters.model == Model::automatic && !is_prescribed)
         return {Model::nonlinear, "Model nonlinear: simpler ones that are approximate have no Sensitivities"};
       if (parameters.output.differentiates() && !is_prescribed)
-        throw InputError(fmt::format("Sensitivities are wanted, but Model is {} and the strain is not prescribed; "
-                                     "nonlinear or auto is expected",
-                                     word_of(parameters.model)),
-                         parameters.output.sensitivities.empty() ? "Output/Uncertainty" : "Output/Sensitivities");
+        refuse(parameters.output.sensitivities.empty() ? "Output/Uncertainty" : "Output/Sensitivities",
+               "Sensitivities are wanted, but Model is {} and the strain is not prescribed; "
+               "nonlinear or auto is expected",
+               word_of(parameters.model));
       if (!scene.is_plain() && !is_prescribed)
         return {Model::nonlinear,
                 "Model nonlinear: simpler ones are for plain bodies and grounds, but the scene has " +

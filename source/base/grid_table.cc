@@ -155,14 +155,14 @@ namespace crawler
   {
     const double most = 1e-6 * end;
     if (values.front() > most || values.back() < end - most)
-      throw InputError(fmt::format("\"{}\" has {} from {} to {}, but the whole {}, from 0 to {}, is expected",
-                                   file,
-                                   name,
-                                   told_apart(values.front(), {0.}),
-                                   told_apart(values.back(), {end}),
-                                   what,
-                                   told_apart(end, {values.back()})),
-                       entry);
+      refuse(entry,
+             "\"{}\" has {} from {} to {}, but the whole {}, from 0 to {}, is expected",
+             file,
+             name,
+             told_apart(values.front(), {0.}),
+             told_apart(values.back(), {end}),
+             what,
+             told_apart(end, {values.back()}));
     values.front() = std::min(values.front(), 0.);
     values.back()  = std::max(values.back(), end);
   }

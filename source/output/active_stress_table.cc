@@ -26,13 +26,12 @@ namespace crawler
         return n >= least && n <= most && n == std::floor(n);
       });
     if (!good)
-      throw InputError(
-        fmt::format("Active stress table is \"{}\", but the numbers of samples over s and over t are expected, "
-                    "whole numbers from {:g} on with a product of at most {:g}",
-                    fmt::join(size, ", "),
-                    least,
-                    max_samples),
-        entry);
+      refuse(entry,
+             "Active stress table is \"{}\", but the numbers of samples over s and over t are expected, "
+             "whole numbers from {:g} on with a product of at most {:g}",
+             fmt::join(size, ", "),
+             least,
+             max_samples);
     if (stress.feedback() != nullptr)
       throw InputError("Active stress table is wanted, but the active stress depends on the stretch besides s and t; "
                        "an empty entry is expected here (the kymograph has the active stress of the run)",
@@ -79,8 +78,7 @@ namespace crawler
         "= segments, is expected",
         entry);
     if (const double n = static_cast<double>(n_parts) * static_cast<double>(segments->middles().size()); n > most)
-      throw InputError(
-        fmt::format("the segment table would have {:.3g} numbers, but at most {:g} are expected", n, most), entry);
+      refuse(entry, "the segment table would have {:.3g} numbers, but at most {:g} are expected", n, most);
   }
 
   void

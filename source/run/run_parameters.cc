@@ -22,13 +22,13 @@ namespace crawler
     {
       constexpr double smallest = 1e-100, largest = 1e100;
       if (value && !(*value / unit >= smallest && *value / unit <= largest))
-        throw InputError(fmt::format("{0} is {1:g}, but a number from {2:g} to {3:g} times the {4} is expected",
-                                     name,
-                                     *value,
-                                     smallest,
-                                     largest,
-                                     unit_name),
-                         std::string("Time/") + name);
+        refuse(std::string("Time/") + name,
+               "{0} is {1:g}, but a number from {2:g} to {3:g} times the {4} is expected",
+               name,
+               *value,
+               smallest,
+               largest,
+               unit_name);
     }
 
     /// Requires settings of the stretch form, which has meshes and integrators of its own.
@@ -38,11 +38,11 @@ namespace crawler
       const auto require =
         [](const bool ok, const std::string &entry, const std::string &found, const std::string &expected) {
           if (!ok)
-            throw InputError(fmt::format("Formulation is stretch and {} is {}, but {} is expected",
-                                         entry.substr(entry.find('/') + 1),
-                                         found,
-                                         expected),
-                             entry);
+            refuse(entry,
+                   "Formulation is stretch and {} is {}, but {} is expected",
+                   entry.substr(entry.find('/') + 1),
+                   found,
+                   expected);
         };
       const DiscretizationParameters &d = p.discretization;
       require(d.mesh != MeshKind::adaptive, "Discretization/Mesh", word_of(d.mesh), "automatic or uniform");
@@ -61,8 +61,9 @@ namespace crawler
               fmt::format("{:g}", p.time.tolerance.value_or(0.)),
               fmt::format("at most a thousandth of the Length, {:g},", 1e-3 * p.body.length));
       if (const std::string reason = reason_against_stretch_form(scene); !reason.empty())
-        throw InputError(fmt::format("Formulation is stretch, but position or automatic is expected, since {}", reason),
-                         "Discretization/Formulation");
+        refuse("Discretization/Formulation",
+               "Formulation is stretch, but position or automatic is expected, since {}",
+               reason);
     }
 
     /// Requires settings that fit a general scene.
@@ -72,34 +73,32 @@ namespace crawler
       const std::string features = scene.general_features();
       const bool is_prescribed   = scene.active_stress->prescribed_strain() != nullptr;
       if (p.model != Model::automatic && p.model != Model::nonlinear && !(p.model == Model::kinematic && is_prescribed))
-        throw InputError(
-          fmt::format("Model is {}, which is for plain bodies and grounds{}, but the scene has {}; nonlinear or "
-                      "auto is expected",
-                      word_of(p.model),
-                      p.model == Model::kinematic ? " unless the strain is prescribed" : "",
-                      features),
-          "Model");
+        refuse("Model",
+               "Model is {}, which is for plain bodies and grounds{}, but the scene has {}; nonlinear or "
+               "auto is expected",
+               word_of(p.model),
+               p.model == Model::kinematic ? " unless the strain is prescribed" : "",
+               features);
       if (const std::string beyond = scene.features_beyond_strain(); is_prescribed && !beyond.empty())
-        throw InputError(
-          fmt::format("Generator is {}, which is for bodies whose motion follows from their strain alone, "
-                      "but the scene has {}; another one is expected",
-                      p.active_stress.generator,
-                      beyond),
-          "Active stress/Generator");
+        refuse("Active stress/Generator",
+               "Generator is {}, which is for bodies whose motion follows from their strain alone, "
+               "but the scene has {}; another one is expected",
+               p.active_stress.generator,
+               beyond);
       if (p.time.cycle_stop == CycleStopMode::on && !scene.is_alike_everywhere())
-        throw InputError(fmt::format("Cycle stop is on, but the motion of the body depends on its place or its past, "
-                                     "since the scene has {}; automatic or off is expected",
-                                     features),
-                         "Time/Cycle stop");
+        refuse("Time/Cycle stop",
+               "Cycle stop is on, but the motion of the body depends on its place or its past, "
+               "since the scene has {}; automatic or off is expected",
+               features);
       const StretchFeedback *feedback = scene.active_stress->feedback();
       const double delay              = feedback != nullptr ? feedback->facts.delay : 0.;
       if (delay > 0. && p.time.step_control == StepControl::fixed && p.time.initial_step &&
           *p.time.initial_step > delay)
-        throw InputError(fmt::format("Initial step is {} and Step control is fixed, but no more than the delay of the "
-                                     "feedback, {}, is expected",
-                                     told_apart(*p.time.initial_step, {delay}),
-                                     told_apart(delay, {*p.time.initial_step})),
-                         "Time/Initial step");
+        refuse("Time/Initial step",
+               "Initial step is {} and Step control is fixed, but no more than the delay of the "
+               "feedback, {}, is expected",
+               told_apart(*p.time.initial_step, {delay}),
+               told_apart(delay, {*p.time.initial_step}));
     }
   } // namespace
 
@@ -160,10 +159,10 @@ namespace crawler
     require_computable(time.tolerance, body.length, "Tolerance", "Length");
     require_computable(time.initial_step, time.end_time, "Initial step", "End time");
     if (discretization.smallest_cell && !(*discretization.smallest_cell < body.length))
-      throw InputError(fmt::format("Smallest cell is {}, but less than the Length, {}, is expected",
-                                   told_apart(*discretization.smallest_cell, {body.length}),
-                                   told_apart(body.length, {*discretization.smallest_cell})),
-                       "Discretization/Smallest cell");
+      refuse("Discretization/Smallest cell",
+             "Smallest cell is {}, but less than the Length, {}, is expected",
+             told_apart(*discretization.smallest_cell, {body.length}),
+             told_apart(body.length, {*discretization.smallest_cell}));
     if (time.cycle_stop == CycleStopMode::on && output.has_snapshots())
       throw InputError("Cycle stop is on, but snapshots until the end time are wanted; 0 is expected for Output/Number "
                        "of snapshots, or automatic or off here",

@@ -39,8 +39,8 @@ namespace crawler
       catch (const InputError &error) // names entries of a generator outside of a sum
       {
         const bool is_alone = error.entry.starts_with(section) && !error.entry.starts_with(entries);
-        throw InputError(fmt::format("term {}: {}", number, error.what()),
-                         is_alone ? entries + error.entry.substr(section.size()) : error.entry);
+        refuse(
+          is_alone ? entries + error.entry.substr(section.size()) : error.entry, "term {}: {}", number, error.what());
       }
     }
 

@@ -158,13 +158,13 @@ namespace crawler
       const bool cubic        = input.interpolation == "cubic";
       const std::size_t least = cubic ? 4 : 2;
       if (x.size() < least)
-        throw InputError(fmt::format("\"{}\" has {} {}, but at least {} are expected for {} interpolation",
-                                     input.text,
-                                     x.size(),
-                                     what,
-                                     least,
-                                     input.interpolation),
-                         input.entry);
+        refuse(input.entry,
+               "\"{}\" has {} {}, but at least {} are expected for {} interpolation",
+               input.text,
+               x.size(),
+               what,
+               least,
+               input.interpolation);
       return std::make_shared<TableProfile>(std::move(x), std::move(y), cubic, input.outside == "hold");
     }
 
@@ -181,19 +181,19 @@ namespace crawler
       for (std::size_t i = 0; i < x.size(); ++i)
       {
         if (!(y[i] > 0.))
-          throw InputError(fmt::format("row {} of \"{}\" has the value {:g}, but a positive number is expected",
-                                       numbers.rows[i],
-                                       input.text,
-                                       y[i]),
-                           input.entry);
+          refuse(input.entry,
+                 "row {} of \"{}\" has the value {:g}, but a positive number is expected",
+                 numbers.rows[i],
+                 input.text,
+                 y[i]);
         if (i > 0 && !(x[i] > x[i - 1]))
-          throw InputError(fmt::format("row {} of \"{}\" has {} = {:g} after {:g}, but increasing numbers are expected",
-                                       numbers.rows[i],
-                                       input.text,
-                                       input.variable,
-                                       x[i],
-                                       x[i - 1]),
-                           input.entry);
+          refuse(input.entry,
+                 "row {} of \"{}\" has {} = {:g} after {:g}, but increasing numbers are expected",
+                 numbers.rows[i],
+                 input.text,
+                 input.variable,
+                 x[i],
+                 x[i - 1]);
       }
       return table_profile(std::move(x), std::move(y), "rows of numbers", input);
     }
@@ -204,9 +204,11 @@ namespace crawler
     {
       for (std::size_t i = 0; i < values.size(); ++i)
         if (!(values[i] > 0.))
-          throw InputError(
-            fmt::format("number {} of \"{}\" is {:g}, but a positive number is expected", i + 1, input.text, values[i]),
-            input.entry);
+          refuse(input.entry,
+                 "number {} of \"{}\" is {:g}, but a positive number is expected",
+                 i + 1,
+                 input.text,
+                 values[i]);
       return table_profile(equal_parts(0., length, values.size() - 1), values, "numbers", input);
     }
 
@@ -265,12 +267,12 @@ namespace crawler
     constexpr unsigned int n = 1000;
     for (const double x : equal_parts(from, to, n))
       if (const double f = factor(x); !(std::isfinite(f) && f > 0.))
-        throw InputError(fmt::format("the {} \"{}\" is {} at {} = {:g}; a positive number is expected",
-                                     input.quantity,
-                                     input.text,
-                                     f,
-                                     input.variable,
-                                     x),
-                         input.entry);
+        refuse(input.entry,
+               "the {} \"{}\" is {} at {} = {:g}; a positive number is expected",
+               input.quantity,
+               input.text,
+               f,
+               input.variable,
+               x);
   }
 } // namespace crawler

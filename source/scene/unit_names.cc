@@ -26,10 +26,10 @@ namespace crawler
   {
     for (const auto &[entry, name] : {std::pair("Length", length), std::pair("Time", time), std::pair("Force", force)})
       if (name.empty() || name.find_first_of(",;\"[]") != std::string::npos)
-        throw InputError(
-          fmt::format(
-            "\"Units/{}\" is \"{}\", but a name without commas, quotes and brackets is expected", entry, name),
-          std::string("Units/") + entry);
+        refuse(std::string("Units/") + entry,
+               "\"Units/{}\" is \"{}\", but a name without commas, quotes and brackets is expected",
+               entry,
+               name);
   }
 
   std::string

@@ -52,20 +52,20 @@ namespace crawler
       const double k = scene.body.elastic_modulus * stiffness[i];
       const auto all = [&](const auto &violates) { return std::ranges::all_of(around, violates); };
       if (all([&](const Derivatives &at) { return at.by_rate[i] < -round_off * k * scene.end_time; }))
-        throw InputError(fmt::format("the feedback makes the equation ill-posed: at s = {:g}, t = 0 the derivative of "
-                                     "the active stress with respect to w_t is {:.4g}, but 0 or a positive number is "
-                                     "expected",
-                                     points[i],
-                                     around[1].by_rate[i]),
-                         "Active stress/Generator");
+        refuse("Active stress/Generator",
+               "the feedback makes the equation ill-posed: at s = {:g}, t = 0 the derivative of "
+               "the active stress with respect to w_t is {:.4g}, but 0 or a positive number is "
+               "expected",
+               points[i],
+               around[1].by_rate[i]);
       if (all([&](const Derivatives &at) { return at.by_rate[i] == 0. && at.by_stretch[i] < -(1. + round_off) * k; }))
-        throw InputError(fmt::format("the feedback makes the equation ill-posed: at s = {:g}, t = 0 the derivative of "
-                                     "the active stress with respect to w is {:.4g}, but -k, {:.4g}, or more is "
-                                     "expected, or a term with w_t that resists changes of the stretch",
-                                     points[i],
-                                     around[1].by_stretch[i],
-                                     -k),
-                         "Active stress/Generator");
+        refuse("Active stress/Generator",
+               "the feedback makes the equation ill-posed: at s = {:g}, t = 0 the derivative of "
+               "the active stress with respect to w is {:.4g}, but -k, {:.4g}, or more is "
+               "expected, or a term with w_t that resists changes of the stretch",
+               points[i],
+               around[1].by_stretch[i],
+               -k);
     }
   }
 } // namespace crawler

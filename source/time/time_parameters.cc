@@ -65,22 +65,23 @@ namespace crawler
       const auto names         = integrator_names();
       const std::string reason = reason_against(integrator);
       if (!reason.empty())
-        throw InputError(
-          fmt::format("the integrator \"{}\" is refused: {}; {} is expected", integrator, reason, quoted_list(names)),
-          "Time/Integrator");
-      throw InputError(fmt::format("unknown integrator \"{}\"; {} is expected{}",
-                                   integrator,
-                                   quoted_list(names),
-                                   nearest_hint(integrator, names)),
-                       "Time/Integrator");
+        refuse("Time/Integrator",
+               "the integrator \"{}\" is refused: {}; {} is expected",
+               integrator,
+               reason,
+               quoted_list(names));
+      refuse("Time/Integrator",
+             "unknown integrator \"{}\"; {} is expected{}",
+             integrator,
+             quoted_list(names),
+             nearest_hint(integrator, names));
     }
     if (step_control == StepControl::fixed && !initial_step)
       throw InputError(
         "Step control is fixed, but the size of the steps is missing: a number is expected for Initial step",
         "Time/Step control");
     if (initial_step && *initial_step > end_time)
-      throw InputError(
-        fmt::format("Initial step is {}, but at most the End time, {}, is expected", *initial_step, end_time),
-        "Time/Initial step");
+      refuse(
+        "Time/Initial step", "Initial step is {}, but at most the End time, {}, is expected", *initial_step, end_time);
   }
 } // namespace crawler

@@ -31,22 +31,24 @@ namespace crawler
   {
     const double start = start_.value_or(0.), end = end_.value_or(length);
     if (end > length)
-      throw InputError(
-        fmt::format("the window ends at s = {:g}, but a place on the body, at most {:g}, is expected", end, length),
-        section + "Window end");
+      refuse(section + "Window end",
+             "the window ends at s = {:g}, but a place on the body, at most {:g}, is expected",
+             end,
+             length);
     if (!(start < end))
-      throw InputError(
-        fmt::format("the window starts at s = {:g}, but a place before its end, {:g}, is expected", start, end),
-        section + "Window start");
+      refuse(section + "Window start",
+             "the window starts at s = {:g}, but a place before its end, {:g}, is expected",
+             start,
+             end);
     const int n_edges = (start_ ? 1 : 0) + (end_ ? 1 : 0);
     if (n_edges * edge_ > (end - start) * (1. + 1e-12))
-      throw InputError(fmt::format("the edges of the window are {:g} wide, but at most {:g} is expected for a window "
-                                   "from {:g} to {:g}",
-                                   edge_,
-                                   (end - start) / n_edges,
-                                   start,
-                                   end),
-                       section + "Window edge");
+      refuse(section + "Window edge",
+             "the edges of the window are {:g} wide, but at most {:g} is expected for a window "
+             "from {:g} to {:g}",
+             edge_,
+             (end - start) / n_edges,
+             start,
+             end);
   }
 
   double
@@ -95,28 +97,24 @@ namespace crawler
     const std::string entry = fmt::format("{}Window in {}", section, variable),
                       name  = fmt::format("Window in {}", variable);
     if (entries.interval.size() != 2)
-      throw InputError(
-        fmt::format("{} has {} numbers, but two, from and to, or none are expected", name, entries.interval.size()),
-        entry);
+      refuse(entry, "{} has {} numbers, but two, from and to, or none are expected", name, entries.interval.size());
     from_ = entries.interval[0];
     to_   = entries.interval[1];
     if (!(from_ < to_ && to_ > 0. && from_ < end))
-      throw InputError(
-        fmt::format("{} is from {:g} to {:g}, but two increasing numbers are expected, with a part of the "
-                    "range from 0 to {:g} between them",
-                    name,
-                    from_,
-                    to_,
-                    end),
-        entry);
+      refuse(entry,
+             "{} is from {:g} to {:g}, but two increasing numbers are expected, with a part of the "
+             "range from 0 to {:g} between them",
+             name,
+             from_,
+             to_,
+             end);
     if (2. * edge_ > (to_ - from_) * (1. + 1e-12))
-      throw InputError(
-        fmt::format("the edges are {:g} wide, but at most {:g} is expected for a window from {:g} to {:g}",
-                    edge_,
-                    0.5 * (to_ - from_),
-                    from_,
-                    to_),
-        fmt::format("{}Edge width in {}", section, variable));
+      refuse(fmt::format("{}Edge width in {}", section, variable),
+             "the edges are {:g} wide, but at most {:g} is expected for a window from {:g} to {:g}",
+             edge_,
+             0.5 * (to_ - from_),
+             from_,
+             to_);
   }
 
   double

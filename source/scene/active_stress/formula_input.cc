@@ -67,8 +67,7 @@ namespace crawler
       for (std::size_t i = 0; i < formula.size(); ++i)
       {
         const auto refuse = [&](const std::string &why) {
-          throw InputError(fmt::format("error in the formula \"{}\" at position {}: {}", formula, i + 1, why),
-                           formula_entry);
+          crawler::refuse(formula_entry, "error in the formula \"{}\" at position {}: {}", formula, i + 1, why);
         };
         const char c = formula[i], before = i > 0 ? formula[i - 1] : ' ',
                    after = i + 1 < formula.size() ? formula[i + 1] : ' ';
@@ -103,16 +102,15 @@ namespace crawler
           !name.empty() && std::isalpha(static_cast<unsigned char>(name[0])) &&
           std::all_of(name.begin(), name.end(), [](const unsigned char c) { return std::isalnum(c) || c == '_'; });
         if (!is_name || !value)
-          throw InputError(fmt::format("found \"{}\" among the constants of the formula, but \"name=number, "
-                                       "name=number, ...\" is expected",
-                                       trimmed(item)),
-                           constants_entry);
+          refuse(constants_entry,
+                 "found \"{}\" among the constants of the formula, but \"name=number, "
+                 "name=number, ...\" is expected",
+                 trimmed(item));
         if (std::find(variables.begin(), variables.end(), name) != variables.end())
-          throw InputError(fmt::format("\"{}\" is a variable of the formula and cannot be a constant", name),
-                           constants_entry);
+          refuse(constants_entry, "\"{}\" is a variable of the formula and cannot be a constant", name);
         for (const auto &[other, ignored] : constants)
           if (other == name)
-            throw InputError(fmt::format("the constant \"{}\" is already defined", name), constants_entry);
+            refuse(constants_entry, "the constant \"{}\" is already defined", name);
         constants.emplace_back(name, *value);
       }
       return constants;
@@ -136,10 +134,10 @@ namespace crawler
   {
     const auto constants = parse_constants(input.constants, input.variables, length, end_time, input.constants_entry);
     if (input.formula.empty())
-      throw InputError(fmt::format("the formula of the {} is empty; an expression of {} is expected",
-                                   input.quantity,
-                                   fmt::join(input.variables, input.variables.size() > 2 ? ", " : " and ")),
-                       input.formula_entry);
+      refuse(input.formula_entry,
+             "the formula of the {} is empty; an expression of {} is expected",
+             input.quantity,
+             fmt::join(input.variables, input.variables.size() > 2 ? ", " : " and "));
     require_one_value(input.formula, input.formula_entry);
     try
     {
@@ -166,13 +164,13 @@ namespace crawler
       at_points->values(t, m);
       for (std::size_t i = 0; i < m.size(); ++i)
         if (!std::isfinite(m[i]))
-          throw InputError(fmt::format("the formula \"{}\" gives {}{} at s = {}, t = {}; a finite number is expected",
-                                       input.formula,
-                                       m[i],
-                                       where,
-                                       points[i],
-                                       t),
-                           input.formula_entry);
+          refuse(input.formula_entry,
+                 "the formula \"{}\" gives {}{} at s = {}, t = {}; a finite number is expected",
+                 input.formula,
+                 m[i],
+                 where,
+                 points[i],
+                 t);
     }
   }
 } // namespace crawler

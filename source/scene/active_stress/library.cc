@@ -210,38 +210,35 @@ namespace crawler
       const std::filesystem::path file = std::filesystem::absolute(name).lexically_normal();
       std::error_code ignored;
       if (!std::filesystem::exists(file, ignored))
-        throw InputError(fmt::format("there is no file \"{}\"; a shared object is expected", file.string()),
-                         file_entry);
+        refuse(file_entry, "there is no file \"{}\"; a shared object is expected", file.string());
       if (!std::filesystem::is_regular_file(file, ignored)) // opening a pipe may wait for ever
-        throw InputError(fmt::format("\"{}\" is not a file; a shared object is expected", name), file_entry);
+        refuse(file_entry, "\"{}\" is not a file; a shared object is expected", name);
       void *handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
       if (handle == nullptr)
       {
         const char *words = dlerror();
-        throw InputError(
-          fmt::format("\"{}\" cannot be loaded: {}; a file compiled with -shared on this machine is expected",
-                      name,
-                      words != nullptr ? words : "unknown"),
-          file_entry);
+        refuse(file_entry,
+               "\"{}\" cannot be loaded: {}; a file compiled with -shared on this machine is expected",
+               name,
+               words != nullptr ? words : "unknown");
       }
       const auto function = reinterpret_cast<const Plugin *(*)()>(dlsym(handle, plugin_function));
       if (function == nullptr)
-        throw InputError(fmt::format("\"{}\" is not a plug-in of crawler: it has no function {}; the macro "
-                                     "CRAWLER_ACTIVE_STRESS_PLUGIN is expected in it",
-                                     name,
-                                     plugin_function),
-                         file_entry);
+        refuse(file_entry,
+               "\"{}\" is not a plug-in of crawler: it has no function {}; the macro "
+               "CRAWLER_ACTIVE_STRESS_PLUGIN is expected in it",
+               name,
+               plugin_function);
       const Plugin &plugin = *function();
       if (plugin.interface != plugin_interface || std::strcmp(plugin.crawler_version, plugin_version) != 0)
-        throw InputError(
-          fmt::format("\"{}\" was built against crawler {} (interface {}), but this program is crawler {} "
-                      "(interface {}); build it again, against this one",
-                      name,
-                      plugin.crawler_version,
-                      plugin.interface,
-                      plugin_version,
-                      plugin_interface),
-          file_entry);
+        refuse(file_entry,
+               "\"{}\" was built against crawler {} (interface {}), but this program is crawler {} "
+               "(interface {}); build it again, against this one",
+               name,
+               plugin.crawler_version,
+               plugin.interface,
+               plugin_version,
+               plugin_interface);
       return plugin;
     }
 
@@ -256,14 +253,12 @@ namespace crawler
         const auto equals      = item.find('=');
         const std::string name = trimmed(item.substr(0, equals));
         if (equals == std::string::npos || name.empty())
-          throw InputError(
-            fmt::format("found \"{}\" among the parameters of the plug-in, but \"name=value, name=value, "
-                        "...\" is expected",
-                        trimmed(item)),
-            parameters_entry);
+          refuse(parameters_entry,
+                 "found \"{}\" among the parameters of the plug-in, but \"name=value, name=value, "
+                 "...\" is expected",
+                 trimmed(item));
         if (!values.emplace(name, trimmed(item.substr(equals + 1))).second)
-          throw InputError(fmt::format("the parameter \"{}\" of the plug-in is set a second time", name),
-                           parameters_entry);
+          refuse(parameters_entry, "the parameter \"{}\" of the plug-in is set a second time", name);
       }
       return values;
     }
@@ -274,11 +269,11 @@ namespace crawler
       const std::vector<std::string> known(parameters.known().begin(), parameters.known().end());
       for (const auto &[name, value] : parameters.values())
         if (std::find(known.begin(), known.end(), name) == known.end())
-          throw InputError(fmt::format("the plug-in \"{}\" does not know the parameter \"{}\"; it knows {}",
-                                       plugin,
-                                       name,
-                                       known.empty() ? "none" : quoted_list(known)),
-                           parameters_entry);
+          refuse(parameters_entry,
+                 "the plug-in \"{}\" does not know the parameter \"{}\"; it knows {}",
+                 plugin,
+                 name,
+                 known.empty() ? "none" : quoted_list(known));
     }
 
     class Library : public KnownStress
@@ -297,11 +292,9 @@ namespace crawler
                                 end_time,
                                 PluginParameters(parse_parameters(parameters.parameters))};
         if (const auto thrown = thrown_by([&]() { stress_ = plugin.create(input); }))
-          throw InputError(fmt::format("the plug-in \"{}\" refuses the scene: {}", plugin.name, *thrown),
-                           parameters_entry);
+          refuse(parameters_entry, "the plug-in \"{}\" refuses the scene: {}", plugin.name, *thrown);
         if (!stress_)
-          throw InputError(
-            fmt::format("the plug-in \"{}\" returned nothing; an active stress is expected", plugin.name), file_entry);
+          refuse(file_entry, "the plug-in \"{}\" returned nothing; an active stress is expected", plugin.name);
         require_known(input.parameters, plugin.name);
         ask(body.length, end_time);
       }
@@ -358,7 +351,7 @@ namespace crawler
           report_ = out.str();
         });
         const auto refuse = [&](const std::string &what) {
-          throw InputError(fmt::format("the plug-in \"{}\" {}", failures_->plugin, what), file_entry);
+          crawler::refuse(file_entry, "the plug-in \"{}\" {}", failures_->plugin, what);
         };
         if (thrown)
           refuse(fmt::format("threw an exception in {}: {}", asked, *thrown));

@@ -108,13 +108,13 @@ namespace crawler
     else if (parameters.in_time == "splines")
       n_time_ = n_splines - (parameters.from_rest ? 1 : 0);
     if (c_.size() > n_space_ * n_time_)
-      throw InputError(fmt::format("there are {} coefficients, but at most {} are expected: one for each of {} modes "
-                                   "along the body{}",
-                                   c_.size(),
-                                   n_space_ * n_time_,
-                                   n_space_,
-                                   n_time_ > 1 ? fmt::format(" and {} functions of time", n_time_) : ""),
-                       "Active stress/Modes/Coefficients");
+      refuse("Active stress/Modes/Coefficients",
+             "there are {} coefficients, but at most {} are expected: one for each of {} modes "
+             "along the body{}",
+             c_.size(),
+             n_space_ * n_time_,
+             n_space_,
+             n_time_ > 1 ? fmt::format(" and {} functions of time", n_time_) : "");
     c_.resize(n_space_ * n_time_);
     if (parameters.in_time == "travelling" && parameters.wave_speed != 0.)
       facts_.repetition = {length / std::abs(parameters.wave_speed), 0.};

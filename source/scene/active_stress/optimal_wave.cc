@@ -74,11 +74,10 @@ namespace crawler
     if (shape_.a.size() == 1 && shape_.a[0] == 0.)
       shape_.a.assign(shape_.b.size(), 0.);
     if (shape_.a.size() != shape_.b.size())
-      throw InputError(
-        fmt::format("{} sine and {} cosine coefficients; equally many of both are expected, or a single 0",
-                    shape_.a.size(),
-                    shape_.b.size()),
-        section + "Cosine coefficients");
+      refuse(section + "Cosine coefficients",
+             "{} sine and {} cosine coefficients; equally many of both are expected, or a single 0",
+             shape_.a.size(),
+             shape_.b.size());
     if (shape_.delta_2() == 0.)
       throw InputError("all coefficients of the wave are 0; at least one that is not is expected (for a body at "
                        "rest set Active stress/Generator = none)",
@@ -106,18 +105,18 @@ namespace crawler
     const std::string entry = section + (roots_ ? "Energy" : "Wave speed");
     const double strides    = std::abs(wave_.speed) / body_.length * end_time_;
     if (!(strides <= most))
-      throw InputError(fmt::format("the wave with speed {:g} makes {:.3g} strides until the end time, but at most {:g} "
-                                   "are expected",
-                                   wave_.speed,
-                                   strides,
-                                   most),
-                       entry);
+      refuse(entry,
+             "the wave with speed {:g} makes {:.3g} strides until the end time, but at most {:g} "
+             "are expected",
+             wave_.speed,
+             strides,
+             most);
     for (const double value : {wave_.multiplier, wave_.displacement, wave_.min_stretch, wave_.max_stretch})
       if (!std::isfinite(value))
-        throw InputError(fmt::format("the wave with speed {:g} would deform the body without bounds; a faster one, or "
-                                     "a smaller Perturbation parameter, is expected",
-                                     wave_.speed),
-                         entry);
+        refuse(entry,
+               "the wave with speed {:g} would deform the body without bounds; a faster one, or "
+               "a smaller Perturbation parameter, is expected",
+               wave_.speed);
   }
 
   void
@@ -128,21 +127,19 @@ namespace crawler
       body_, shape_, chi_, end_time_, parameters.energy, by_index ? std::max(25u, parameters.root_index) : 25);
     const auto &list = roots_->roots;
     if (list.empty())
-      throw InputError(fmt::format("no wave spends the energy H = {}; H from the smallest, {}, to below {} is expected",
-                                   parameters.energy,
-                                   roots_->smallest_energy,
-                                   roots_->largest_energy),
-                       section + "Energy");
+      refuse(section + "Energy",
+             "no wave spends the energy H = {}; H from the smallest, {}, to below {} is expected",
+             parameters.energy,
+             roots_->smallest_energy,
+             roots_->largest_energy);
     if (by_index)
     {
       if (parameters.root_index > list.size())
-        throw InputError(
-          fmt::format(
-            "Root index is {}, but a whole number from 1 to {} is expected: that many waves spend the energy H = {}",
-            parameters.root_index,
-            list.size(),
-            parameters.energy),
-          section + "Root index");
+        refuse(section + "Root index",
+               "Root index is {}, but a whole number from 1 to {} is expected: that many waves spend the energy H = {}",
+               parameters.root_index,
+               list.size(),
+               parameters.energy);
       chosen_ = parameters.root_index - 1;
     }
     else
@@ -156,12 +153,12 @@ namespace crawler
           found   = true;
         }
       if (!found)
-        throw InputError(fmt::format("Perturbation parameter is {}, but a smaller one is expected: no wave of energy "
-                                     "H = {} ({} in all) is admissible, the leading-order stretch becomes negative",
-                                     parameters.perturbation_parameter,
-                                     parameters.energy,
-                                     list.size()),
-                         section + "Perturbation parameter");
+        refuse(section + "Perturbation parameter",
+               "Perturbation parameter is {}, but a smaller one is expected: no wave of energy "
+               "H = {} ({} in all) is admissible, the leading-order stretch becomes negative",
+               parameters.perturbation_parameter,
+               parameters.energy,
+               list.size());
     }
     wave_ = list[chosen_];
   }

@@ -112,15 +112,15 @@ namespace crawler
       if (generator == nullptr)
         throw std::logic_error("the generator of the strain is missing");
       if (generator->feedback() != nullptr)
-        throw InputError(fmt::format("Given by is {}, but there the active stress depends on the stretch; a generator "
-                                     "that is a function of s and t is expected",
-                                     parameters.given_by),
-                         prescribed_strain_section + "Given by");
+        refuse(prescribed_strain_section + "Given by",
+               "Given by is {}, but there the active stress depends on the stretch; a generator "
+               "that is a function of s and t is expected",
+               parameters.given_by);
       if (!generator->rate_at({0.}))
-        throw InputError(fmt::format("Given by is {}, whose rate of change is not known here; a strain that can be "
-                                     "differentiated in time is expected",
-                                     parameters.given_by),
-                         prescribed_strain_section + "Given by");
+        refuse(prescribed_strain_section + "Given by",
+               "Given by is {}, whose rate of change is not known here; a strain that can be "
+               "differentiated in time is expected",
+               parameters.given_by);
       return generator;
     }
   } // namespace
@@ -186,13 +186,12 @@ namespace crawler
     constexpr double beside = 1e-9, jump = 1e-6;
     const double L = scene_.body.length, size = sampled_bounds(*strain_, {0., L, 0., end_time}, n, n).value;
     const auto refuse = [&](const char *variable, const double place) {
-      throw InputError(
-        fmt::format("Given by is {}, whose values jump at {} = {:g}; a strain without jumps is expected (give "
-                    "fronts and edges a width)",
-                    given_by_,
-                    variable,
-                    place),
-        prescribed_strain_section + "Given by");
+      crawler::refuse(prescribed_strain_section + "Given by",
+                      "Given by is {}, whose values jump at {} = {:g}; a strain without jumps is expected (give "
+                      "fronts and edges a width)",
+                      given_by_,
+                      variable,
+                      place);
     };
     const auto at_points = strain_->at(equal_parts(0., L, n - 1));
     std::vector<double> e(n), after(n);
@@ -228,39 +227,35 @@ namespace crawler
                                                             : is_generated_        ? "Given by"
                                                                                    : "Strain");
     if (!std::isfinite(e))
-      throw InputError(fmt::format("the strain is {} at s = {:.6g}, t = {:.6g}; a finite number is expected", e, s, t),
-                       entry);
+      refuse(entry, "the strain is {} at s = {:.6g}, t = {:.6g}; a finite number is expected", e, s, t);
     if (!(1. + e > 0.))
-      throw InputError(
-        fmt::format(
-          "the strain is {:.6g} at s = {:.6g}, t = {:.6g}, but more than -1 is expected: there the body would "
-          "be inverted",
-          e,
-          s,
-          t),
-        entry);
+      refuse(entry,
+             "the strain is {:.6g} at s = {:.6g}, t = {:.6g}, but more than -1 is expected: there the body would "
+             "be inverted",
+             e,
+             s,
+             t);
     const auto &largest = extremes_.largest;
     if (!(largest.strain <= 1e6))
-      throw InputError(fmt::format("the strain is {:.6g} at s = {:.6g}, t = {:.6g}, but at most 1e6 is expected",
-                                   largest.strain,
-                                   largest.s,
-                                   largest.t),
-                       entry);
+      refuse(entry,
+             "the strain is {:.6g} at s = {:.6g}, t = {:.6g}, but at most 1e6 is expected",
+             largest.strain,
+             largest.s,
+             largest.t);
     if (const auto stretch = stretch_without_friction(*scene_.friction, 1. + e, 1. + largest.strain))
-      throw InputError(fmt::format("the friction law has no positive value at the stretch {:.6g}, which this strain "
-                                   "reaches; smaller strains, or another law, are expected",
-                                   *stretch),
-                       entry);
+      refuse(entry,
+             "the friction law has no positive value at the stretch {:.6g}, which this strain "
+             "reaches; smaller strains, or another law, are expected",
+             *stretch);
     if (const auto jump = find_jump(*strain_, scene_.body.length, end_time))
-      throw InputError(
-        fmt::format("the strain at s = {:.6g} changes by {:.6g} from t = {:.6g} to {:.6g}, but the integral "
-                    "of its rate is {:.6g}; a strain without jumps in time is expected",
-                    jump->s,
-                    jump->change,
-                    jump->from,
-                    jump->to,
-                    jump->integral),
-        entry);
+      refuse(entry,
+             "the strain at s = {:.6g} changes by {:.6g} from t = {:.6g} to {:.6g}, but the integral "
+             "of its rate is {:.6g}; a strain without jumps in time is expected",
+             jump->s,
+             jump->change,
+             jump->from,
+             jump->to,
+             jump->integral);
   }
 
   /// Doubles the panels, which end at breaks of strain and profiles, until the stress changes by no more than round-off

@@ -77,30 +77,30 @@ namespace crawler
   {
     const double min_width = 1e-4 * length_;
     if (width_ < min_width)
-      throw InputError(
-        fmt::format(
-          "the pulse is {:g} wide, but at least {:g} is expected, a ten-thousandth of the body", width_, min_width),
-        pulse_section + "Width");
+      refuse(pulse_section + "Width",
+             "the pulse is {:g} wide, but at least {:g} is expected, a ten-thousandth of the body",
+             width_,
+             min_width);
     if (period_ > 0.)
     {
       const double distance = std::abs(velocity_) * period_;
       if (!(distance >= width_ && std::isfinite(distance)))
-        throw InputError(fmt::format("the pulses follow each other at a distance of {:g}, the speed times the "
-                                     "repetition period, but at least their width, {:g}, is expected",
-                                     distance,
-                                     width_),
-                         pulse_section + "Repetition period");
+        refuse(pulse_section + "Repetition period",
+               "the pulses follow each other at a distance of {:g}, the speed times the "
+               "repetition period, but at least their width, {:g}, is expected",
+               distance,
+               width_);
       require_countable_periods(1. / period_, end_time, false, pulse_section + "Repetition period");
       return;
     }
     const double end = start_ + velocity_ * end_time;
     if (std::max(start_, end) <= -reach_ || std::min(start_, end) >= length_ + reach_)
-      throw InputError(fmt::format("the pulse goes from {:g} to {:g} until the end time, but a path that reaches the "
-                                   "body, from 0 to {:g}, is expected",
-                                   start_,
-                                   end,
-                                   length_),
-                       pulse_section + (velocity_ == 0. ? "Start position" : "Speed"));
+      refuse(pulse_section + (velocity_ == 0. ? "Start position" : "Speed"),
+             "the pulse goes from {:g} to {:g} until the end time, but a path that reaches the "
+             "body, from 0 to {:g}, is expected",
+             start_,
+             end,
+             length_);
   }
 
   std::unique_ptr<ActiveStressAtPoints>

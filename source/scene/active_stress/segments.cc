@@ -40,15 +40,14 @@ namespace crawler
       }
       largest *= p.frequency / p.front_width;
       if (largest > *p.rate_limit * (1. + round_off))
-        throw InputError(
-          fmt::format("the smooth fronts change by up to {:.6g} per time, but at most {:g}, the rate limit, is "
-                      "expected; make \"{}Front width\" {:.6g} or more, or \"{}Switching\" square",
-                      largest,
-                      *p.rate_limit,
-                      segments_section,
-                      p.front_width * largest / *p.rate_limit,
-                      segments_section),
-          segments_section + "Rate limit");
+        refuse(segments_section + "Rate limit",
+               "the smooth fronts change by up to {:.6g} per time, but at most {:g}, the rate limit, is "
+               "expected; make \"{}Front width\" {:.6g} or more, or \"{}Switching\" square",
+               largest,
+               *p.rate_limit,
+               segments_section,
+               p.front_width * largest / *p.rate_limit,
+               segments_section);
     }
   } // namespace
 
@@ -93,11 +92,10 @@ namespace crawler
     const auto &p = parameters_;
     const auto n  = p.number;
     if (p.amplitude.size() != 1 && p.amplitude.size() != n)
-      throw InputError(
-        fmt::format("the list of amplitudes has {} numbers, but 1 or {}, one for each segment, are expected",
-                    p.amplitude.size(),
-                    n),
-        segments_section + "Amplitude");
+      refuse(segments_section + "Amplitude",
+             "the list of amplitudes has {} numbers, but 1 or {}, one for each segment, are expected",
+             p.amplitude.size(),
+             n);
     if (p.switching == "smooth")
     {
       smooth_.emplace(p.duty_cycle, p.front_width, segments_section);
@@ -164,11 +162,11 @@ namespace crawler
     const double periods = p.frequency * end_time, n_breaks = static_cast<double>(phases.size()) * periods;
     require_countable_periods(p.frequency, end_time, false, segments_section + "Frequency");
     if (n_breaks > most)
-      throw InputError(fmt::format("the segments switch at {:.3g} different times until the end time, but at most {:g} "
-                                   "are expected",
-                                   n_breaks,
-                                   most),
-                       segments_section + "Frequency");
+      refuse(segments_section + "Frequency",
+             "the segments switch at {:.3g} different times until the end time, but at most {:g} "
+             "are expected",
+             n_breaks,
+             most);
     std::vector<double> times;
     for (double period = 0.; period <= periods && !phases.empty(); ++period)
       for (const double x : phases)

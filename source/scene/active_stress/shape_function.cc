@@ -80,10 +80,12 @@ namespace crawler
       for (unsigned int j = 0; j < 8; ++j)
       {
         if (!std::isfinite(values[j]))
-          throw InputError(
-            fmt::format(
-              "the shape is {} at x = {:g}; a finite number is expected from {:g} to {:g}", values[j], x[j], from, to),
-            entry);
+          refuse(entry,
+                 "the shape is {} at x = {:g}; a finite number is expected from {:g} to {:g}",
+                 values[j],
+                 x[j],
+                 from,
+                 to);
         largest = std::max(largest, std::abs(values[j]));
       }
     }
@@ -97,8 +99,7 @@ namespace crawler
       for (unsigned int k = 0; k <= degree_; ++k)
       {
         if (!std::isfinite(c[k]))
-          throw InputError(fmt::format("the shape is not a finite number somewhere from x = {:g} to {:g}", left, right),
-                           entry);
+          refuse(entry, "the shape is not a finite number somewhere from x = {:g} to {:g}", left, right);
         variation += k > 0 ? std::abs(c[k]) : 0.;
         last = k + 3 > degree_ ? std::max(last, std::abs(c[k])) : last;
       }
@@ -107,16 +108,16 @@ namespace crawler
       {
         rights.push_back(0.5 * (left + right));
         if (left_.size() + rights.size() > max_panels)
-          throw InputError(fmt::format("the shape has more detail from x = {:g} to {:g} than a million polynomials of "
-                                       "degree {} can represent; a smoother one is expected",
-                                       from,
-                                       to,
-                                       degree_),
-                           entry);
+          refuse(entry,
+                 "the shape has more detail from x = {:g} to {:g} than a million polynomials of "
+                 "degree {} can represent; a smoother one is expected",
+                 from,
+                 to,
+                 degree_);
         continue;
       }
       if (is_smallest && variation > jump * largest)
-        throw InputError(fmt::format("the shape jumps at x = {:g}; a continuous function is expected", left), entry);
+        refuse(entry, "the shape jumps at x = {:g}; a continuous function is expected", left);
       if (right - left <= tiny * size) // only panels with a kink in or near them are so small
       {
         const bool is_next = !kinks_.empty() && left - kinks_.back() <= 10. * tiny * size;

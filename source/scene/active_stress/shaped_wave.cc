@@ -52,10 +52,10 @@ namespace crawler
                                         length,
                                         end_time);
       if (formula->uses(1))
-        throw InputError(fmt::format("the shape \"{}\" depends on t; a formula of x is expected, since the wave only "
-                                     "moves it",
-                                     parameters.shape_formula),
-                         entry);
+        refuse(entry,
+               "the shape \"{}\" depends on t; a formula of x is expected, since the wave only "
+               "moves it",
+               parameters.shape_formula);
       return ShapeFunction(
         [&](const std::span<const double> x, const std::span<double> values) {
           FormulaAtPoints(formula, {x.begin(), x.end()}).values(0., values);
@@ -75,25 +75,24 @@ namespace crawler
       const std::vector<double> &f = numbers.columns[1];
       for (std::size_t i = 1; i < x.size(); ++i)
         if (x[i] <= x[i - 1])
-          throw InputError(fmt::format("row {} of \"{}\" has x = {:g} after x = {:g}, but increasing x are expected",
-                                       numbers.rows[i],
-                                       name,
-                                       x[i],
-                                       x[i - 1]),
-                           entry);
+          refuse(entry,
+                 "row {} of \"{}\" has x = {:g} after x = {:g}, but increasing x are expected",
+                 numbers.rows[i],
+                 name,
+                 x[i],
+                 x[i - 1]);
       if (x.size() < 4)
-        throw InputError(
-          fmt::format("\"{}\" has {} rows after the header, but at least 4 are expected", name, x.size()), entry);
+        refuse(entry, "\"{}\" has {} rows after the header, but at least 4 are expected", name, x.size());
       const double most = 1e-6 * (to - from);
       if (x.front() > from + most || x.back() < to - most)
-        throw InputError(fmt::format("\"{}\" has x from {} to {}, but the whole range from {} to {} is expected, which "
-                                     "reaches the body before the end time",
-                                     name,
-                                     told_apart(x.front(), {from}),
-                                     told_apart(x.back(), {to}),
-                                     told_apart(from, {x.front()}),
-                                     told_apart(to, {x.back()})),
-                         entry);
+        refuse(entry,
+               "\"{}\" has x from {} to {}, but the whole range from {} to {} is expected, which "
+               "reaches the body before the end time",
+               name,
+               told_apart(x.front(), {from}),
+               told_apart(x.back(), {to}),
+               told_apart(from, {x.front()}),
+               told_apart(to, {x.back()}));
       x.front() = std::min(x.front(), from);
       x.back()  = std::max(x.back(), to);
       return ShapeFunction(x, f);
@@ -103,22 +102,21 @@ namespace crawler
     shape_of(const OptimalWaveParameters &parameters, const Body &body, const double end_time)
     {
       if (parameters.choose_wave_by == "energy")
-        throw InputError(
-          fmt::format("the wave is chosen by energy, but with Shape = {} only wave speed is expected: the "
-                      "waves of one energy are known for Fourier coefficients only",
-                      parameters.shape),
-          shaped_wave_section + "Choose wave by");
+        refuse(shaped_wave_section + "Choose wave by",
+               "the wave is chosen by energy, but with Shape = {} only wave speed is expected: the "
+               "waves of one energy are known for Fourier coefficients only",
+               parameters.shape);
       const double c = parameters.wave_speed, way = c * end_time;
       if (c == 0.)
         throw InputError("the wave speed is 0, but a number that is not 0 is expected",
                          shaped_wave_section + "Wave speed");
       if (!(std::abs(way) <= max_lengths * body.length))
-        throw InputError(fmt::format("the wave runs {:.3g} body lengths until the end time, but at most {:g} are "
-                                     "expected with Shape = {}",
-                                     std::abs(way) / body.length,
-                                     max_lengths,
-                                     parameters.shape),
-                         shaped_wave_section + "Wave speed");
+        refuse(shaped_wave_section + "Wave speed",
+               "the wave runs {:.3g} body lengths until the end time, but at most {:g} are "
+               "expected with Shape = {}",
+               std::abs(way) / body.length,
+               max_lengths,
+               parameters.shape);
       const double from = std::min(0., way), to = body.length + std::max(0., way);
       return parameters.shape == "table" ? shape_from_table(parameters.shape_file, from, to)
                                          : shape_from_formula(parameters, body.length, end_time, from, to);

@@ -94,26 +94,24 @@ namespace crawler
     const auto formula       = read_formula(input, length, end_time);
     const double sensor      = parameters.sensor_length;
     if (formula->uses(w_near) && !(sensor == 0. || (sensor >= 1e-6 * length && sensor <= length)))
-      throw InputError(
-        fmt::format("the formula uses w_near and Sensor length is {:g}, but 0, or a number from 1e-6 L to "
-                    "L, L = {:g}, is expected",
-                    sensor,
-                    length),
-        strain_feedback_section + "Sensor length");
+      refuse(strain_feedback_section + "Sensor length",
+             "the formula uses w_near and Sensor length is {:g}, but 0, or a number from 1e-6 L to "
+             "L, L = {:g}, is expected",
+             sensor,
+             length);
     if (formula->uses(w_near) &&
         !((parameters.distance != 0. || sensor > 0.) && std::abs(parameters.distance) < length))
-      throw InputError(fmt::format("the formula uses w_near and Distance is {:g}, but a number other than 0 between -L "
-                                   "and L, L = {:g}, or a Sensor length, is expected",
-                                   parameters.distance,
-                                   length),
-                       strain_feedback_section + "Distance");
+      refuse(strain_feedback_section + "Distance",
+             "the formula uses w_near and Distance is {:g}, but a number other than 0 between -L "
+             "and L, L = {:g}, or a Sensor length, is expected",
+             parameters.distance,
+             length);
     if (formula->uses(w_delayed) && !(parameters.delay >= 1e-6 * end_time))
-      throw InputError(
-        fmt::format("the formula uses w_delayed and Delay is {:g}, but at least 1e-6 of the End time, {:g}, "
-                    "is expected",
-                    parameters.delay,
-                    end_time),
-        strain_feedback_section + "Delay");
+      refuse(strain_feedback_section + "Delay",
+             "the formula uses w_delayed and Delay is {:g}, but at least 1e-6 of the End time, {:g}, "
+             "is expected",
+             parameters.delay,
+             end_time);
     const StretchFeedback::Facts facts = {.uses_rate     = formula->uses(w_t),
                                           .distance      = formula->uses(w_near) ? parameters.distance : 0.,
                                           .delay         = formula->uses(w_delayed) ? parameters.delay : 0.,

@@ -185,15 +185,14 @@ namespace crawler
         has_feedback    = true;
         const auto take = [i](const double value, double &known, const bool is_known, const char *name) {
           if (is_known && value != known)
-            throw InputError(
-              fmt::format("term {} uses the stretch with the {} {:g}, but another term with {:g}; one {} for all "
-                          "terms is expected",
-                          i + 1,
-                          name,
-                          value,
-                          known,
-                          name),
-              fmt::format("{}Term {}/Generator", sum_section, i + 1));
+            refuse(fmt::format("{}Term {}/Generator", sum_section, i + 1),
+                   "term {} uses the stretch with the {} {:g}, but another term with {:g}; one {} for all "
+                   "terms is expected",
+                   i + 1,
+                   name,
+                   value,
+                   known,
+                   name);
           known = value;
         };
         const StretchFeedback::Facts &own = feedback->facts;

@@ -30,15 +30,15 @@ namespace crawler
     require_overlap(const std::vector<double> &values, const double end, const char *name, const std::string &file)
     {
       if (values.front() >= end || values.back() <= 0.)
-        throw InputError(fmt::format("\"{0}\" has {1} from {2:g} to {3:g}, none of it between 0 and {4:g}, where it is "
-                                     "needed; check \"{5}Unit of {1}\"",
-                                     file,
-                                     name,
-                                     values.front(),
-                                     values.back(),
-                                     end,
-                                     table_section),
-                         table_file_entry);
+        refuse(table_file_entry,
+               "\"{0}\" has {1} from {2:g} to {3:g}, none of it between 0 and {4:g}, where it is "
+               "needed; check \"{5}Unit of {1}\"",
+               file,
+               name,
+               values.front(),
+               values.back(),
+               end,
+               table_section);
     }
 
     /// Replaces the last samples in time by the first ones, from which they may differ by round-off.
@@ -51,18 +51,16 @@ namespace crawler
       for (std::size_t i = 0; i < n; ++i)
       {
         if (std::abs(grid.values[i] - grid.values[last + i]) > most)
-          throw InputError(
-            fmt::format(
-              "\"{}\" has m = {:g} at s = {:g}, t = {:g} but m = {:g} at its last time, t = {:g}; "
-              "equal values are expected, the period being the difference of these times (\"crawler table IN OUT "
-              "--period whole\" closes it within the noise)",
-              file,
-              grid.values[i],
-              grid.s[i],
-              grid.t.front(),
-              grid.values[last + i],
-              grid.t.back()),
-            table_section + "Outside");
+          refuse(table_section + "Outside",
+                 "\"{}\" has m = {:g} at s = {:g}, t = {:g} but m = {:g} at its last time, t = {:g}; "
+                 "equal values are expected, the period being the difference of these times (\"crawler table IN OUT "
+                 "--period whole\" closes it within the noise)",
+                 file,
+                 grid.values[i],
+                 grid.s[i],
+                 grid.t.front(),
+                 grid.values[last + i],
+                 grid.t.back());
         grid.values[last + i] = grid.values[i];
       }
     }

@@ -21,11 +21,10 @@ namespace crawler
     frequency_by_work(const TwoLevelWaveParameters &p, const Scene &scene, const double X)
     {
       const auto refuse = [](const std::string &found_and_expected, const std::string &what) {
-        throw InputError(
-          fmt::format("{} is expected where the work is given, since the work of {} depends on the phase",
-                      found_and_expected,
-                      what),
-          two_level_wave_section + "Given by");
+        crawler::refuse(two_level_wave_section + "Given by",
+                        "{} is expected where the work is given, since the work of {} depends on the phase",
+                        found_and_expected,
+                        what);
       };
       if (!scene.profiles.is_plain())
         refuse("the body is not uniform, but no profile", "non-uniform bodies");
@@ -46,15 +45,16 @@ namespace crawler
       const Body &body = scene.body;
       const double low = p.smallest_strain, high = p.largest_strain;
       if (const auto stretch = stretch_without_friction(*scene.friction, 1. + low, 1. + high))
-        throw InputError(fmt::format("the friction law has no positive value at the stretch {:.6g}, which is between "
-                                     "the two strains; smaller strains, or another law, are expected",
-                                     *stretch),
-                         two_level_wave_section + "Largest strain");
+        refuse(two_level_wave_section + "Largest strain",
+               "the friction law has no positive value at the stretch {:.6g}, which is between "
+               "the two strains; smaller strains, or another law, are expected",
+               *stretch);
       const auto friction = [&](const double w) { return scene.friction->value(w) / body.friction_coefficient; };
       if (!(low < high))
-        throw InputError(
-          fmt::format("the largest strain is {:g}, but one above the smallest, {:g}, is expected", high, low),
-          two_level_wave_section + "Largest strain");
+        refuse(two_level_wave_section + "Largest strain",
+               "the largest strain is {:g}, but one above the smallest, {:g}, is expected",
+               high,
+               low);
       const double share = p.share.value_or(1. / (1. + std::sqrt(friction(1. + high) / friction(1. + low))));
       double mean = 0., g_sum = 0., ge = 0., gee = 0.;
       const auto add = [&](const double weight, const double level) { // levels from -1/2, emin, to 1/2, emax

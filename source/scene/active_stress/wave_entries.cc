@@ -54,12 +54,12 @@ namespace crawler
   {
     const double most = std::min(duty, 1. - duty);
     if (front > most * (1. + 1e-12))
-      throw InputError(fmt::format("the fronts are {:g} of a period wide, but at most {:g} is expected for the duty "
-                                   "cycle {:g}",
-                                   front,
-                                   most,
-                                   duty),
-                       section + "Front width");
+      refuse(section + "Front width",
+             "the fronts are {:g} of a period wide, but at most {:g} is expected for the duty "
+             "cycle {:g}",
+             front,
+             most,
+             duty);
   }
 
   double
@@ -153,11 +153,11 @@ namespace crawler
   {
     const double most = jumps ? 1e6 : 1e8;
     if (!(frequency * end_time <= most))
-      throw InputError(fmt::format("the stress has {:.3g} periods until the end time, but at most {:g} are expected{}",
-                                   frequency * end_time,
-                                   most,
-                                   jumps ? " if it jumps in each of them" : ""),
-                       entry);
+      refuse(entry,
+             "the stress has {:.3g} periods until the end time, but at most {:g} are expected{}",
+             frequency * end_time,
+             most,
+             jumps ? " if it jumps in each of them" : "");
   }
 
   std::vector<double>

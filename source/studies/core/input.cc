@@ -62,11 +62,10 @@ namespace crawler
       auto sensitivities = sensitivity_entries(form);
       for (const SensitivityEntry &one : sensitivities)
         if (one.is_part && to_number(form.declarations.value(one.path)) == 0.)
-          throw InputError(
-            fmt::format("Uncertainty has {:g} % of \"{}\", but that is 0; a number without % is expected",
-                        100. * one.deviation,
-                        one.path),
-            "Output/Uncertainty");
+          refuse("Output/Uncertainty",
+                 "Uncertainty has {:g} % of \"{}\", but that is 0; a number without % is expected",
+                 100. * one.deviation,
+                 one.path);
       return {
         std::move(file), parameters, form.effective(), std::move(scene), std::move(sensitivities), std::move(notes)};
     }

@@ -81,37 +81,33 @@ namespace crawler
           }
           catch (const InputError &error)
           {
-            throw InputError(fmt::format("\"{}\": {}", own, error.what()), own);
+            refuse_entry(own, "{}", error.what());
           }
         if (!is_in(all_))
         {
           for (const EntryInfo &entry : declarations_.entries())
             if (entry.path == path && entry.expected.starts_with("a whole number"))
-              throw InputError(
-                fmt::format("{} has \"{}\", which is a whole number and so has no derivatives; numbers are "
-                            "expected{}, and whole numbers as cases of section Sweep",
-                            word,
-                            path,
-                            or_else),
-                own);
+              refuse(own,
+                     "{} has \"{}\", which is a whole number and so has no derivatives; numbers are "
+                     "expected{}, and whole numbers as cases of section Sweep",
+                     word,
+                     path,
+                     or_else);
           const auto near = nearest_names(path, all_, 1);
-          throw InputError(
-            fmt::format(
-              "{} has \"{}\", but entries of the body, the ground, the active stress or the end time that are "
-              "numbers are expected{}{}",
-              word,
-              trimmed(name),
-              or_else,
-              near.empty() ? "" : "; the nearest name is " + quoted_list(near)),
-            own);
+          refuse(own,
+                 "{} has \"{}\", but entries of the body, the ground, the active stress or the end time that are "
+                 "numbers are expected{}{}",
+                 word,
+                 trimmed(name),
+                 or_else,
+                 near.empty() ? "" : "; the nearest name is " + quoted_list(near));
         }
         if (!is_in(effective_))
-          throw InputError(
-            fmt::format("{} has \"{}\", but that has no effect with the other settings; entries that have "
-                        "one are expected",
-                        word,
-                        path),
-            own);
+          refuse(own,
+                 "{} has \"{}\", but that has no effect with the other settings; entries that have "
+                 "one are expected",
+                 word,
+                 path);
         return path;
       }
 
@@ -129,8 +125,7 @@ namespace crawler
       [[noreturn]] void
       operator()(fmt::format_string<Arguments...> sentence, Arguments &&...arguments) const
       {
-        throw InputError(fmt::format("\"{}\": {}", entry, fmt::format(sentence, std::forward<Arguments>(arguments)...)),
-                         entry);
+        refuse_entry(entry, "{}", fmt::format(sentence, std::forward<Arguments>(arguments)...));
       }
     };
 
@@ -190,10 +185,8 @@ namespace crawler
       const bool is_part      = given.ends_with('%');
       const auto number       = to_number(trimmed(is_part ? given.substr(0, given.size() - 1) : given));
       if (!number || !(*number > 0.) || !std::isfinite(*number))
-        throw InputError(
-          fmt::format(
-            "Uncertainty has \"{}\" for \"{}\", but a positive number, or one with %, is expected", given, path),
-          own);
+        refuse(
+          own, "Uncertainty has \"{}\" for \"{}\", but a positive number, or one with %, is expected", given, path);
       return {path, is_part ? *number / 100. : *number, is_part};
     }
 
@@ -211,8 +204,7 @@ namespace crawler
       if (same == list.end())
         list.push_back(one);
       else if (same->deviation > 0. && one.deviation > 0.)
-        throw InputError(fmt::format("Uncertainty has \"{}\" twice, but each entry is expected only once", one.path),
-                         "Output/Uncertainty");
+        refuse("Output/Uncertainty", "Uncertainty has \"{}\" twice, but each entry is expected only once", one.path);
       else if (one.deviation > 0.)
         *same = one;
     }
@@ -224,10 +216,8 @@ namespace crawler
     const Refusal refuse{entry};
     std::string list = trimmed(form.declarations.value(entry));
     if (list.empty())
-      throw InputError(
-        fmt::format("\"{}\" is empty, but \"Section/Entry : FROM to TO\" is expected: the entries that may vary",
-                    entry),
-        entry);
+      crawler::refuse(
+        entry, "\"{}\" is empty, but \"Section/Entry : FROM to TO\" is expected: the entries that may vary", entry);
     const SceneNumbers numbers(form);
     std::vector<Variable> variables;
     if (list.ends_with(';'))
@@ -304,10 +294,10 @@ namespace crawler
     {
       const auto colon = one.find(':');
       if (colon == std::string::npos)
-        throw InputError(fmt::format("Uncertainty has \"{}\", but an entry, a colon and its standard deviation are "
-                                     "expected, like Body/Elastic modulus : 5 %",
-                                     one),
-                         own);
+        refuse(own,
+               "Uncertainty has \"{}\", but an entry, a colon and its standard deviation are "
+               "expected, like Body/Elastic modulus : 5 %",
+               one);
       const std::string path = numbers.find(one.substr(0, colon), own);
       add(list, uncertain_entry(one.substr(colon + 1), path, own));
     }

@@ -35,10 +35,10 @@ namespace crawler
     std::vector<double> none;
     const double first = std::abs(objective(values, none));
     if (!std::isfinite(first))
-      throw InputError(fmt::format("the start has no {}, since its work is {:g}; a start that takes work is expected",
-                                   objective_.name,
-                                   values.numbers[objective_.energy]),
-                       "Optimize/Variables");
+      refuse("Optimize/Variables",
+             "the start has no {}, since its work is {:g}; a start that takes work is expected",
+             objective_.name,
+             values.numbers[objective_.energy]);
     if (first > 0.)
       scale_ = first;
     // Starts with hardly any motion say little about the attainable magnitude.

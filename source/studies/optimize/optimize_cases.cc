@@ -20,11 +20,8 @@ namespace crawler
       for (const char *entry :
            {"Optimize/Objective", "Optimize/Starts", "Optimize/Start spread", "Optimize/Seed", "Optimize/Time limit"})
         if (axis == entry)
-          throw InputError(
-            fmt::format("\"{}\": \"{}\" is the same for all cases of an optimisation; another entry is expected",
-                        axes_entry,
-                        axis),
-            axes_entry);
+          refuse_entry(
+            axes_entry, "\"{}\" is the same for all cases of an optimisation; another entry is expected", axis);
     }
   } // namespace
 

@@ -42,10 +42,8 @@ namespace crawler
       const OptimizeParameters &p     = form.parameters.optimize;
       std::vector<Variable> variables = read_variables(form, list_of_variables);
       if (p.smallest_strain && p.largest_strain && *p.smallest_strain == 0. && *p.largest_strain == 0.)
-        throw InputError(
-          fmt::format("\"{}\": no strain is allowed, so no gait moves the body; a range of strain is expected",
-                      list_of_variables),
-          list_of_variables);
+        refuse_entry(list_of_variables,
+                     "no strain is allowed, so no gait moves the body; a range of strain is expected");
       require_limit(p, variables);
       return variables;
     }

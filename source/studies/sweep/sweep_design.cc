@@ -325,11 +325,11 @@ namespace crawler
                axis.entry,
                axis.values.size());
     if (n > SweepParameters::max_points)
-      throw InputError(fmt::format("\"{}\" makes {:.3g} points, but at most {:g} are expected",
-                                   entry_name,
-                                   n,
-                                   double(SweepParameters::max_points)),
-                       entry_name);
+      crawler::refuse(entry_name,
+                      "\"{}\" makes {:.3g} points, but at most {:g} are expected",
+                      entry_name,
+                      n,
+                      double(SweepParameters::max_points));
     n_points_ = static_cast<unsigned long>(n);
   }
 

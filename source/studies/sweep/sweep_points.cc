@@ -43,7 +43,7 @@ namespace crawler
       design_                      = std::make_unique<SweepDesign>(own_.sweep, axes != nullptr ? axes->folder : "");
       const auto &all_axes         = design_->axes();
       if (all_axes.empty() && !may_be_one)
-        throw InputError(fmt::format("\"{}\" is empty, but {} is expected", axes_entry, sweep_syntax), axes_entry);
+        refuse(axes_entry, "\"{}\" is empty, but {} is expected", axes_entry, sweep_syntax);
       file_axis_ = static_cast<std::size_t>(std::ranges::find_if(all_axes, &SweepAxis::is_file) - all_axes.begin());
       base_      = std::move(base);
       require_scene_files(communicator);
@@ -134,9 +134,7 @@ namespace crawler
         continue;
       for (const char *section : {"Sweep/", "Tradeoff/", "Output/Sensitivities", "Output/Uncertainty"})
         if (axis.entry.starts_with(section))
-          throw InputError(
-            fmt::format("\"{}\": \"{}\" cannot vary; an entry of another section is expected", axes_entry, axis.entry),
-            axes_entry);
+          refuse_entry(axes_entry, "\"{}\" cannot vary; an entry of another section is expected", axis.entry);
       Form scratch(file_);
       require_valid(axis.entry, axis.values, axes_entry, scratch.declarations, design_->folder());
       if (axis.is_range) // most numbers in it are not whole
@@ -164,9 +162,7 @@ namespace crawler
           catch (const InputError &error) // another entry is at fault: the word may fit at other points
           {
             if (error.entry == axis.entry)
-              throw InputError(
-                fmt::format("\"{}\", value \"{}\" of \"{}\": {}", axes_entry, word, axis.entry, error.what()),
-                axes_entry);
+              refuse(axes_entry, "\"{}\", value \"{}\" of \"{}\": {}", axes_entry, word, axis.entry, error.what());
           }
         }
   }
@@ -266,11 +262,8 @@ namespace crawler
       const auto number = to_number(text);
       if (!number || *number != std::floor(*number) || *number < 0. ||
           *number >= static_cast<double>(design_->n_points()))
-        throw InputError(fmt::format("\"{}\": found \"{}\", but the number of a point, from 0 to {}, is expected",
-                                     entry,
-                                     text,
-                                     design_->n_points() - 1),
-                         entry);
+        refuse_entry(
+          entry, "found \"{}\", but the number of a point, from 0 to {}, is expected", text, design_->n_points() - 1);
       list.push_back(static_cast<unsigned long>(*number));
     }
     return list;

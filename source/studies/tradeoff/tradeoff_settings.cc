@@ -46,7 +46,7 @@ namespace crawler
         std::string why = reason_against(value);
         why             = !why.empty() ? "; it is refused: " + why : nearest_hint(value, words);
         if (!fits)
-          throw InputError(fmt::format("\"{}\": found \"{}\", but {} is expected{}", name, value, expected, why), name);
+          refuse_entry(name, "found \"{}\", but {} is expected{}", value, expected, why);
         if (words.empty())
           value = to_text(x);
       }
