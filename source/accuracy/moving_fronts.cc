@@ -126,7 +126,7 @@ namespace crawler
           if (value > 0.)
             (sum.*extreme).value = value;
         }
-        sum.error = {.time = 0.};
+        sum.error = DisplacementError{.time = 0.};
         for (std::size_t i = 0; i < results.size(); ++i)
           sum.error->time += std::abs(weights[i]) * results[i]->error->total;
         return sum;
