@@ -10,8 +10,6 @@
 #include <crawler/run/self_check.h>
 #include <crawler/time/failure.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -63,20 +61,22 @@ namespace crawler
         limit.longest *= std::min(1., std::pow(factor, steps_over_tolerances));
     }
 
-    /// Numerics with more cells, by this factor, or a smaller tolerance of an adaptive mesh, and smaller steps.
+    /// Numerics with more cells, by this factor and number, or a smaller tolerance of an adaptive mesh, and smaller
+    /// steps.
     Numerics
-    made_finer(Numerics n, const Scene &scene, const double cells, const double mesh_tolerance, const double steps)
+    made_finer(Numerics n,
+               const Scene &scene,
+               const double cells,
+               const unsigned int more,
+               const double mesh_tolerance,
+               const double steps)
     {
       if (n.mesh.tolerance > 0.)
         n.mesh.tolerance *= mesh_tolerance;
       else if (n.formulation == Formulation::stretch)
         n.parts *= 2; // one family of meshes
       else
-      {
-        n.n_cells = finer_n_cells(cells, n.n_cells, scene.breaks_in_space().size(), n.grading);
-        if (cells >= more_cells_without_rule) // kinks are not at the same places of cells twice
-          ++n.n_cells;
-      }
+        n.n_cells = finer_n_cells(cells, n.n_cells, scene.breaks_in_space().size(), n.grading) + more;
       change_steps(n, steps);
       return n.grading.levels > 0 ? with_finer_grading(scene, n) : n;
     }
@@ -152,7 +152,7 @@ namespace crawler
   refined(const NumericsChoice &choice, const Scene &scene, const double cells)
   {
     NumericsChoice next = choice;
-    next.numerics       = made_finer(choice.numerics, scene, cells, refined_tolerance, refined_tolerance);
+    next.numerics       = made_finer(choice.numerics, scene, cells, /*more=*/0, refined_tolerance, refined_tolerance);
     return next;
   }
 
@@ -183,14 +183,16 @@ namespace crawler
     const bool is_soft = k < soft;
     const bool much_finer =
       !predicted || choice.is_steep || is_soft || scene.ground.direction.is_uneven() || scene.keeps_its_centre();
-    Numerics n   = made_finer(choice.numerics,
+    const bool many = much_finer || choice.is_rough;
+    Numerics n      = made_finer(choice.numerics,
                             scene,
-                            much_finer || choice.is_rough ? more_cells_without_rule : more_cells,
+                            many ? more_cells_without_rule : more_cells,
+                            /*more=*/many ? 1 : 0, // kinks are not at the same places of cells twice
                             finer_mesh_tolerance,
                             much_finer   ? finer_tolerance_without_rule
-                              : is_by_best ? finer_tolerance
-                                           : finer_tolerance_than_others);
-    n.integrator = best_integrator;
+                                 : is_by_best ? finer_tolerance
+                                              : finer_tolerance_than_others);
+    n.integrator    = best_integrator;
     // Adaptive meshes of two tolerances may have the same cells where they matter; halved cells differ.
     if (is_adaptive && !predicted)
       n.n_cells *= 2;

@@ -10,7 +10,7 @@
 
 namespace crawler
 {
-  /// True if those of this step, where no stretch is nearly lost, may be taken.
+  /// True if the numbers of the lanes in this step, where no stretch is nearly lost, may be taken.
   bool
   Simulation::samples_lanes(const Step &step) const
   {

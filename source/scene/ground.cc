@@ -5,8 +5,6 @@
 #include <crawler/scene/active_stress/formula_input.h>
 #include <crawler/scene/ground.h>
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <functional>
 #include <stdexcept>

@@ -3,8 +3,6 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/unit_names.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
 

@@ -3,8 +3,6 @@
 #include <crawler/base/grid_samples.h>
 #include <crawler/scene/scene.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 namespace crawler

@@ -5,8 +5,6 @@
 #include <crawler/time/integrators.h>
 #include <crawler/time/time_parameters.h>
 
-#include <fmt/format.h>
-
 namespace crawler
 {
   namespace

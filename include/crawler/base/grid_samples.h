@@ -41,7 +41,7 @@ namespace crawler
     [[noreturn]] void
     refuse(fmt::format_string<Arguments...> message, Arguments &&...arguments) const
     {
-      throw InputError(fmt::format(message, std::forward<Arguments>(arguments)...), entry);
+      crawler::refuse(entry, message, std::forward<Arguments>(arguments)...);
     }
   };
 } // namespace crawler

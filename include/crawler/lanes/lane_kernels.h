@@ -107,7 +107,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           const int i = c * n + p;
           at.f_v[i]   = D.f_v[p];
           at.f_w[i]   = D.f_w[p];
-          if constexpr (requires { laws.k; }) // one modulus
+          if constexpr (std::decay_t<decltype(laws)>::has_one_modulus)
             at.N_w[i] = laws.k;
           else
             at.N_w[i] = D.N_w[p];

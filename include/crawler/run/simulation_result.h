@@ -38,7 +38,7 @@ namespace crawler
     void
     exchange(auto &archive)
     {
-      archive(value, s, t, jump, places, error);
+      archive(static_cast<Extreme &>(*this), places, error);
     }
   };
 

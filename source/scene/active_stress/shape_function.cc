@@ -4,8 +4,6 @@
 #include <crawler/base/grid_samples.h>
 #include <crawler/scene/active_stress/shape_function.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>

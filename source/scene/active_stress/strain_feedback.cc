@@ -7,8 +7,6 @@
 #include <crawler/scene/active_stress/strain_feedback.h>
 #include <crawler/scene/breaks.h>
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 namespace crawler

@@ -4,8 +4,6 @@
 #include <crawler/scene/active_stress/wave_entries.h>
 #include <crawler/scene/breaks.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>

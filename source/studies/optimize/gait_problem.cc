@@ -2,8 +2,6 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/studies/optimize/gait_problem.h>
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 namespace crawler

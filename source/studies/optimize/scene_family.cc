@@ -6,8 +6,6 @@
 #include <crawler/scene/strain_extremes.h>
 #include <crawler/studies/optimize/scene_family.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <random>

@@ -29,8 +29,7 @@ namespace crawler
     [[noreturn]] void
     refuse(fmt::format_string<Arguments...> sentence, Arguments &&...arguments)
     {
-      throw InputError("\"" + entry_name + "\": " + fmt::format(sentence, std::forward<Arguments>(arguments)...),
-                       entry_name);
+      refuse_entry(entry_name, sentence, std::forward<Arguments>(arguments)...);
     }
 
     /// Opens a file that the axes name, described by @p what.
