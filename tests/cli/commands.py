@@ -277,6 +277,17 @@ def test_unused_petsc_options(folder):
     expect(sweep.returncode == 0 and sweep.stderr == "crawler: " + warning, f"an unused option of a sweep: {sweep}")
 
 
+def test_options_of_the_krylov_method(folder):
+    """Feedback from elsewhere is solved by GMRES, whose tolerance the user may set."""
+    text = prm("Active stress/Generator=strain feedback", "Active stress/Strain feedback/Active stress=0.1*s*t*w_near",
+               "Active stress/Strain feedback/Distance=0.3")
+    answers = set()
+    for options in ([], ["--", "-ksp_rtol", "1e-10"]):
+        run(folder, text=text, options=["--overwrite", *options])
+        answers.add(summary_of(folder / "results")["displacement"])
+    expect(len(answers) == 2, f"displacements with and without -ksp_rtol: {answers}")
+
+
 def test_inversion_of_the_position_form(folder):
     """For -1 < a < 0 only the stretch form is believed when it says that a body inverts."""
     done = run(folder, BY_SPEED, OPTIMAL + "Wave speed=1", OPTIMAL + "Perturbation parameter=0.7", "Body/Anchoring exponent=1.5",
@@ -348,5 +359,5 @@ def test_signals(folder):
 
 checks.run((test_check, test_files, test_files_without_a_mesh, test_accuracy_not_met, test_overrides, test_places_of_files,
             test_byte_order_mark, test_minus_zero, test_notes, test_quiet, test_overwrite, test_without_energies,
-            test_numerics_of_the_user, test_unused_petsc_options, test_inversion_of_the_position_form,
-            test_last_row_of_an_inversion, test_inversion, test_exit_codes, test_signals))
+            test_numerics_of_the_user, test_unused_petsc_options, test_options_of_the_krylov_method,
+            test_inversion_of_the_position_form, test_last_row_of_an_inversion, test_inversion, test_exit_codes, test_signals))
