@@ -40,8 +40,8 @@ namespace crawler
     constexpr double soft = 1e-3, layer_cells = 3., layer_ratio = 0.25, max_layer_levels = 8.;
     /// Tolerance where one cycle stands for many: its error does not average out, so the finer run is more accurate.
     constexpr double finer_tolerance_of_cycles = 0.25;
-    /// Tolerance of the next try.
-    constexpr double refined_tolerance = 0.1;
+    /// Tolerance of the mesh in the next try.
+    constexpr double refined_mesh_tolerance = 0.1;
 
     /// True if the error is known beforehand: the rule of the numerics does not cover the effect of a point value of
     /// the stretch, seen from elsewhere.
@@ -149,10 +149,10 @@ namespace crawler
   } // namespace
 
   NumericsChoice
-  refined(const NumericsChoice &choice, const Scene &scene, const double cells)
+  refined(const NumericsChoice &choice, const Scene &scene, const double cells, const double tolerance)
   {
     NumericsChoice next = choice;
-    next.numerics       = made_finer(choice.numerics, scene, cells, /*more=*/0, refined_tolerance, refined_tolerance);
+    next.numerics       = made_finer(choice.numerics, scene, cells, /*more=*/0, refined_mesh_tolerance, tolerance);
     return next;
   }
 

@@ -24,7 +24,7 @@ namespace crawler
     constexpr double coarse_ratio_is_enough = 1e-5;
     /// Largest tolerance, relative to the expected displacement, and its relative change that counts.
     constexpr double largest_tolerance = 1e-3, same_size = 0.1;
-    /// Ratio of two successive changes by more cells above which they show errors of the time steps, not of the mesh.
+    /// Ratio of two successive changes by more cells above which they may be errors of the time steps, not of the mesh.
     constexpr double falling = 0.35;
     /// Cycles of each run where the stiffness of a cycle is at least this: starts from rest are forgotten in one.
     constexpr unsigned int first_cycles   = 2;
@@ -146,7 +146,7 @@ namespace crawler
           {
             again = true;
             if (chooses_tolerance && cells_change > falling * last)
-              try_one(time_change_, with_finer_steps, /*in_any_case=*/true);
+              try_one(time_change_, with_finer_steps);
           }
           if (is_too_fine_ && cells_change <= last_part * wanted_)
           {

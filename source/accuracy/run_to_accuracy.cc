@@ -20,9 +20,11 @@ namespace crawler
 {
   namespace
   {
-    /// Number of next tries, also while the error falls and is within near_factor; factors on the cells.
+    /// Number of next tries, also while the error falls and is within near_factor; factors on the cells, and on the
+    /// time tolerance.
     constexpr unsigned int max_refinements = 3, max_refinements_if_near = 6;
-    constexpr double near_factor = 4., refined_cells = 1.2, max_refined_cells = 4.;
+    constexpr double near_factor = 4., refined_cells = 1.2, refined_cells_if_rough = 1.5, max_refined_cells = 4.,
+                     refined_tolerance = 0.1;
 
     /**
      * Confirms an inversion where the user chose the numerics, since a coarse mesh or long steps can fake a stretch
@@ -180,7 +182,7 @@ namespace crawler
         {
           if (!first_.follows_rule() || !has_tries())
             return false;
-          make_finer(refined_cells);
+          make_finer(refined_cells, refined_tolerance);
           return true;
         }
         if (!problem_.parameters.error_estimate || result_.time.status != Status::finished)
@@ -198,10 +200,14 @@ namespace crawler
           try
           {
             // Smooth solutions need few more cells; where these do not help errors fall by a power of the cell size.
-            const double total = error_before_ = result_.error->total;
-            make_finer(refinements_ == 0 || !(total > wanted())
-                         ? refined_cells
-                         : std::clamp(std::cbrt(total / wanted()), refined_cells, max_refined_cells));
+            const double total = result_.error->total, least = first_.is_rough ? refined_cells_if_rough : refined_cells;
+            const double cells = refinements_ == 0 || !(total > wanted())
+                                   ? least
+                                   : std::clamp(std::cbrt(total / wanted()), least, max_refined_cells);
+            // The error of a rough stress is that of its kinks in the cells, unless more cells do not reduce it.
+            const bool is_of_cells = first_.is_rough && first_.numerics.mesh.tolerance == 0. && total < error_before_;
+            error_before_          = total;
+            make_finer(cells, is_of_cells ? 1. : refined_tolerance);
             return true;
           }
           catch (...) // the earlier answer stays
@@ -231,9 +237,9 @@ namespace crawler
       }
 
       void
-      make_finer(const double cells)
+      make_finer(const double cells, const double tolerance)
       {
-        const NumericsChoice next = refined(answer_.choice, problem_.scene, cells);
+        const NumericsChoice next = refined(answer_.choice, problem_.scene, cells, tolerance);
         result_                   = simulate_(next);
         answer_.choice            = next;
         ++refinements_;

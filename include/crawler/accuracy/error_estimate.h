@@ -26,9 +26,10 @@ namespace crawler
   void
   estimate_errors(const Problem &problem, const NumericsChoice &choice, SimulationResult &result);
 
-  /// Numerics of the next try where the error of @p choice is too large, with @p cells times the cells.
+  /// Numerics of the next try where the error of @p choice is too large: @p cells times the cells, @p tolerance times
+  /// the time tolerance.
   NumericsChoice
-  refined(const NumericsChoice &choice, const Scene &scene, double cells);
+  refined(const NumericsChoice &choice, const Scene &scene, double cells, double tolerance);
 
   /// Entries of section Time for the finer run that measures the errors of a run; then its numerics.
   TimeParameters
