@@ -125,7 +125,7 @@ namespace crawler
         end_before_inversion(files);
         answer.result = files;
       }
-      answer.result.output_seconds = files.output_seconds;
+      answer.result.seconds.output = files.seconds.output;
       return answer;
     }
   } // namespace
@@ -167,8 +167,8 @@ namespace crawler
           if (result_.time.status == Status::inverted && result_.time.reason == "inverted_inside" && first_.is_users)
             confirm_inversion(problem_, first_, result_);
         } while (tries_again());
-        result_.refinements      = refinements_;
-        result_.estimate_seconds = estimate_seconds_;
+        result_.refinements   = refinements_;
+        result_.seconds.error = estimate_seconds_;
         return std::move(answer_);
       }
 

@@ -286,8 +286,8 @@ namespace crawler
         result.time.rejected_steps    = outcome.progress->rejected;
         result.time.newton_iterations = outcome.progress->newton;
         result.displacement           = outcome.displacement;
-        result.most_cells             = tables_->setup.n_cells;
-        result.mesh = {result.most_cells, tables_->setup.degree, result.most_cells * tables_->setup.degree + 1, false};
+        const unsigned int n_cells = tables_->setup.n_cells, degree = tables_->setup.degree;
+        result.mesh = {.n_cells = n_cells, .degree = degree, .n_unknowns = n_cells * degree + 1, .most_cells = n_cells};
         result.integrator = runs_[lane.run].time->integrator == "automatic" ? runs_[lane.run].numerics->integrator
                                                                             : runs_[lane.run].time->integrator;
         result.engine     = "fused";

@@ -144,7 +144,7 @@ namespace crawler
                                         s,
                                         result.inversion->t);
     }
-    result.solve_seconds = watch.seconds();
+    result.seconds.solve = watch.seconds();
     if (gait)
       describe_gait(result);
     return result;

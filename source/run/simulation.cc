@@ -205,7 +205,7 @@ namespace crawler
       result().time = failure_while_integrating();
     }
     SimulationResult answer = finish();
-    answer.solve_seconds    = now() - start - answer.output_seconds;
+    answer.seconds.solve    = now() - start - answer.seconds.output;
     if (journal != nullptr)
       journal->end(answer);
     return answer;
@@ -222,13 +222,13 @@ namespace crawler
     if (!run_->diagnosis && result.time.status == Status::failed)
       explain_failure();
     if ((ends_early || result.time.status == Status::finished) && is_adaptive() &&
-        result.largest_indicator > 4. * numerics_.mesh.tolerance)
+        result.size.largest_indicator > 4. * numerics_.mesh.tolerance)
       run_->diagnosis = {
         Status::failed,
         "under_resolved",
         fmt::format("the sum of the error indicators reached {:.2g}, above the mesh tolerance of {:.2g}, and "
                     "no cell may be divided further; a smaller Discretization/Smallest cell is needed",
-                    result.largest_indicator * units_.length,
+                    result.size.largest_indicator * units_.length,
                     numerics_.mesh.tolerance * units_.length)};
     if (run_->diagnosis && run_->diagnosis->reason == "nonfinite")
       stress_failed(); // its diagnosis is more precise
@@ -248,12 +248,14 @@ namespace crawler
     const double before = now();
     for (const auto &observer : run_->observers)
       observer->end();
-    result.output_seconds += now() - before;
+    result.seconds.output += now() - before;
     if (mesh_.assembler) // not if the next mesh could not be built
       result.mesh = {discretization().n_cells(),
                      discretization().element.degree,
                      discretization().n_unknowns(),
-                     discretization().n_ranks > 1};
+                     discretization().n_ranks > 1,
+                     result.mesh.changes,
+                     result.mesh.most_cells};
     result.integrator = time_.integrator;
     result.engine     = !integrators_.lanes                         ? "petsc"
                         : run_->lanes_gave_up || integrators_.petsc ? "fused, petsc"
@@ -284,7 +286,8 @@ namespace crawler
       outcome.rejected_steps += run_->before.rejected_steps;
       outcome.newton_iterations += run_->before.newton_iterations;
       outcome.linear_iterations += run_->before.linear_iterations;
-      result().most_cells = std::max(result().most_cells, mesh_.discretization->n_cells());
+      unsigned int &most_cells = result().mesh.most_cells;
+      most_cells               = std::max(most_cells, mesh_.discretization->n_cells());
       if (!goes_on_after(ending, outcome))
         return outcome;
     }

@@ -35,7 +35,7 @@ namespace crawler
     exchange_mesh(archive);
     archive(segments_, past_.history, *mesh_.velocity, v_);
     archive(run.recorder, run.output_times, run.limiter, run.accepted, run.stretch, run.integrals, run.quadrature);
-    archive(run.balance_before, run.largest, run.before, run.latest, run.lanes_gave_up, run.indicators);
+    archive(run.balance_before, run.before, run.latest, run.lanes_gave_up, run.indicators);
     archive(run.tiny_steps, run.part_start);
     if (archive.reads())
     {

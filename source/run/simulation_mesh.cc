@@ -32,8 +32,7 @@ namespace crawler
         mesh_.assembler->integrals(run_->accepted.time, y_, new_v).elastic_energy;
     }
     run_->accepted.y = y_;
-    ++result().mesh_changes;
-    result().most_cells = std::max(result().most_cells, mesh_.discretization->n_cells());
+    ++result().mesh.changes;
   }
 
   /**
@@ -86,8 +85,9 @@ namespace crawler
     run_->changes.clear();
     if (sum > numerics_.mesh.tolerance)
       run_->changes = mark_for_division(run_->indicators, *mesh_.discretization, numerics_.mesh);
+    double &largest = result().size.largest_indicator;
     if (run_->changes.empty())
-      result().largest_indicator = std::max(result().largest_indicator, sum);
+      largest = std::max(largest, sum);
     return run_->changes.empty();
   }
 

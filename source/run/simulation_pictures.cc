@@ -20,7 +20,7 @@ namespace crawler
     else if (step.size > 0. && !run_->observers.empty() && run_->diagnosis &&
              run_->diagnosis->status == Status::inverted)
       show_pictures_before_inversion(step);
-    result().output_seconds += now() - before;
+    result().seconds.output += now() - before;
     return ending;
   }
 
@@ -123,7 +123,7 @@ namespace crawler
           result().energy_balance.value_or(EnergyBalance()),
           /*is_step_end=*/false,
           &row});
-    result().output_seconds += now() - before;
+    result().seconds.output += now() - before;
   }
 
   void

@@ -106,23 +106,20 @@ namespace crawler
   void
   Simulation::look_at_resolution(const Step &step, const std::span<const double> y)
   {
-    SimulationResult &result = this->result();
-    result.last_u            = mesh_.assembler->root_mean_square(y);
-    result.largest_u         = std::max(result.largest_u, result.last_u);
+    SolutionSize &size = result().size;
+    size.last_u        = mesh_.assembler->root_mean_square(y);
+    size.largest_u     = std::max(size.largest_u, size.last_u);
     if (mesh_.stretch != nullptr || run_->options.resolution != ResolutionWish::all)
       return;
     if (!is_adaptive() && mesh_.velocity->compute(step.time, step.size, y, v_))
     {
       const auto indicators = mesh_.discretization->gather(mesh_.position->error_indicators(step.time, y, v_));
-      result.largest_indicator =
-        std::max(result.largest_indicator, std::accumulate(indicators.begin(), indicators.end(), 0.));
+      size.largest_indicator =
+        std::max(size.largest_indicator, std::accumulate(indicators.begin(), indicators.end(), 0.));
     }
     const Resolution now = mesh_.position->resolution(y);
-    Resolution &largest  = run_->largest;
-    largest.highest_mode = std::max(largest.highest_mode, now.highest_mode);
-    largest.strain       = std::max(largest.strain, now.strain);
-    result.unresolved    = largest.strain > 0. ? largest.highest_mode / largest.strain : 0.;
-    result.strain        = largest.strain;
+    size.highest_mode    = std::max(size.highest_mode, now.highest_mode);
+    size.strain          = std::max(size.strain, now.strain);
   }
 
   /// True if there are too many small steps; sets the diagnosis then.

@@ -226,7 +226,7 @@ namespace crawler::test
       Answer answer;
       for (auto _ : state)
         answer = answer_in_memory({parameters, scene}, {.energy_balance = true});
-      state.counters["cells"] = answer.result.most_cells;
+      state.counters["cells"] = answer.result.mesh.most_cells;
       state.counters["steps"] = answer.result.time.steps;
       state.counters["bound"] = answer.result.error ? answer.result.error->total : HUGE_VAL;
     }

@@ -94,9 +94,9 @@ namespace crawler::test
                                   static_cast<double>(r.time.rejected_steps),
                                   static_cast<double>(r.time.newton_iterations),
                                   r.displacement,
-                                  r.largest_u,
-                                  r.unresolved,
-                                  r.strain,
+                                  r.size.largest_u,
+                                  r.size.unresolved(),
+                                  r.size.strain,
                                   r.net_friction,
                                   r.min_stretch.value,
                                   r.min_stretch.s,
@@ -104,9 +104,9 @@ namespace crawler::test
                                   r.max_stretch.value,
                                   r.max_stretch.s,
                                   r.max_stretch.t,
-                                  static_cast<double>(r.mesh_changes),
-                                  static_cast<double>(r.most_cells),
-                                  r.largest_indicator};
+                                  static_cast<double>(r.mesh.changes),
+                                  static_cast<double>(r.mesh.most_cells),
+                                  r.size.largest_indicator};
     if (r.energy_balance)
       for (double EnergyBalance::*energy : EnergyBalance::energies())
         result.push_back((*r.energy_balance).*energy);

@@ -110,7 +110,6 @@ namespace crawler::simulation_parts
     bool lanes_gave_up           = false;
     RateQuadrature quadrature    = {}; ///< quadrature of works
     EnergyBalance balance_before = {}; ///< energy balance at the start of the latest step
-    Resolution largest{};              ///< largest over time, if computed
     TimeOutcome before{};              ///< counts of the parts of the run before the last change of mesh
     Step latest{};                     ///< last step that was tried, with the counts of the whole run
     std::optional<Diagnosis> diagnosis = {};

@@ -147,7 +147,7 @@ namespace crawler
         }
         sharing_.has_output = sharing_.is_shared || is_first_;
         begin_output();
-        result_.setup_seconds = clock_.seconds();
+        result_.seconds.setup = clock_.seconds();
         if (has_mesh)
           compute_on_mesh();
         else if (is_first_)
@@ -208,17 +208,17 @@ namespace crawler
       {
         guarded([&]() {
           const OutputParameters &output = input_.parameters.output;
-          const double setup             = result_.setup_seconds;
+          const double setup             = result_.seconds.setup;
           const auto keep_going          = [&]() { return !is_stopped(); };
           ReducedModel level(input_.scene, model_->model);
           result_ = level.compute(input_.parameters.accuracy, output.energy_balance, keep_going, /*gait=*/true);
-          result_.setup_seconds = setup;
+          result_.seconds.setup = setup;
           log_.line(level.description());
           const Stopwatch watch;
           if (result_.error && (output.has_snapshots() || output.statistics) &&
               !show_pictures(level, times_without_mesh(input_), Kymograph::equidistant(), observers(), keep_going))
             result_.time.status = Status::stopped;
-          result_.output_seconds = watch.seconds();
+          result_.seconds.output = watch.seconds();
         });
       }
 
@@ -239,7 +239,7 @@ namespace crawler
           const Simulation::Options options = {.energy_balance = output.energy_balance,
                                                .cycles = cycle_wish(parameters, input_.scene, output.has_snapshots()),
                                                .gait   = Simulation::GaitWish::any};
-          const double setup                = result_.setup_seconds;
+          const double setup                = result_.seconds.setup;
           Answer answer                     = run_to_accuracy(
             {parameters, input_.scene, keep_going, sharing_.ranks},
             *choice_,
@@ -256,7 +256,7 @@ namespace crawler
           if (answer.choice.is_of_several_runs())
             log_.line("  (" + answer.choice.explanation + ")");
           choice_               = answer.choice;
-          result_.setup_seconds = setup;
+          result_.seconds.setup = setup;
         });
       }
 
