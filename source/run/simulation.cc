@@ -74,6 +74,7 @@ namespace crawler
     , scene_(crawler::in_units(scene, units_, &segments_))
     , numerics_(in_units(numerics, units_))
     , time_(time)
+    , breaks_(scene_.breaks_in_space())
     , communicator_(communicator)
   {
     time_.end_time = 1.;
@@ -188,7 +189,6 @@ namespace crawler
                                  past_.delay > 0. ? past_.delay : HUGE_VAL,
                                  *scene_.active_stress,
                                  is_watched ? numerics_.min_event : 0.),
-          .breaks       = scene_.breaks_in_space(),
           .n_failures   = scene_.active_stress->failures() != nullptr ? scene_.active_stress->failures()->count : 0});
     result().jumps_move  = numerics_.jumps_move;
     result().formulation = numerics_.formulation;
@@ -297,23 +297,19 @@ namespace crawler
   Simulation::Ending
   Simulation::integrate_part()
   {
-    if (!run_->goes_on)
-      run_->part_start = run_->accepted.time;
-    run_->goes_on = false;
     // Numbers of the lanes are used, but not where round-off of the state counts, in very stiff or small cells.
-    run_->lane_samples = run_->options.energy_balance && mesh_.position != nullptr &&
-                         integrators_.present == integrators_.lanes.get() && mesh_.velocity->is_known_to_lanes() &&
-                         run_->options.resolution != ResolutionWish::all;
     if (integrators_.lanes)
-      integrators_.lanes->look_inside = run_->lane_samples;
+      integrators_.lanes->look_inside =
+        run_->options.energy_balance && mesh_.position != nullptr && integrators_.present == integrators_.lanes.get() &&
+        mesh_.velocity->is_known_to_lanes() && run_->options.resolution != ResolutionWish::all;
     Stepper &stepper    = *integrators_.present;
     stepper.stage_rates = nullptr;
     if (mesh_.velocity->keeps_rates() || run_->output_times.next() < HUGE_VAL)
       stepper.stage_rates = [this](const double t, const std::span<const double> y_dot) {
         mesh_.velocity->see_rate(t, y_dot);
       };
-    Course course = {run_->part_start,
-                     run_->output_times.of_segment(segments_, run_->part_start),
+    Course course = {run_->before.time,
+                     run_->output_times.of_segment(segments_, run_->before.time),
                      numerics_.tolerance,
                      run_->accepted.next_step,
                      run_->limiter.limits()};
@@ -324,17 +320,17 @@ namespace crawler
     Ending ending = Ending::none;
     if (!run_->accepted.is_there)
     {
-      const Step start = {run_->part_start, 0., 0, false, 0, 0};
+      const Step start = {run_->before.time, 0., 0, false, 0, 0};
       ending           = look_at(start, start);
     }
     while (ending == Ending::none)
       if (const Step *const part = stepper.next())
       {
-        run_->latest = *part;
-        run_->latest.number += run_->before.steps;
-        run_->latest.rejected += run_->before.rejected_steps;
-        run_->latest.newton_iterations += run_->before.newton_iterations;
-        ending = look_at(*part, run_->latest);
+        run_->state.step = *part;
+        run_->state.step.number += run_->before.steps;
+        run_->state.step.rejected += run_->before.rejected_steps;
+        run_->state.step.newton_iterations += run_->before.newton_iterations;
+        ending = look_at(*part, run_->state.step);
       }
       else
         ending = Ending::stepper;
@@ -356,7 +352,7 @@ namespace crawler
       return {u, mesh_.assembler->integrals(step.time, state, v_).displacement};
     };
     if (run_->recorder.see_step(
-          step.time, step.is_output_time, run_->stretch.min.value, run_->stretch.max.value, sample))
+          step.time, step.is_output_time, run_->state.stretch.min.value, run_->state.stretch.max.value, sample))
       return Ending::cycles;
     if (step.number >= time_.max_steps && step.time < 1.)
     {
@@ -418,6 +414,7 @@ namespace crawler
       next_step = std::min(next_step, numerics_.initial_step);
     if (ending == Ending::mesh)
       change();
+    run_->before.time = run_->accepted.time;
     return true;
   }
 
@@ -429,11 +426,11 @@ namespace crawler
     TimeOutcome outcome = failure_of(std::current_exception());
     if (outcome.reason != "nonfinite" && size_of(communicator_) > 1)
       throw;
-    outcome.time              = run_->latest.time;
-    outcome.step_size         = run_->latest.size;
-    outcome.steps             = run_->latest.number;
-    outcome.rejected_steps    = run_->latest.rejected;
-    outcome.newton_iterations = run_->latest.newton_iterations;
+    outcome.time              = run_->state.step.time;
+    outcome.step_size         = run_->state.step.size;
+    outcome.steps             = run_->state.step.number;
+    outcome.rejected_steps    = run_->state.step.rejected;
+    outcome.newton_iterations = run_->state.step.newton_iterations;
     run_->diagnosis           = {outcome.status, outcome.reason, outcome.message};
     if (outcome.reason != "nonfinite")
       run_->diagnosis->message += fmt::format(", after t = {:.9g}", run_->accepted.time * units_.time);

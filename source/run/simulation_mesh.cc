@@ -17,7 +17,7 @@ namespace crawler
     const auto old_assembler      = std::move(mesh_.assembler);
     PositionForm &old_form        = *mesh_.position;
     const auto old_discretization = std::move(mesh_.discretization);
-    build(old_discretization->adapted(run_->changes));
+    build(old_discretization->adapted(mesh_.changes));
     y_ = transferred(old_form, run_->accepted.y, *mesh_.position);
     if (run_->accepted.time == 0. && !scene_.is_plain())
       mesh_.assembler->set_initial_state(y_);
@@ -80,15 +80,15 @@ namespace crawler
   bool
   Simulation::mesh_is_good(const Step &step, const std::span<const double> y)
   {
-    run_->indicators = mesh_.discretization->gather(mesh_.position->error_indicators(step.time, y, v_));
-    const double sum = std::accumulate(run_->indicators.begin(), run_->indicators.end(), 0.);
-    run_->changes.clear();
+    mesh_.indicators = mesh_.discretization->gather(mesh_.position->error_indicators(step.time, y, v_));
+    const double sum = std::accumulate(mesh_.indicators.begin(), mesh_.indicators.end(), 0.);
+    mesh_.changes.clear();
     if (sum > numerics_.mesh.tolerance)
-      run_->changes = mark_for_division(run_->indicators, *mesh_.discretization, numerics_.mesh);
+      mesh_.changes = mark_for_division(mesh_.indicators, *mesh_.discretization, numerics_.mesh);
     double &largest = result().size.largest_indicator;
-    if (run_->changes.empty())
+    if (mesh_.changes.empty())
       largest = std::max(largest, sum);
-    return run_->changes.empty();
+    return mesh_.changes.empty();
   }
 
   bool
@@ -97,7 +97,7 @@ namespace crawler
     constexpr unsigned int max_joins_every = 10;
     if (!is_adaptive() || step.number == 0 || step.number % max_joins_every != 0 || step.time >= 1.)
       return false;
-    run_->changes = mark_for_joining(run_->indicators, *mesh_.discretization, numerics_.mesh);
-    return !run_->changes.empty();
+    mesh_.changes = mark_for_joining(mesh_.indicators, *mesh_.discretization, numerics_.mesh);
+    return !mesh_.changes.empty();
   }
 } // namespace crawler

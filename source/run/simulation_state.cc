@@ -30,7 +30,7 @@ namespace crawler
     if (stress_failed())
       return Ending::lost;
     const bool lane_samples = run_->observers.empty() && samples_lanes(step);
-    StretchRange &stretch = run_->stretch = lane_samples ? stretch_of_lanes() : mesh_.assembler->stretch_range(y);
+    StretchRange &stretch = run_->state.stretch = lane_samples ? stretch_of_lanes() : mesh_.assembler->stretch_range(y);
     if (!std::isfinite(stretch.min.value) || !std::isfinite(stretch.max.value))
     {
       run_->diagnosis = {Status::failed,
@@ -126,7 +126,7 @@ namespace crawler
   bool
   Simulation::stagnates(const Step &step)
   {
-    const StretchAt &smallest = run_->stretch.min;
+    const StretchAt &smallest = run_->state.stretch.min;
     const double tiny         = tiny_step * std::min(1., 10. * run_->limiter.longest_step(step.time));
     run_->tiny_steps          = step.size > 0. && step.size < tiny ? run_->tiny_steps + 1 : 0;
     if (run_->tiny_steps > max_steps_at_zero && scene_.friction_exponent() >= 0. && smallest.value < nearly_zero)
@@ -234,8 +234,9 @@ namespace crawler
   {
     if (!run_->options.energy_balance && run_->observers.empty())
       return true;
-    const CellIntegrals &integrals = run_->integrals = mesh_.assembler->integrals(step.time, y, v_);
-    result().displacement                            = integrals.displacement;
+    const CellIntegrals integrals = mesh_.assembler->integrals(step.time, y, v_);
+    result().displacement         = integrals.displacement;
+    run_->state                   = simulation_parts::numbers_of(step, integrals, run_->state.stretch, {});
     if (!run_->options.energy_balance && run_->output_times.next() > step.time + min_time_between_breaks)
       return true;
     if (!std::isfinite(integrals.dissipation))
@@ -245,14 +246,13 @@ namespace crawler
         "nonfinite",
         fmt::format("the velocity at t = {:.6g} is not a finite number; the smallest stretch is {:.3g} at s = {:.6g}",
                     step.time * units_.time,
-                    run_->stretch.min.value,
-                    run_->stretch.min.s * units_.length)};
+                    run_->state.stretch.min.value,
+                    run_->state.stretch.min.s * units_.length)};
       return false;
     }
     if (!run_->options.energy_balance)
       return true;
     EnergyBalance &energies = *result().energy_balance;
-    run_->balance_before    = energies;
     const Rates now         = rates(step.time, integrals, y, v_);
     if (integrators_.present->stage_places().empty())
       run_->quadrature.advance(step.time, now);
@@ -262,6 +262,7 @@ namespace crawler
     energies.elastic_energy = integrals.elastic_energy;
     if (step.number == 0)
       energies.initial_energy = integrals.elastic_energy;
+    run_->state.energy_balance = energies;
     run_->recorder.see_friction(step.size, integrals.abs_friction, std::abs(integrals.net_friction));
     return true;
   }

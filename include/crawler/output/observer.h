@@ -13,11 +13,21 @@
 
 namespace crawler
 {
+  /// Numbers of a state, in the user's units: a row of the statistics.
+  struct StateNumbers
+  {
+    Step step;           ///< with the time of this state, which may be within the step
+    double displacement; ///< of the centre of mass
+    StretchRange stretch;
+    double velocity; ///< of the centre of mass
+    EnergyBalance energy_balance;
+    double net_friction;
+  };
+
   /// A state of a run, read-only, in the user's units except for assembler, y, v and computed_time, which are in
   /// `units`. It is the end of an accepted step, or interpolated within one; the first is the initial state.
-  struct Snapshot
+  struct Snapshot : StateNumbers
   {
-    const Step &step;           ///< with the time of this state, which may be within the step
     bool is_step_end;           ///< an accepted state
     bool is_in_lost_step;       ///< before an inversion, but later than the answer's last state
     PictureKinds pictures;      ///< pictures for which it was requested
@@ -25,11 +35,8 @@ namespace crawler
     unsigned int mesh_number;   ///< ... together with this number
     const Units &units;
     double computed_time;
-    std::span<const double> y;      ///< the unknowns (assembler.h), owned values of this rank
-    std::span<const double> v;      ///< velocity at the nodes; only for pictures if there is no energy balance
-    const CellIntegrals &integrals; ///< those that contain v belong to the same time as `v`
-    const StretchRange &stretch;
-    const EnergyBalance &energy_balance;
+    std::span<const double> y; ///< the unknowns (assembler.h), owned values of this rank
+    std::span<const double> v; ///< velocity at the nodes; only for pictures if there is no energy balance
   };
 
   /// Output fields at a list of points, in the user's units.
@@ -64,17 +71,6 @@ namespace crawler
     unsigned int points_per_cell;
     std::vector<double> s; ///< of the points of all cells, ends included: two at each cell boundary [length]
     Fields fields;
-  };
-
-  /// Numbers of a state, in the user's units: a row of the statistics.
-  struct StateNumbers
-  {
-    const Step &step;
-    double displacement;
-    StretchRange stretch;
-    double velocity; ///< of the centre of mass
-    const EnergyBalance &energy_balance;
-    double net_friction;
   };
 
   /// A state of a level without a mesh: its body is one cell.

@@ -153,13 +153,17 @@ namespace crawler
     void
     show_step(const Step &step, std::span<const double> y);
     bool
-    show_pictures_within(const Step &step, double until);
+    show_pictures_within(const Step &step, double until, const EnergyBalance &at_start);
     void
     show_pictures_before_inversion(const Step &step);
     void
     show_row_after_jump();
     void
-    show(const simulation_parts::Shown &shown);
+    show(StateNumbers numbers,
+         std::span<const double> y,
+         std::span<const double> v,
+         bool is_step_end,
+         const PictureTimes::Time *picture);
     SimulationResult &
     result()
     {
@@ -169,9 +173,10 @@ namespace crawler
     const Scene &physical_scene_;
     const Units units_;
     TimeSegments segments_;
-    const Scene scene_;       ///< in natural units
-    const Numerics numerics_; ///< in natural units
-    TimeParameters time_;     ///< in natural units
+    const Scene scene_;                ///< in natural units
+    const Numerics numerics_;          ///< in natural units
+    TimeParameters time_;              ///< in natural units
+    const std::vector<double> breaks_; ///< breaks in space
     const MPI_Comm communicator_;
 
     simulation_parts::OnMesh mesh_;

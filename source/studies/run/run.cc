@@ -57,7 +57,6 @@ namespace crawler
       RunProgress(Log &log, const Scene &scene)
         : log_(log)
         , end_time_(scene.end_time)
-        , length_(scene.body.length)
         , bar_(log, /*between_lines=*/HUGE_VAL)
       {
       }
@@ -69,12 +68,12 @@ namespace crawler
           return;
         const Step &step          = snapshot.step;
         const StretchRange &range = snapshot.stretch;
-        const double done = step.time / end_time_, displacement = snapshot.integrals.displacement / length_;
+        const double done         = step.time / end_time_;
         if (bar_.is_due())
           bar_.show(std::min(done, 1.),
                     fmt::format("t = {:.4g}  displacement {:.6g}  stretch {:.3g} to {:.3g}",
                                 step.time,
-                                displacement,
+                                snapshot.displacement,
                                 range.min.value,
                                 range.max.value));
         if (10. * done < next_tenth_)
@@ -87,14 +86,14 @@ namespace crawler
           step.time,
           step.number,
           step.size,
-          displacement,
+          snapshot.displacement,
           range.min.value,
           range.max.value));
       }
 
     private:
       Log &log_;
-      const double end_time_, length_;
+      const double end_time_;
       ProgressBar bar_;
       unsigned int next_tenth_ = 1;
     };
@@ -300,7 +299,7 @@ namespace crawler
             length, input_.scene.end_time, input_.scene.ground.profile, memory_.folder));
         if (output.statistics)
           observers.push_back(std::make_shared<StatisticsWriter>(
-            length, is_first_, memory_.folder, output.energy_balance, input_.parameters.units));
+            is_first_, memory_.folder, output.energy_balance, input_.parameters.units));
         if (!options_.quiet)
           observers.push_back(std::make_shared<RunProgress>(log_, input_.scene));
         return observers;
