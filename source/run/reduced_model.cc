@@ -42,7 +42,7 @@ namespace crawler
   void
   ReducedModel::compute_perturbation(SimulationResult &result) const
   {
-    const NaturalWave &wave       = *reduced_scene.wave();
+    const NaturalWave &wave       = *reduced_scene.wave;
     const ModelErrors errors      = reduced_scene.model_errors();
     const StrainExtremes extremes = perturbation::extremes(wave);
     result.displacement           = perturbation::displacement(wave, 1.);
@@ -58,10 +58,9 @@ namespace crawler
                                   const double accuracy,
                                   const std::function<bool()> &keep_going)
   {
-    const KinematicResult motion =
-      kinematic(reduced_scene.scene(), *reduced_scene.strain(), 0.5 * accuracy, keep_going);
-    space_panels_ = motion.space_panels;
-    time_panels_  = motion.time_panels;
+    const KinematicResult motion = kinematic(reduced_scene.scene, *reduced_scene.strain, 0.5 * accuracy, keep_going);
+    space_panels_                = motion.space_panels;
+    time_panels_                 = motion.time_panels;
     if (motion.stopped)
     {
       result.time.status = Status::stopped;
@@ -103,7 +102,7 @@ namespace crawler
         ? fmt::format(
             "the estimated error of the displacement is {:.3g}{}, but Accuracy is {:g}; a larger one, or Model "
             "= auto, is needed",
-            error.total * reduced_scene.units().length,
+            error.total * reduced_scene.units.length,
             relative,
             accuracy)
         : fmt::format("the error of the {} model cannot be estimated for this scene, since its corrections do not "
@@ -132,7 +131,7 @@ namespace crawler
     result.time.time       = is_complete ? 1. : result.inversion ? result.inversion->t : 0.;
     if (!energy_balance)
       result.energy_balance.reset();
-    result = in_user_units(std::move(result), scene_, reduced_scene.units());
+    result = in_user_units(std::move(result), scene_, reduced_scene.units);
     set_error_of_efficiency("gait.efficiency", result.gait_efficiency, result);
     if (result.inversion)
     {
@@ -158,8 +157,8 @@ namespace crawler
     State state;
     if (model_ == Model::perturbation)
     {
-      const NaturalWave &wave = *reduced_scene.wave();
-      KinematicBody body(reduced_scene.scene(), *reduced_scene.strain(), {0., 0.5, 1.}, points);
+      const NaturalWave &wave = *reduced_scene.wave;
+      KinematicBody body(reduced_scene.scene, *reduced_scene.strain, {0., 0.5, 1.}, points);
       for (const double t : times)
       {
         const auto &now    = body.evaluate(t); // for its extremes
@@ -174,7 +173,7 @@ namespace crawler
       }
       return;
     }
-    KinematicBody body(reduced_scene.scene(), *reduced_scene.strain(), space_panels_, points);
+    KinematicBody body(reduced_scene.scene, *reduced_scene.strain, space_panels_, points);
     state.energies.initial_energy = body.evaluate(0.).sums.elastic_energy;
     for (std::size_t i = 0; i < times.size(); ++i)
     {
@@ -203,7 +202,7 @@ namespace crawler
   void
   ReducedModel::describe_gait(SimulationResult &result) const
   {
-    const auto period = stride_of(*reduced_scene.scene().active_stress, 1.);
+    const auto period = stride_of(*reduced_scene.scene.active_stress, 1.);
     if (result.time.status != Status::finished || !period)
       return;
     GaitMeter meter(*period, false);
@@ -216,7 +215,7 @@ namespace crawler
     });
     if (const auto gait = meter.gait())
     {
-      result.gait = gait->in_units(reduced_scene.units());
+      result.gait = gait->in_units(reduced_scene.units);
       set_efficiencies(scene_, result);
       set_error_of_efficiency("gait.stride_efficiency", result.gait->efficiency, result);
     }

@@ -57,7 +57,7 @@ namespace crawler
                 const Observers &observers,
                 const std::function<bool()> &keep_going)
   {
-    const Units &units = level.reduced_scene.units();
+    const Units &units = level.reduced_scene.units;
     std::vector<double> natural;
     for (std::size_t i = 0; i < times.all().size(); ++i)
       natural.push_back(times.natural(i));
@@ -83,7 +83,7 @@ namespace crawler
                                     step.number,
                                     static_cast<unsigned int>(points.size()),
                                     places,
-                                    physical_fields(state.fields, points, level.reduced_scene.scene(), units)},
+                                    physical_fields(state.fields, points, level.reduced_scene.scene, units)},
                                    {step,
                                     state.displacement * units.length,
                                     {stretch_at(state.smallest), stretch_at(state.largest)},
