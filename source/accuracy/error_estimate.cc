@@ -95,10 +95,10 @@ namespace crawler
           set_error_bound(result, key, std::max(*known, part * *value));
     }
 
-    Simulation::Options
+    RecordOptions
     options_of_finer_run(const Problem &problem, const SimulationResult &result)
     {
-      using Wish = Simulation::GaitWish;
+      using Wish = GaitWish;
       return {.energy_balance = result.energy_balance.has_value(),
               .cycles         = cycle_wish(problem.parameters, problem.scene, /*has_pictures=*/false),
               .gait           = !result.gait               ? Wish::none

@@ -50,7 +50,7 @@ namespace crawler
     class Family
     {
     public:
-      Family(const Problem &problem, const NumericsChoice &choice, const Simulation::Options &options)
+      Family(const Problem &problem, const NumericsChoice &choice, const RecordOptions &options)
         : problem_(problem)
         , parameters_(problem.parameters)
         , scene_(problem.scene)
@@ -480,7 +480,7 @@ namespace crawler
       const Problem &problem_;
       const RunParameters &parameters_;
       const Scene &scene_;
-      Simulation::Options options_;
+      RecordOptions options_;
       Answer answer_;
       SimulationResult latest_, extrapolated_;
       std::vector<Level> levels_;       ///< levels that agree
@@ -492,7 +492,7 @@ namespace crawler
   } // namespace
 
   Answer
-  answer_of_family(const Problem &problem, const NumericsChoice &choice, const Simulation::Options &options)
+  answer_of_family(const Problem &problem, const NumericsChoice &choice, const RecordOptions &options)
   {
     Answer answer = Family(problem, choice, options).compute();
     if (!options.energy_balance) // not requested

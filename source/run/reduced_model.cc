@@ -161,20 +161,19 @@ namespace crawler
       KinematicBody body(reduced_scene.scene, *reduced_scene.strain, {0., 0.5, 1.}, points);
       for (const double t : times)
       {
-        const auto &now    = body.evaluate(t); // for its extremes
-        state.displacement = perturbation::displacement(wave, t);
-        state.velocity     = perturbation::velocity(wave, t);
-        state.energies     = perturbation::energies(wave, t);
-        state.smallest     = now.smallest;
-        state.largest      = now.largest;
-        state.fields       = perturbation::fields(wave, t, points);
+        const auto &now      = body.evaluate(t); // for its extremes
+        state.displacement   = perturbation::displacement(wave, t);
+        state.velocity       = perturbation::velocity(wave, t);
+        state.energy_balance = perturbation::energies(wave, t);
+        state.stretch        = {{1. + now.smallest.strain, now.smallest.s}, {1. + now.largest.strain, now.largest.s}};
+        state.fields         = perturbation::fields(wave, t, points);
         if (!see(t, state))
           return;
       }
       return;
     }
     KinematicBody body(reduced_scene.scene, *reduced_scene.strain, space_panels_, points);
-    state.energies.initial_energy = body.evaluate(0.).sums.elastic_energy;
+    state.energy_balance.initial_energy = body.evaluate(0.).sums.elastic_energy;
     for (std::size_t i = 0; i < times.size(); ++i)
     {
       if (i > 0)
@@ -183,17 +182,16 @@ namespace crawler
         for (auto end = std::ranges::upper_bound(time_panels_, now); now < times[i]; ++end)
         {
           const double next = end == time_panels_.end() ? times[i] : std::min(*end, times[i]);
-          state.displacement += advance(body, now, next, state.energies);
+          state.displacement += advance(body, now, next, state.energy_balance);
           now = next;
         }
       }
-      const auto &now               = body.evaluate(times[i]);
-      state.energies.elastic_energy = now.sums.elastic_energy;
-      state.velocity                = now.sums.velocity;
-      state.net_friction            = now.sums.net_friction;
-      state.smallest                = now.smallest;
-      state.largest                 = now.largest;
-      state.fields                  = body.fields(state.displacement);
+      const auto &now                     = body.evaluate(times[i]);
+      state.energy_balance.elastic_energy = now.sums.elastic_energy;
+      state.velocity                      = now.sums.velocity;
+      state.net_friction                  = now.sums.net_friction;
+      state.stretch = {{1. + now.smallest.strain, now.smallest.s}, {1. + now.largest.strain, now.largest.s}};
+      state.fields  = body.fields(state.displacement);
       if (!see(times[i], state))
         return;
     }
@@ -209,8 +207,8 @@ namespace crawler
     replay(meter.times(), equal_parts(0., 1., GaitMeter::n_pieces), [&](const double t, const State &state) {
       meter.see(state.fields.displacement, state.displacement);
       meter.see_extremes(result.min_stretch.value, result.max_stretch.value); // extremes of the whole motion
-      meter.see_extremes(1. + state.smallest.strain, 1. + state.largest.strain);
-      meter.see_step(t, state.displacement, &state.energies);
+      meter.see_extremes(state.stretch.min.value, state.stretch.max.value);
+      meter.see_step(t, state.displacement, &state.energy_balance);
       return true;
     });
     if (const auto gait = meter.gait())

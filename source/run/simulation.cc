@@ -118,7 +118,8 @@ namespace crawler
       mesh_.assembler = std::move(form);
       mesh_.position->keep_stresses(n_stages);
     }
-    mesh_.velocity = std::make_unique<StateVelocity>(*mesh_.assembler, mesh_.position, is_adaptive(), n_stages);
+    mesh_.velocity  = std::make_unique<StateVelocity>(*mesh_.assembler, mesh_.position, is_adaptive(), n_stages);
+    mesh_.end_power = std::make_unique<EndPower>(*mesh_.assembler);
     if (past_.delay > 0.)
     {
       mesh_.assembler->history = &past_.history;
@@ -126,7 +127,6 @@ namespace crawler
     }
     y_.resize(mesh_.discretization->n_owned());
     v_.resize(mesh_.discretization->n_owned());
-    ++mesh_number_;
     choose_stepper(); // options of PETSc are read now
   }
 
@@ -153,7 +153,7 @@ namespace crawler
 
   SimulationResult
   Simulation::run(const PictureTimes &pictures,
-                  const Options &options,
+                  const RecordOptions &options,
                   const Observers &observers,
                   const KeepGoing &keep_going)
   {

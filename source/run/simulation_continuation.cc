@@ -12,7 +12,7 @@ namespace crawler
 {
   /// Inputs that decide on the run; those common to all runs of an answer are omitted.
   std::string
-  Simulation::identity(const Options &options, const bool has_pictures) const
+  Simulation::identity(const RecordOptions &options, const bool has_pictures) const
   {
     Archive archive;
     Numerics numerics          = numerics_;

@@ -57,8 +57,6 @@ namespace crawler
     const LaneStage &stage   = lanes.lane_step().stages[i];
     const double place       = lanes.tables().setup.method.c[i];
     see_stretch_of_lanes(i);
-    if (!mesh_.end_power)
-      mesh_.end_power = std::make_unique<EndPower>(*mesh_.assembler);
     const double end_power = mesh_.end_power->of_ends({step.time - (1. - place) * step.size,
                                                        {{stage.end_stretch[0], stage.end_stretch[1]}},
                                                        {{stage.end_rate[0], stage.end_rate[1]}},

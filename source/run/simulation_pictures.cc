@@ -116,7 +116,7 @@ namespace crawler
 
   /// Shows a state, whose numbers are in natural units; @p picture is null if it is none.
   void
-  Simulation::show(StateNumbers numbers,
+  Simulation::show(const StateNumbers &natural,
                    const std::span<const double> y,
                    const std::span<const double> v,
                    const bool is_step_end,
@@ -124,25 +124,18 @@ namespace crawler
   {
     if (run_->observers.empty())
       return;
-    const double time = numbers.step.time;
-    // Pictures are shown at exactly the requested times.
-    numbers.step.time = picture != nullptr ? picture->value : time * units_.time;
-    numbers.step.size *= units_.time;
-    numbers.displacement *= units_.length;
-    for (StretchAt *extreme : {&numbers.stretch.min, &numbers.stretch.max})
-      extreme->s *= units_.length;
-    numbers.velocity *= units_.velocity();
-    numbers.energy_balance = numbers.energy_balance.scaled(units_.energy());
-    numbers.net_friction *= units_.force;
+    StateNumbers numbers = natural.in_units(units_);
+    if (picture != nullptr) // shown at exactly the requested time
+      numbers.step.time = picture->value;
     for (const auto &observer : run_->observers)
       observer->observe({numbers,
                          is_step_end,
                          /*is_in_lost_step=*/run_->diagnosis.has_value(),
                          picture != nullptr ? picture->kinds : PictureKinds(),
                          *mesh_.assembler,
-                         mesh_number_,
+                         result().mesh.changes,
                          units_,
-                         time,
+                         natural.step.time,
                          y,
                          v});
   }

@@ -154,8 +154,6 @@ namespace crawler
                     const std::span<const double> y,
                     const std::span<const double> v)
   {
-    if (!mesh_.end_power)
-      mesh_.end_power = std::make_unique<EndPower>(*mesh_.assembler);
     return rates_of(sums, (*mesh_.end_power)(t, y, v));
   }
 

@@ -38,7 +38,7 @@ namespace crawler::test
 
     /// Runs a Simulation, on the fused engine or on PETSc.
     SimulationResult
-    simulate(const Engine engine, const Simulation::Options &options = {.energy_balance = true}) const
+    simulate(const Engine engine, const RecordOptions &options = {.energy_balance = true}) const
     {
       TimeParameters time = parameters.time;
       time.engine         = engine;
@@ -59,8 +59,8 @@ namespace crawler::test
   /// Computes one run alone in a batch.
   inline std::optional<SimulationResult>
   run_alone(const LaneRun &run,
-            const Simulation::Options &options = {.energy_balance = true},
-            const LaneEngine &engine           = batch_engine())
+            const RecordOptions &options = {.energy_balance = true},
+            const LaneEngine &engine     = batch_engine())
   {
     const std::array<BatchRun, 1> only = {{run.entry()}};
     return run_batch(only, options, {}, engine).front();

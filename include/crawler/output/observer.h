@@ -8,20 +8,37 @@
 #include <crawler/time/stepper.h>
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <vector>
 
 namespace crawler
 {
-  /// Numbers of a state, in the user's units: a row of the statistics.
+  /// Numbers of a state: a row of the statistics.
   struct StateNumbers
   {
-    Step step;           ///< with the time of this state, which may be within the step
-    double displacement; ///< of the centre of mass
-    StretchRange stretch;
-    double velocity; ///< of the centre of mass
-    EnergyBalance energy_balance;
-    double net_friction;
+    Step step{};              ///< with the time of this state, which may be within the step
+    double displacement = 0.; ///< of the centre of mass
+    StretchRange stretch{};
+    double velocity              = 0.; ///< of the centre of mass
+    EnergyBalance energy_balance = {};
+    double net_friction          = std::numeric_limits<double>::quiet_NaN();
+
+    /// Returns them in the user's units, from natural ones.
+    StateNumbers
+    in_units(const Units &units) const
+    {
+      StateNumbers result = *this;
+      result.step.time *= units.time;
+      result.step.size *= units.time;
+      result.displacement *= units.length;
+      for (StretchAt *extreme : {&result.stretch.min, &result.stretch.max})
+        extreme->s *= units.length;
+      result.velocity *= units.velocity();
+      result.energy_balance = energy_balance.scaled(units.energy());
+      result.net_friction *= units.force;
+      return result;
+    }
   };
 
   /// A state of a run, read-only, in the user's units except for assembler, y, v and computed_time, which are in
@@ -73,12 +90,11 @@ namespace crawler
     Fields fields;
   };
 
-  /// A state of a level without a mesh: its body is one cell.
-  struct StateWithoutMesh
+  /// A state of a level without a mesh, in the user's units: its body is one cell.
+  struct StateWithoutMesh : StateNumbers
   {
     PictureKinds pictures; ///< pictures for which it was requested
     Frame frame;
-    StateNumbers numbers;
   };
 
   /// Sees the accepted states of a run and the requested ones. Called on all ranks together.

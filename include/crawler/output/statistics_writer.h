@@ -24,7 +24,7 @@ namespace crawler
     show(const StateWithoutMesh &state) override
     {
       if (state.pictures.is_snapshot)
-        write(state.numbers);
+        write(state);
     }
 
     /// Adds a row.

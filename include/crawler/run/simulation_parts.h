@@ -45,8 +45,8 @@ namespace crawler::simulation_parts
     PositionForm *position = nullptr; ///< the assembler, if it has this form
     StretchForm *stretch   = nullptr;
     std::unique_ptr<StateVelocity> velocity;
-    std::unique_ptr<EndPower> end_power; ///< created once it is needed
-    bool is_first = false;               ///< the mesh is that of the start
+    std::unique_ptr<EndPower> end_power;
+    bool is_first = false; ///< the mesh is that of the start
     // Of an adaptive mesh:
     std::vector<double> indicators;  ///< indicators of all cells for the latest state
     std::vector<CellChange> changes; ///< changes that are wanted

@@ -146,11 +146,12 @@ namespace crawler
         }
         sharing_.has_output = sharing_.is_shared || is_first_;
         begin_output();
-        result_.seconds.setup = clock_.seconds();
+        const double setup = result_.seconds.setup = clock_.seconds();
         if (has_mesh)
           compute_on_mesh();
         else if (is_first_)
           compute_without_mesh();
+        result_.seconds.setup = setup;
         return finish();
       }
 
@@ -207,11 +208,9 @@ namespace crawler
       {
         guarded([&]() {
           const OutputParameters &output = input_.parameters.output;
-          const double setup             = result_.seconds.setup;
           const auto keep_going          = [&]() { return !is_stopped(); };
           ReducedModel level(input_.scene, model_->model);
           result_ = level.compute(input_.parameters.accuracy, output.energy_balance, keep_going, /*gait=*/true);
-          result_.seconds.setup = setup;
           log_.line(level.description());
           const Stopwatch watch;
           if (result_.error && (output.has_snapshots() || output.statistics) &&
@@ -235,11 +234,10 @@ namespace crawler
               return !is_true_anywhere(clock_.is_over(), sharing_.ranks);
             },
             &memory_.journal);
-          const Simulation::Options options = {.energy_balance = output.energy_balance,
-                                               .cycles = cycle_wish(parameters, input_.scene, output.has_snapshots()),
-                                               .gait   = Simulation::GaitWish::any};
-          const double setup                = result_.seconds.setup;
-          Answer answer                     = run_to_accuracy(
+          const RecordOptions options = {.energy_balance = output.energy_balance,
+                                         .cycles         = cycle_wish(parameters, input_.scene, output.has_snapshots()),
+                                         .gait           = GaitWish::any};
+          Answer answer               = run_to_accuracy(
             {parameters, input_.scene, keep_going, sharing_.ranks},
             *choice_,
             [&](const NumericsChoice &choice) {
@@ -254,8 +252,7 @@ namespace crawler
           result_ = std::move(answer.result);
           if (answer.choice.is_of_several_runs())
             log_.line("  (" + answer.choice.explanation + ")");
-          choice_               = answer.choice;
-          result_.seconds.setup = setup;
+          choice_ = answer.choice;
         });
       }
 
@@ -263,11 +260,11 @@ namespace crawler
       void
       announce_next_try(const NumericsChoice &choice)
       {
-        const bool is_again         = ++n_runs_ > 1;
+        const TimeOutcome &latest   = result_.time;
+        const bool is_again         = latest.status != Status::none;
         const bool is_of_other_form = choice_->is_of_several_runs() && !choice.is_of_several_runs();
         if (is_again)
         {
-          const TimeOutcome &latest = result_.time;
           log_.line((latest.status == Status::failed ? latest.reason + ": " + latest.message
                                                      : "The error is larger than Accuracy asks for") +
                     ": running again, " + (choice.is_family ? "in the stretch form." : "finer."));
@@ -283,12 +280,12 @@ namespace crawler
         other_runs_.reset();
       }
 
-      Simulation::Observers
+      Observers
       observers()
       {
         const OutputParameters &output = input_.parameters.output;
         const double length            = input_.scene.body.length;
-        Simulation::Observers observers;
+        Observers observers;
         if (!sharing_.has_output)
           return observers;
         if (output.has_snapshots())
@@ -430,7 +427,6 @@ namespace crawler
       std::optional<Scene> shown_scene_;
       std::unique_ptr<Simulation> simulation_;
       std::optional<WaitProgress> other_runs_; ///< progress of runs without one of their own
-      unsigned int n_runs_ = 0;
       SimulationResult result_;
     };
   } // namespace

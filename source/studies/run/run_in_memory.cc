@@ -80,12 +80,11 @@ namespace crawler
         run.result.time.status = Status::stopped;
         return;
       }
-      run.notes                         = notes_on_choice(input, parameters.model, &chosen->numerics);
-      const Simulation::Options options = {.energy_balance = parameters.output.energy_balance,
-                                           .cycles         = cycle_wish(parameters, input.scene, !pictures.is_empty()),
-                                           .gait =
-                                             wanted.is_all ? Simulation::GaitWish::none : Simulation::GaitWish::any};
-      const auto simulate               = [&](const NumericsChoice &choice) {
+      run.notes                   = notes_on_choice(input, parameters.model, &chosen->numerics);
+      const RecordOptions options = {.energy_balance = parameters.output.energy_balance,
+                                     .cycles         = cycle_wish(parameters, input.scene, !pictures.is_empty()),
+                                     .gait           = wanted.is_all ? GaitWish::none : GaitWish::any};
+      const auto simulate         = [&](const NumericsChoice &choice) {
         const Scene scene      = shown_scene(choice, input.scene);
         const Observers tables = begin_tables(parameters.output, wanted, run);
         return Simulation(MPI_COMM_SELF, scene, parameters.time, choice.numerics)

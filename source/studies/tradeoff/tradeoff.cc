@@ -140,8 +140,8 @@ namespace crawler
         if (parameters.model != Model::nonlinear)
           return ReducedModel(scene, parameters.model).compute(parameters.accuracy, energy_balance, keep_going);
         // Single runs are those of crawler run, whose steps end where the last stride begins.
-        const auto gait                   = is_batch ? Simulation::GaitWish::none : Simulation::GaitWish::any;
-        const Simulation::Options options = {.energy_balance = energy_balance, .gait = gait};
+        const auto gait             = is_batch ? GaitWish::none : GaitWish::any;
+        const RecordOptions options = {.energy_balance = energy_balance, .gait = gait};
         if (!is_batch)
           return Simulation(MPI_COMM_SELF, scene, parameters.time, numerics).run({}, options, {}, keep_going);
         const std::vector<BatchRun> runs(batch_size, {&scene, &parameters.time, &numerics});

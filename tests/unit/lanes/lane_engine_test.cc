@@ -67,7 +67,7 @@ TEST(LaneEngine, AResultDoesNotDependOnWhatSharesTheBatch)
       for (const bool energy_balance : {true, false})
       {
         const LaneRuns runs = mixture(integrator);
-        const Simulation::Options options{.energy_balance = energy_balance, .gait = Simulation::GaitWish::declared};
+        const RecordOptions options{.energy_balance = energy_balance, .gait = GaitWish::declared};
         const auto all        = test::entries(runs);
         const auto together   = run_batch(all, options, {}, *engine);
         unsigned int finished = 0;
