@@ -211,7 +211,7 @@ namespace crawler
         if (!n.jumps_move && n.grading.levels == 0)
         {
           if (n.integrator == "radau 5" && n.mesh.tolerance == 0. &&
-              accuracy_ * pilots_.size < radau_9_accuracy * std::max(pilots_.last.largest_u, pilots_.size))
+              accuracy_ * pilots_.size < radau_9_accuracy * std::max(pilots_.last.size.largest_u, pilots_.size))
             n.integrator = "radau 9";
           n.tolerance = time_.tolerance.value_or(tolerance_by_rule());
         }
@@ -227,7 +227,7 @@ namespace crawler
         if (n.jumps_move && predicts)
           choice_.wanted_error = accuracy_ * pilots_.size;
         if (std::isfinite(choice_.wanted_error))
-          choice_.min_size = std::max(displacement_floor * pilots_.last.largest_u, pilots_.min_size());
+          choice_.min_size = std::max(displacement_floor * pilots_.last.size.largest_u, pilots_.min_size());
         explain();
       }
 

@@ -95,10 +95,10 @@ namespace crawler
           set_error_bound(result, key, std::max(*known, part * *value));
     }
 
-    Simulation::Options
+    RecordOptions
     options_of_finer_run(const Problem &problem, const SimulationResult &result)
     {
-      using Wish = Simulation::GaitWish;
+      using Wish = GaitWish;
       return {.energy_balance = result.energy_balance.has_value(),
               .cycles         = cycle_wish(problem.parameters, problem.scene, /*has_pictures=*/false),
               .gait           = !result.gait               ? Wish::none
@@ -135,7 +135,7 @@ namespace crawler
       // Fused engine for most runs, so that nothing else has to be built. A long one is left to a simulation, which can
       // be stopped and continued.
       constexpr double much_work = 1e8; // unknowns times steps: about a minute
-      const double work          = result.mesh ? static_cast<double>(result.mesh->n_unknowns) * result.time.steps : 0.;
+      const double work          = static_cast<double>(result.mesh.n_unknowns) * result.time.steps;
       if (work < much_work && size_of(ranks) == 1 && batch_method(scene, time, numerics))
       {
         const BatchRun run = {&scene, &time, &numerics};
@@ -311,7 +311,7 @@ namespace crawler
     if (result.time.status != Status::finished || !result.error || !std::isfinite(result.error->total) ||
         result.cycles || scene.ground.direction.is_uneven() || // moving kinks have no higher orders
         !RecordedRun::is_possible(scene, parameters.time, choice.numerics) ||
-        static_cast<double>(result.time.steps) * result.most_cells > max_work)
+        static_cast<double>(result.time.steps) * result.mesh.most_cells > max_work)
       return;
     DisplacementError &error = *result.error;
     try

@@ -19,7 +19,7 @@ namespace crawler
   std::vector<double>
   number_errors(const SimulationResult &result, const SimulationResult &finer, const double factor, const double part)
   {
-    const double n_points = result.mesh ? result.mesh->n_cells * (result.mesh->degree + 1.) : 1.;
+    const double n_points = result.mesh.n_cells * (result.mesh.degree + 1.);
     const auto &entries   = entries_with_errors();
     std::vector<double> errors(entries.size());
     for (std::size_t i = 0; i < errors.size(); ++i)

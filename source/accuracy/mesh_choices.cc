@@ -61,7 +61,8 @@ namespace crawler
         if (accuracy >= 1e-7 && pilots.is_for_stretch())
           return;
         const bool finished = pilots.finished();
-        const bool resolves = are_users || pilots.last.unresolved <= std::max(resolved, accuracy) || n_cells >= most;
+        const bool resolves =
+          are_users || pilots.last.size.unresolved() <= std::max(resolved, accuracy) || n_cells >= most;
         // Two pilots suffice whose ends invert at the same time, since the end conditions determine it on any mesh.
         const auto now        = end_inversion(pilots.last);
         pilots.inverts_at_end = now && before && std::abs(*now - *before) <= same_time * *now;
@@ -100,10 +101,10 @@ namespace crawler
         return std::clamp(std::log2(coarse / fine), 0.5, full_rate);
       };
       const SimulationResult &last = pilots.last;
-      double unresolved = last.unresolved, indicator = last.largest_indicator;
+      double unresolved = last.size.unresolved(), indicator = last.size.largest_indicator;
       double rate = sees_layers(pilots, degree, n_cells) ? full_rate : 0., indicator_rate = rate;
       const auto unbalanced = [&]() {
-        return may_be_steep && indicator_factor * indicator > accuracy * last.strain &&
+        return may_be_steep && indicator_factor * indicator > accuracy * last.size.strain &&
                indicator_rate < 0.5 * full_rate;
       };
       while ((rate < 0.5 * full_rate || unbalanced()) && 2 * n_cells <= max_cells / 4)
@@ -111,12 +112,12 @@ namespace crawler
         if (may_be_steep && 2 * n_cells > max_uniform_cells)
           return std::nullopt;
         const SimulationResult finer = pilots.run(choice.numerics, degree, 2 * n_cells, ResolutionWish::all, 0.01);
-        if (finer.time.status != Status::finished || finer.unresolved == 0.)
+        if (finer.time.status != Status::finished || finer.size.unresolved() == 0.)
           break;
-        rate           = rate_of(unresolved, finer.unresolved);
-        indicator_rate = rate_of(indicator, finer.largest_indicator);
-        unresolved     = finer.unresolved;
-        indicator      = finer.largest_indicator;
+        rate           = rate_of(unresolved, finer.size.unresolved());
+        indicator_rate = rate_of(indicator, finer.size.largest_indicator);
+        unresolved     = finer.size.unresolved();
+        indicator      = finer.size.largest_indicator;
         n_cells *= 2;
         if (unresolved <= 0.01 * wanted_part && !unbalanced())
           break;
@@ -125,7 +126,7 @@ namespace crawler
       // Layers thinner than the cells do not show in the stretch, but the balance of forces shows them; its rate, too,
       // must be that of a smooth solution.
       const double gain      = std::pow(std::max(1., cells / n_cells), full_rate);
-      const double too_large = indicator_factor * indicator / (accuracy * gain * last.strain);
+      const double too_large = indicator_factor * indicator / (accuracy * gain * last.size.strain);
       if (may_be_steep && too_large > 1.)
       {
         if (indicator_rate < 0.5 * full_rate || pilots.stiffness_over_friction() < very_soft)
@@ -162,7 +163,7 @@ namespace crawler
     n.n_cells = n_cells;
     if ((parameters.accuracy >= 1e-7 && pilots.is_for_stretch()) || pilots.inverts_at_end)
       return nothing_predicted;
-    if (!pilots.finished() || pilots.last.unresolved > std::max(resolved, parameters.accuracy))
+    if (!pilots.finished() || pilots.last.size.unresolved() > std::max(resolved, parameters.accuracy))
       return most == max_cells ? std::optional(nothing_predicted) : std::nullopt; // nothing else is left
     if (most < max_cells && pilots.stiffness() < very_soft)
       return std::nullopt; // a pilot may pass over these layers by luck
@@ -185,7 +186,7 @@ namespace crawler
     n.n_cells                           = own.n_cells.value_or(
       static_cast<unsigned int>(std::clamp(std::ceil(L / pilots.scales.length), 8., 1. * max_cells)));
     n.mesh        = {1., own.smallest_cell.value_or(1e-6 * L)};
-    double strain = pilots.last.strain > 0. ? pilots.last.strain : pilots.scale * pilots.scale / L;
+    double strain = pilots.last.size.strain > 0. ? pilots.last.size.strain : pilots.scale * pilots.scale / L;
     // Pilots that need more steps than this collapse, and the scheme that is safe then costs less.
     const unsigned int usual = pilots.time.max_steps;
     pilots.time.max_steps    = std::min(usual, max_adaptive_pilot_steps);
@@ -198,8 +199,8 @@ namespace crawler
       pilots.count(pilots.run(settings, n.degree, n.n_cells, ResolutionWish::all));
       const bool finished = pilots.finished();
       const double before = strain;
-      if (finished && pilots.last.strain > 0.)
-        strain = pilots.last.strain;
+      if (finished && pilots.last.size.strain > 0.)
+        strain = pilots.last.size.strain;
       const bool strain_known = strain < 4. * before && strain > 0.25 * before;
       if (!finished)
         tighter *= 0.01; // the mesh may have caused the loss of the stretch

@@ -50,7 +50,7 @@ namespace crawler
     class Family
     {
     public:
-      Family(const Problem &problem, const NumericsChoice &choice, const Simulation::Options &options)
+      Family(const Problem &problem, const NumericsChoice &choice, const RecordOptions &options)
         : problem_(problem)
         , parameters_(problem.parameters)
         , scene_(problem.scene)
@@ -74,7 +74,7 @@ namespace crawler
         for (;;)
         {
           const bool good = is_good_in_space();
-          if (good ? is_fine_in_time() : 2 * latest_.mesh->n_cells > max_cells_now() || !is_worth_it())
+          if (good ? is_fine_in_time() : 2 * latest_.mesh.n_cells > max_cells_now() || !is_worth_it())
             break;
           if (!good)
             numerics().parts *= 2;
@@ -105,7 +105,7 @@ namespace crawler
       bool
       is_worth_it() const
       {
-        const double work = 1. * latest_.mesh->n_cells * latest_.time.steps;
+        const double work = 1. * latest_.mesh.n_cells * latest_.time.steps;
         return more_work * work <= (parameters_.accuracy < accurate ? max_work_if_accurate : max_work);
       }
 
@@ -168,8 +168,9 @@ namespace crawler
       void
       measure_size()
       {
-        size_ = finished(latest_) ? std::max(std::abs(latest_.displacement), displacement_floor * latest_.largest_u)
-                                  : scene_.end_time;
+        size_ = finished(latest_)
+                  ? std::max(std::abs(latest_.displacement), displacement_floor * latest_.size.largest_u)
+                  : scene_.end_time;
       }
 
       double
@@ -327,10 +328,10 @@ namespace crawler
         const Body &body    = scene_.body;
         const double stride = scene_.active_stress->period().value_or(scene_.end_time),
                      length = std::sqrt(body.elastic_modulus * stride / body.friction_coefficient) / body.length;
-        const bool is_seen  = now.result.mesh->n_cells * length >= 1.;
+        const bool is_seen  = now.result.mesh.n_cells * length >= 1.;
         if (is_seen || !finished(now.result))
           return 0.;
-        const double size = std::max(std::abs(now.value), part_of_largest * now.result.largest_u);
+        const double size = std::max(std::abs(now.value), part_of_largest * now.result.size.largest_u);
         return now.order < min_order ? HUGE_VAL : unseen_part * length * size;
       }
 
@@ -427,10 +428,8 @@ namespace crawler
       Answer
       end()
       {
-        answer_.choice.explanation += fmt::format("; {} runs with up to {} cells, tolerance {:.2g}",
-                                                  n_runs_,
-                                                  latest_.mesh ? latest_.mesh->n_cells : 0,
-                                                  numerics().tolerance);
+        answer_.choice.explanation += fmt::format(
+          "; {} runs with up to {} cells, tolerance {:.2g}", n_runs_, latest_.mesh.n_cells, numerics().tolerance);
         answer_.choice.wanted_error = wanted();
         answer_.result              = latest_;
         SimulationResult &result    = answer_.result;
@@ -471,7 +470,7 @@ namespace crawler
                                               "meshes do not agree on it: more cells or a smaller tolerance are needed",
                                               latest_.inversion->s,
                                               latest_.inversion->t,
-                                              latest_.mesh ? latest_.mesh->n_cells : 0);
+                                              latest_.mesh.n_cells);
             result.inversion.reset();
           }
         }
@@ -481,7 +480,7 @@ namespace crawler
       const Problem &problem_;
       const RunParameters &parameters_;
       const Scene &scene_;
-      Simulation::Options options_;
+      RecordOptions options_;
       Answer answer_;
       SimulationResult latest_, extrapolated_;
       std::vector<Level> levels_;       ///< levels that agree
@@ -493,7 +492,7 @@ namespace crawler
   } // namespace
 
   Answer
-  answer_of_family(const Problem &problem, const NumericsChoice &choice, const Simulation::Options &options)
+  answer_of_family(const Problem &problem, const NumericsChoice &choice, const RecordOptions &options)
   {
     Answer answer = Family(problem, choice, options).compute();
     if (!options.energy_balance) // not requested

@@ -47,17 +47,17 @@ namespace crawler
     void
     require_fit(const Model model, const RunParameters &parameters, const ReducedScene &levels)
     {
-      if (model == Model::perturbation && !levels.wave() && parameters.active_stress.generator == "optimal wave")
+      if (model == Model::perturbation && !levels.wave && parameters.active_stress.generator == "optimal wave")
         refuse("Model",
                "Model is perturbation, which is a series for Fourier coefficients, but the Shape of "
                "the optimal wave is {}; Model = kinematic, nonlinear or auto is expected",
                parameters.active_stress.optimal_wave.shape);
-      if (model == Model::perturbation && !levels.wave())
+      if (model == Model::perturbation && !levels.wave)
         refuse("Model",
                "Model is perturbation, which is a series for the optimal wave, but the Generator "
                "is {}; Model = kinematic, nonlinear or auto is expected",
                parameters.active_stress.generator);
-      if (model == Model::kinematic && levels.strain() == nullptr)
+      if (model == Model::kinematic && levels.strain == nullptr)
         refuse("Model",
                "Model is kinematic, which needs the rate of the active stress, but that of Generator = "
                "{} is not known, or jumps; Model = nonlinear or auto is expected",
@@ -77,15 +77,15 @@ namespace crawler
     {
       if (levels.is_prescribed())
         return {Model::kinematic, "Model kinematic: the strain is prescribed, so there is no equation to solve"};
-      if (levels.scene().body.friction_exponent() == 0.)
+      if (levels.scene.body.friction_exponent() == 0.)
         return {Model::linear, "Model linear: a = 0, where the equation is linear and the displacement 0"};
-      if (levels.strain() == nullptr)
+      if (levels.strain == nullptr)
         return {Model::nonlinear, "Model nonlinear: no simpler one fits this active stress"};
       const ModelErrors errors = levels.model_errors();
       std::vector<Candidate> candidates;
-      if (levels.wave())
+      if (levels.wave)
         candidates.push_back(
-          {Model::perturbation, errors.perturbation, perturbation::displacement(*levels.wave(), 1.), 1.});
+          {Model::perturbation, errors.perturbation, perturbation::displacement(*levels.wave, 1.), 1.});
       candidates.push_back({Model::kinematic, errors.kinematic, errors.displacement, model_share});
       std::string tried;
       for (const auto &[model, error, displacement, share] : candidates)

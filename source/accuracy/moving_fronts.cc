@@ -101,7 +101,7 @@ namespace crawler
       wanted() const
       {
         const SimulationResult &result = answer_.result;
-        const double size              = std::max(std::abs(result.displacement), displacement_floor * result.largest_u);
+        const double size = std::max(std::abs(result.displacement), displacement_floor * result.size.largest_u);
         return problem_.parameters.accuracy * size;
       }
 

@@ -74,7 +74,7 @@ namespace crawler
     // Displacements that are 0 whatever the numerics are tell nothing about them; the deformation at the end does,
     // while the largest one depends on where steps end.
     if (scene.keeps_its_centre())
-      result.displacement = result.last_u;
+      result.displacement = result.size.last_u;
     return result;
   }
 
@@ -97,7 +97,7 @@ namespace crawler
   {
     last              = result;
     const double part = scene.keeps_its_centre() ? 1. : displacement_floor;
-    size              = std::max(finished() ? std::abs(last.displacement) : 0., part * last.largest_u);
+    size              = std::max(finished() ? std::abs(last.displacement) : 0., part * last.size.largest_u);
     if (size > 0.)
       size = std::max(size, min_size());
   }
@@ -145,7 +145,7 @@ namespace crawler
   Pilots::min_size() const
   {
     const double n_cycles = cycles ? scene.end_time / cycles->period : 0.;
-    return std::max(mesh_choice::min_error * scene.body.length, n_cycles * round_off_of_cycle * last.largest_u) /
+    return std::max(mesh_choice::min_error * scene.body.length, n_cycles * round_off_of_cycle * last.size.largest_u) /
            parameters.accuracy;
   }
 

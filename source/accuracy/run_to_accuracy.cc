@@ -86,12 +86,12 @@ namespace crawler
 
     /// Answer on one rank, without files.
     Answer
-    answer_with(const NumericsChoice &choice, const Problem &problem, const Simulation::Options &options)
+    answer_with(const NumericsChoice &choice, const Problem &problem, const RecordOptions &options)
     {
       const Problem alone{problem.parameters, problem.scene, problem.keep_going};
-      Simulation::Options own = options;
-      own.cycles              = cycle_wish(alone.parameters, alone.scene, /*has_pictures=*/false);
-      const auto simulate     = [&](const NumericsChoice &next) {
+      RecordOptions own   = options;
+      own.cycles          = cycle_wish(alone.parameters, alone.scene, /*has_pictures=*/false);
+      const auto simulate = [&](const NumericsChoice &next) {
         return Simulation(MPI_COMM_SELF, alone.scene, alone.parameters.time, next.numerics)
           .run({}, own, {}, alone.keep_going);
       };
@@ -101,7 +101,7 @@ namespace crawler
     /// Answer of one form where the other one, which the rule chose, has none that is as accurate as wanted. Nothing
     /// without numerics, or if its mesh would be adaptive.
     std::optional<Answer>
-    answer_in_form(const FormulationEntry form, const Problem &problem, const Simulation::Options &options)
+    answer_in_form(const FormulationEntry form, const Problem &problem, const RecordOptions &options)
     {
       RunParameters own              = problem.parameters;
       own.discretization.formulation = form;
@@ -127,13 +127,13 @@ namespace crawler
         end_before_inversion(files);
         answer.result = files;
       }
-      answer.result.output_seconds = files.output_seconds;
+      answer.result.seconds.output = files.seconds.output;
       return answer;
     }
   } // namespace
 
   Answer
-  answer_in_memory(const Problem &problem, const Simulation::Options &options)
+  answer_in_memory(const Problem &problem, const RecordOptions &options)
   {
     if (const auto choice = choose_numerics({problem.parameters, problem.scene, problem.keep_going}))
       return answer_with(*choice, problem, options);
@@ -169,8 +169,8 @@ namespace crawler
           if (result_.time.status == Status::inverted && result_.time.reason == "inverted_inside" && first_.is_users)
             confirm_inversion(problem_, first_, result_);
         } while (tries_again());
-        result_.refinements      = refinements_;
-        result_.estimate_seconds = estimate_seconds_;
+        result_.refinements   = refinements_;
+        result_.seconds.error = estimate_seconds_;
         return std::move(answer_);
       }
 
@@ -272,7 +272,7 @@ namespace crawler
     /// Answer of the family, or of the position form if that alone meets Accuracy, or comes nearer to it: meshes of the
     /// stretch form have few digits.
     Answer
-    better_of_both_forms(const Problem &problem, const NumericsChoice &choice, const Simulation::Options &options)
+    better_of_both_forms(const Problem &problem, const NumericsChoice &choice, const RecordOptions &options)
     {
       Answer answer = answer_of_family(problem, choice, options);
       if (answer.result.time.reason != accuracy_not_met ||
@@ -299,7 +299,7 @@ namespace crawler
   run_to_accuracy(const Problem &problem,
                   const NumericsChoice &choice,
                   const std::function<SimulationResult(const NumericsChoice &)> &simulate,
-                  const Simulation::Options &options,
+                  const RecordOptions &options,
                   const bool writes)
   {
     const auto in_files = [&](Answer answer) { return writes ? with_files(std::move(answer), simulate) : answer; };

@@ -27,9 +27,8 @@ namespace crawler
     , natural(in_units(scene, units, &segments))
     , method(batch_method(natural, time, in_units(numerics, units)).value())
   {
-    const SimulationResult result =
-      Simulation(MPI_COMM_SELF, scene, time, numerics)
-        .run({}, {.gait = Simulation::GaitWish::declared, .steps = &steps}, {}, keep_going);
+    const SimulationResult result = Simulation(MPI_COMM_SELF, scene, time, numerics)
+                                      .run({}, {.gait = GaitWish::declared, .steps = &steps}, {}, keep_going);
     if (result.time.status != Status::finished)
       throw std::runtime_error("the run did not finish: " + result.time.message);
     displacement = result.displacement;

@@ -47,9 +47,8 @@ namespace crawler
     constexpr std::size_t n_energy_columns = 8;
   } // namespace
 
-  Statistics::Statistics(const double length, const bool with_energy_balance)
-    : length_(length)
-    , n_columns_(std::size(columns) - (with_energy_balance ? 0 : n_energy_columns))
+  Statistics::Statistics(const bool with_energy_balance)
+    : n_columns_(std::size(columns) - (with_energy_balance ? 0 : n_energy_columns))
   {
   }
 
@@ -57,12 +56,7 @@ namespace crawler
   Statistics::observe(const Snapshot &snapshot)
   {
     if (snapshot.is_step_end || (snapshot.pictures.is_snapshot && !snapshot.is_in_lost_step))
-      write({snapshot.step,
-             snapshot.integrals.displacement / length_,
-             snapshot.stretch,
-             snapshot.integrals.velocity / length_,
-             snapshot.energy_balance,
-             snapshot.integrals.net_friction});
+      write(snapshot);
   }
 
   void
@@ -81,12 +75,11 @@ namespace crawler
     return names;
   }
 
-  StatisticsWriter::StatisticsWriter(const double length,
-                                     const bool is_first_rank,
+  StatisticsWriter::StatisticsWriter(const bool is_first_rank,
                                      const std::filesystem::path &folder,
                                      const bool with_energy_balance,
                                      const UnitNames &units)
-    : Statistics(length, with_energy_balance)
+    : Statistics(with_energy_balance)
     , writes_(is_first_rank)
     , units_(units)
     , path_(folder / "statistics.csv")

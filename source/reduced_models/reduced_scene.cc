@@ -4,21 +4,21 @@
 
 namespace crawler
 {
-  ReducedScene::ReducedScene(const Scene &scene)
-    : units_(natural_units(scene))
-    , scene_(in_units(scene, units_))
+  ReducedScene::ReducedScene(const Scene &physical)
+    : units(natural_units(physical))
+    , scene(in_units(physical, units))
   {
-    if (const auto *wave = dynamic_cast<const OptimalWave *>(scene.active_stress.get()); wave != nullptr)
-      wave_ = natural_wave(scene, *wave);
+    if (const auto *optimal = dynamic_cast<const OptimalWave *>(physical.active_stress.get()))
+      wave = natural_wave(physical, *optimal);
     if (is_prescribed())
-      strain_ = scene_.active_stress->prescribed_strain();
-    else if (wave_)
-      strain_ = &approximate_.emplace(leading_order_strain(*wave_));
-    else if (scene_.active_stress->rate_at({0.}) != nullptr)
+      strain = scene.active_stress->prescribed_strain();
+    else if (wave)
+      strain = &approximate_.emplace(leading_order_strain(*wave));
+    else if (scene.active_stress->rate_at({0.}) != nullptr)
     {
-      const ActiveStress &stiff = approximate_.emplace(stiff_strain(scene_));
+      const ActiveStress &stiff = approximate_.emplace(stiff_strain(scene));
       if (!find_jump(stiff, 1., 1.))
-        strain_ = &stiff;
+        strain = &stiff;
     }
   }
 
@@ -27,10 +27,10 @@ namespace crawler
   {
     if (is_prescribed())
       return {.known = true};
-    if (wave_)
-      return estimate_model_errors(scene_, *wave_);
-    if (strain_ != nullptr)
-      return estimate_model_errors(scene_, *strain_);
+    if (wave)
+      return estimate_model_errors(scene, *wave);
+    if (strain != nullptr)
+      return estimate_model_errors(scene, *strain);
     return {};
   }
 } // namespace crawler

@@ -32,7 +32,7 @@ namespace crawler
       Batch(const LaneMethod &method,
             const std::span<const BatchRun> runs,
             const std::vector<std::size_t> &members,
-            const Simulation::Options &options,
+            const RecordOptions &options,
             const std::function<bool()> &keep_going,
             Results &results)
         : tables_(lane_tables(method))
@@ -141,8 +141,8 @@ namespace crawler
       void
       start_record(Lane &lane, const double tolerance) const
       {
-        Simulation::Options options = options_;
-        const BatchRun &run         = runs_[lane.run];
+        RecordOptions options = options_;
+        const BatchRun &run   = runs_[lane.run];
         if (run.cycles)
           options.cycles = run.cycles;
         lane.recorder.emplace(*run.scene, lane.units, options, tolerance, /*may_search=*/false);
@@ -286,8 +286,8 @@ namespace crawler
         result.time.rejected_steps    = outcome.progress->rejected;
         result.time.newton_iterations = outcome.progress->newton;
         result.displacement           = outcome.displacement;
-        result.most_cells             = tables_->setup.n_cells;
-        result.mesh = {result.most_cells, tables_->setup.degree, result.most_cells * tables_->setup.degree + 1, false};
+        const unsigned int n_cells = tables_->setup.n_cells, degree = tables_->setup.degree;
+        result.mesh = {.n_cells = n_cells, .degree = degree, .n_unknowns = n_cells * degree + 1, .most_cells = n_cells};
         result.integrator = runs_[lane.run].time->integrator == "automatic" ? runs_[lane.run].numerics->integrator
                                                                             : runs_[lane.run].time->integrator;
         result.engine     = "fused";
@@ -298,7 +298,7 @@ namespace crawler
       const RadauTableau &tableau_;
       const std::span<const BatchRun> runs_;
       const std::vector<std::size_t> &members_; ///< numbers of the runs
-      const Simulation::Options options_;
+      const RecordOptions options_;
       const std::function<bool()> &keep_going_;
       Results &results_;
       LaneSampler sampler_;
@@ -310,7 +310,7 @@ namespace crawler
 
   std::vector<std::optional<SimulationResult>>
   run_batch(const std::span<const BatchRun> runs,
-            const Simulation::Options &options,
+            const RecordOptions &options,
             const std::function<bool()> &keep_going,
             const LaneEngine &engine)
   {

@@ -204,8 +204,13 @@ namespace crawler
     };
     result.time.time = result.time.status == Status::finished ? scene.end_time : result.time.time * units.time;
     result.time.step_size *= units.time;
-    for (double *length :
-         {&result.displacement, &result.largest_u, &result.last_u, &result.strain, &result.largest_indicator})
+    SolutionSize &size = result.size;
+    for (double *length : {&result.displacement,
+                           &size.largest_u,
+                           &size.last_u,
+                           &size.strain,
+                           &size.highest_mode,
+                           &size.largest_indicator})
       *length *= units.length;
     if (result.error)
       for (double *part : {&result.error->total, &result.error->space, &result.error->time, &result.error->model})

@@ -42,7 +42,7 @@ namespace crawler
   void
   ReducedModel::compute_perturbation(SimulationResult &result) const
   {
-    const NaturalWave &wave       = *reduced_scene.wave();
+    const NaturalWave &wave       = *reduced_scene.wave;
     const ModelErrors errors      = reduced_scene.model_errors();
     const StrainExtremes extremes = perturbation::extremes(wave);
     result.displacement           = perturbation::displacement(wave, 1.);
@@ -58,10 +58,9 @@ namespace crawler
                                   const double accuracy,
                                   const std::function<bool()> &keep_going)
   {
-    const KinematicResult motion =
-      kinematic(reduced_scene.scene(), *reduced_scene.strain(), 0.5 * accuracy, keep_going);
-    space_panels_ = motion.space_panels;
-    time_panels_  = motion.time_panels;
+    const KinematicResult motion = kinematic(reduced_scene.scene, *reduced_scene.strain, 0.5 * accuracy, keep_going);
+    space_panels_                = motion.space_panels;
+    time_panels_                 = motion.time_panels;
     if (motion.stopped)
     {
       result.time.status = Status::stopped;
@@ -103,7 +102,7 @@ namespace crawler
         ? fmt::format(
             "the estimated error of the displacement is {:.3g}{}, but Accuracy is {:g}; a larger one, or Model "
             "= auto, is needed",
-            error.total * reduced_scene.units().length,
+            error.total * reduced_scene.units.length,
             relative,
             accuracy)
         : fmt::format("the error of the {} model cannot be estimated for this scene, since its corrections do not "
@@ -132,7 +131,7 @@ namespace crawler
     result.time.time       = is_complete ? 1. : result.inversion ? result.inversion->t : 0.;
     if (!energy_balance)
       result.energy_balance.reset();
-    result = in_user_units(std::move(result), scene_, reduced_scene.units());
+    result = in_user_units(std::move(result), scene_, reduced_scene.units);
     set_error_of_efficiency("gait.efficiency", result.gait_efficiency, result);
     if (result.inversion)
     {
@@ -144,7 +143,7 @@ namespace crawler
                                         s,
                                         result.inversion->t);
     }
-    result.solve_seconds = watch.seconds();
+    result.seconds.solve = watch.seconds();
     if (gait)
       describe_gait(result);
     return result;
@@ -158,24 +157,23 @@ namespace crawler
     State state;
     if (model_ == Model::perturbation)
     {
-      const NaturalWave &wave = *reduced_scene.wave();
-      KinematicBody body(reduced_scene.scene(), *reduced_scene.strain(), {0., 0.5, 1.}, points);
+      const NaturalWave &wave = *reduced_scene.wave;
+      KinematicBody body(reduced_scene.scene, *reduced_scene.strain, {0., 0.5, 1.}, points);
       for (const double t : times)
       {
-        const auto &now    = body.evaluate(t); // for its extremes
-        state.displacement = perturbation::displacement(wave, t);
-        state.velocity     = perturbation::velocity(wave, t);
-        state.energies     = perturbation::energies(wave, t);
-        state.smallest     = now.smallest;
-        state.largest      = now.largest;
-        state.fields       = perturbation::fields(wave, t, points);
+        const auto &now      = body.evaluate(t); // for its extremes
+        state.displacement   = perturbation::displacement(wave, t);
+        state.velocity       = perturbation::velocity(wave, t);
+        state.energy_balance = perturbation::energies(wave, t);
+        state.stretch        = {{1. + now.smallest.strain, now.smallest.s}, {1. + now.largest.strain, now.largest.s}};
+        state.fields         = perturbation::fields(wave, t, points);
         if (!see(t, state))
           return;
       }
       return;
     }
-    KinematicBody body(reduced_scene.scene(), *reduced_scene.strain(), space_panels_, points);
-    state.energies.initial_energy = body.evaluate(0.).sums.elastic_energy;
+    KinematicBody body(reduced_scene.scene, *reduced_scene.strain, space_panels_, points);
+    state.energy_balance.initial_energy = body.evaluate(0.).sums.elastic_energy;
     for (std::size_t i = 0; i < times.size(); ++i)
     {
       if (i > 0)
@@ -184,17 +182,16 @@ namespace crawler
         for (auto end = std::ranges::upper_bound(time_panels_, now); now < times[i]; ++end)
         {
           const double next = end == time_panels_.end() ? times[i] : std::min(*end, times[i]);
-          state.displacement += advance(body, now, next, state.energies);
+          state.displacement += advance(body, now, next, state.energy_balance);
           now = next;
         }
       }
-      const auto &now               = body.evaluate(times[i]);
-      state.energies.elastic_energy = now.sums.elastic_energy;
-      state.velocity                = now.sums.velocity;
-      state.net_friction            = now.sums.net_friction;
-      state.smallest                = now.smallest;
-      state.largest                 = now.largest;
-      state.fields                  = body.fields(state.displacement);
+      const auto &now                     = body.evaluate(times[i]);
+      state.energy_balance.elastic_energy = now.sums.elastic_energy;
+      state.velocity                      = now.sums.velocity;
+      state.net_friction                  = now.sums.net_friction;
+      state.stretch = {{1. + now.smallest.strain, now.smallest.s}, {1. + now.largest.strain, now.largest.s}};
+      state.fields  = body.fields(state.displacement);
       if (!see(times[i], state))
         return;
     }
@@ -203,20 +200,20 @@ namespace crawler
   void
   ReducedModel::describe_gait(SimulationResult &result) const
   {
-    const auto period = stride_of(*reduced_scene.scene().active_stress, 1.);
+    const auto period = stride_of(*reduced_scene.scene.active_stress, 1.);
     if (result.time.status != Status::finished || !period)
       return;
     GaitMeter meter(*period, false);
     replay(meter.times(), equal_parts(0., 1., GaitMeter::n_pieces), [&](const double t, const State &state) {
       meter.see(state.fields.displacement, state.displacement);
       meter.see_extremes(result.min_stretch.value, result.max_stretch.value); // extremes of the whole motion
-      meter.see_extremes(1. + state.smallest.strain, 1. + state.largest.strain);
-      meter.see_step(t, state.displacement, &state.energies);
+      meter.see_extremes(state.stretch.min.value, state.stretch.max.value);
+      meter.see_step(t, state.displacement, &state.energy_balance);
       return true;
     });
     if (const auto gait = meter.gait())
     {
-      result.gait = gait->in_units(reduced_scene.units());
+      result.gait = gait->in_units(reduced_scene.units);
       set_efficiencies(scene_, result);
       set_error_of_efficiency("gait.stride_efficiency", result.gait->efficiency, result);
     }

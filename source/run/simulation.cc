@@ -74,6 +74,7 @@ namespace crawler
     , scene_(crawler::in_units(scene, units_, &segments_))
     , numerics_(in_units(numerics, units_))
     , time_(time)
+    , breaks_(scene_.breaks_in_space())
     , communicator_(communicator)
   {
     time_.end_time = 1.;
@@ -117,7 +118,8 @@ namespace crawler
       mesh_.assembler = std::move(form);
       mesh_.position->keep_stresses(n_stages);
     }
-    mesh_.velocity = std::make_unique<StateVelocity>(*mesh_.assembler, mesh_.position, is_adaptive(), n_stages);
+    mesh_.velocity  = std::make_unique<StateVelocity>(*mesh_.assembler, mesh_.position, is_adaptive(), n_stages);
+    mesh_.end_power = std::make_unique<EndPower>(*mesh_.assembler);
     if (past_.delay > 0.)
     {
       mesh_.assembler->history = &past_.history;
@@ -125,7 +127,6 @@ namespace crawler
     }
     y_.resize(mesh_.discretization->n_owned());
     v_.resize(mesh_.discretization->n_owned());
-    ++mesh_number_;
     choose_stepper(); // options of PETSc are read now
   }
 
@@ -152,7 +153,7 @@ namespace crawler
 
   SimulationResult
   Simulation::run(const PictureTimes &pictures,
-                  const Options &options,
+                  const RecordOptions &options,
                   const Observers &observers,
                   const KeepGoing &keep_going)
   {
@@ -188,7 +189,6 @@ namespace crawler
                                  past_.delay > 0. ? past_.delay : HUGE_VAL,
                                  *scene_.active_stress,
                                  is_watched ? numerics_.min_event : 0.),
-          .breaks       = scene_.breaks_in_space(),
           .n_failures   = scene_.active_stress->failures() != nullptr ? scene_.active_stress->failures()->count : 0});
     result().jumps_move  = numerics_.jumps_move;
     result().formulation = numerics_.formulation;
@@ -205,7 +205,7 @@ namespace crawler
       result().time = failure_while_integrating();
     }
     SimulationResult answer = finish();
-    answer.solve_seconds    = now() - start - answer.output_seconds;
+    answer.seconds.solve    = now() - start - answer.seconds.output;
     if (journal != nullptr)
       journal->end(answer);
     return answer;
@@ -222,13 +222,13 @@ namespace crawler
     if (!run_->diagnosis && result.time.status == Status::failed)
       explain_failure();
     if ((ends_early || result.time.status == Status::finished) && is_adaptive() &&
-        result.largest_indicator > 4. * numerics_.mesh.tolerance)
+        result.size.largest_indicator > 4. * numerics_.mesh.tolerance)
       run_->diagnosis = {
         Status::failed,
         "under_resolved",
         fmt::format("the sum of the error indicators reached {:.2g}, above the mesh tolerance of {:.2g}, and "
                     "no cell may be divided further; a smaller Discretization/Smallest cell is needed",
-                    result.largest_indicator * units_.length,
+                    result.size.largest_indicator * units_.length,
                     numerics_.mesh.tolerance * units_.length)};
     if (run_->diagnosis && run_->diagnosis->reason == "nonfinite")
       stress_failed(); // its diagnosis is more precise
@@ -248,12 +248,14 @@ namespace crawler
     const double before = now();
     for (const auto &observer : run_->observers)
       observer->end();
-    result.output_seconds += now() - before;
+    result.seconds.output += now() - before;
     if (mesh_.assembler) // not if the next mesh could not be built
       result.mesh = {discretization().n_cells(),
                      discretization().element.degree,
                      discretization().n_unknowns(),
-                     discretization().n_ranks > 1};
+                     discretization().n_ranks > 1,
+                     result.mesh.changes,
+                     result.mesh.most_cells};
     result.integrator = time_.integrator;
     result.engine     = !integrators_.lanes                         ? "petsc"
                         : run_->lanes_gave_up || integrators_.petsc ? "fused, petsc"
@@ -284,7 +286,8 @@ namespace crawler
       outcome.rejected_steps += run_->before.rejected_steps;
       outcome.newton_iterations += run_->before.newton_iterations;
       outcome.linear_iterations += run_->before.linear_iterations;
-      result().most_cells = std::max(result().most_cells, mesh_.discretization->n_cells());
+      unsigned int &most_cells = result().mesh.most_cells;
+      most_cells               = std::max(most_cells, mesh_.discretization->n_cells());
       if (!goes_on_after(ending, outcome))
         return outcome;
     }
@@ -294,23 +297,19 @@ namespace crawler
   Simulation::Ending
   Simulation::integrate_part()
   {
-    if (!run_->goes_on)
-      run_->part_start = run_->accepted.time;
-    run_->goes_on = false;
     // Numbers of the lanes are used, but not where round-off of the state counts, in very stiff or small cells.
-    run_->lane_samples = run_->options.energy_balance && mesh_.position != nullptr &&
-                         integrators_.present == integrators_.lanes.get() && mesh_.velocity->is_known_to_lanes() &&
-                         run_->options.resolution != ResolutionWish::all;
     if (integrators_.lanes)
-      integrators_.lanes->look_inside = run_->lane_samples;
+      integrators_.lanes->look_inside =
+        run_->options.energy_balance && mesh_.position != nullptr && integrators_.present == integrators_.lanes.get() &&
+        mesh_.velocity->is_known_to_lanes() && run_->options.resolution != ResolutionWish::all;
     Stepper &stepper    = *integrators_.present;
     stepper.stage_rates = nullptr;
     if (mesh_.velocity->keeps_rates() || run_->output_times.next() < HUGE_VAL)
       stepper.stage_rates = [this](const double t, const std::span<const double> y_dot) {
         mesh_.velocity->see_rate(t, y_dot);
       };
-    Course course = {run_->part_start,
-                     run_->output_times.of_segment(segments_, run_->part_start),
+    Course course = {run_->before.time,
+                     run_->output_times.of_segment(segments_, run_->before.time),
                      numerics_.tolerance,
                      run_->accepted.next_step,
                      run_->limiter.limits()};
@@ -321,17 +320,17 @@ namespace crawler
     Ending ending = Ending::none;
     if (!run_->accepted.is_there)
     {
-      const Step start = {run_->part_start, 0., 0, false, 0, 0};
+      const Step start = {run_->before.time, 0., 0, false, 0, 0};
       ending           = look_at(start, start);
     }
     while (ending == Ending::none)
       if (const Step *const part = stepper.next())
       {
-        run_->latest = *part;
-        run_->latest.number += run_->before.steps;
-        run_->latest.rejected += run_->before.rejected_steps;
-        run_->latest.newton_iterations += run_->before.newton_iterations;
-        ending = look_at(*part, run_->latest);
+        run_->state.step = *part;
+        run_->state.step.number += run_->before.steps;
+        run_->state.step.rejected += run_->before.rejected_steps;
+        run_->state.step.newton_iterations += run_->before.newton_iterations;
+        ending = look_at(*part, run_->state.step);
       }
       else
         ending = Ending::stepper;
@@ -353,7 +352,7 @@ namespace crawler
       return {u, mesh_.assembler->integrals(step.time, state, v_).displacement};
     };
     if (run_->recorder.see_step(
-          step.time, step.is_output_time, run_->stretch.min.value, run_->stretch.max.value, sample))
+          step.time, step.is_output_time, run_->state.stretch.min.value, run_->state.stretch.max.value, sample))
       return Ending::cycles;
     if (step.number >= time_.max_steps && step.time < 1.)
     {
@@ -415,6 +414,7 @@ namespace crawler
       next_step = std::min(next_step, numerics_.initial_step);
     if (ending == Ending::mesh)
       change();
+    run_->before.time = run_->accepted.time;
     return true;
   }
 
@@ -426,11 +426,11 @@ namespace crawler
     TimeOutcome outcome = failure_of(std::current_exception());
     if (outcome.reason != "nonfinite" && size_of(communicator_) > 1)
       throw;
-    outcome.time              = run_->latest.time;
-    outcome.step_size         = run_->latest.size;
-    outcome.steps             = run_->latest.number;
-    outcome.rejected_steps    = run_->latest.rejected;
-    outcome.newton_iterations = run_->latest.newton_iterations;
+    outcome.time              = run_->state.step.time;
+    outcome.step_size         = run_->state.step.size;
+    outcome.steps             = run_->state.step.number;
+    outcome.rejected_steps    = run_->state.step.rejected;
+    outcome.newton_iterations = run_->state.step.newton_iterations;
     run_->diagnosis           = {outcome.status, outcome.reason, outcome.message};
     if (outcome.reason != "nonfinite")
       run_->diagnosis->message += fmt::format(", after t = {:.9g}", run_->accepted.time * units_.time);

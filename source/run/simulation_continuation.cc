@@ -12,7 +12,7 @@ namespace crawler
 {
   /// Inputs that decide on the run; those common to all runs of an answer are omitted.
   std::string
-  Simulation::identity(const Options &options, const bool has_pictures) const
+  Simulation::identity(const RecordOptions &options, const bool has_pictures) const
   {
     Archive archive;
     Numerics numerics          = numerics_;
@@ -34,21 +34,20 @@ namespace crawler
     Run &run = *run_;
     exchange_mesh(archive);
     archive(segments_, past_.history, *mesh_.velocity, v_);
-    archive(run.recorder, run.output_times, run.limiter, run.accepted, run.stretch, run.integrals, run.quadrature);
-    archive(run.balance_before, run.largest, run.before, run.latest, run.lanes_gave_up, run.indicators);
-    archive(run.tiny_steps, run.part_start);
+    archive(run.recorder, run.output_times, run.limiter, run.accepted, run.quadrature);
+    archive(run.before, run.state.step, run.lanes_gave_up, run.tiny_steps);
     if (archive.reads())
     {
       y_ = run.accepted.y;
       choose_stepper();
     }
-    run.goes_on = integrators_.present->exchange(archive) && archive.reads();
-    if (archive.reads() && !run.goes_on)
+    if (!integrators_.present->exchange(archive) && archive.reads())
     {
-      run.before.steps             = run.latest.number;
-      run.before.rejected_steps    = run.latest.rejected;
-      run.before.newton_iterations = run.latest.newton_iterations;
-      run.accepted.next_step       = std::min(run.latest.size, numerics_.initial_step);
+      run.before.time              = run.accepted.time;
+      run.before.steps             = run.state.step.number;
+      run.before.rejected_steps    = run.state.step.rejected;
+      run.before.newton_iterations = run.state.step.newton_iterations;
+      run.accepted.next_step       = std::min(run.state.step.size, numerics_.initial_step);
     }
     for (const auto &observer : run.observers)
       observer->exchange(archive);

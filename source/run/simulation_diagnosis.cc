@@ -101,7 +101,7 @@ namespace crawler
   {
     const double threshold = lost_stretch();
     std::vector<double> y(mesh_.discretization->n_owned());
-    StretchAt smallest = run_->stretch.min;
+    StretchAt smallest = run_->state.stretch.min;
     const auto above   = [&](const double t) {
       integrators_.present->interpolate(t, y);
       smallest = mesh_.assembler->stretch_range(y).min;
@@ -118,7 +118,7 @@ namespace crawler
       inverted_at_end(smallest.s, t, "where the active stress with its feedback is not below k");
     else if (!end_inverts(t, std::min(t + reach, 1.)))
     {
-      inverted_inside(run_->stretch.min.value, smallest.s, t);
+      inverted_inside(run_->state.stretch.min.value, smallest.s, t);
       if (result().inversion && mesh_.stretch != nullptr)
       {
         // Disturbances travel at unbounded speed there, so all these places are lost at once.

@@ -14,7 +14,7 @@ namespace crawler
   bool
   Simulation::samples_lanes(const Step &step) const
   {
-    if (!run_->lane_samples || step.size == 0.)
+    if (!integrators_.lanes || !integrators_.lanes->look_inside || step.size == 0.)
       return false;
     const LaneStep &seen = integrators_.lanes->lane_step();
     const std::span<const LaneStage> stages(seen.stages, integrators_.lanes->tables().setup.n_stages);
@@ -32,17 +32,17 @@ namespace crawler
             {end.max_stretch, lanes.tables().place_of_sample(end.max_sample)}};
   }
 
-  /// Observes the stretch of stage @p i of an accepted step; with observers its end has that of run_->stretch.
+  /// Observes the stretch of stage @p i of an accepted step; with observers its end has that of run_->state.stretch.
   void
   Simulation::see_stretch_of_lanes(const unsigned int i)
   {
     const LaneStepper &lanes       = *integrators_.lanes;
     const SimulationResult &record = result();
-    auto [smallest, largest]       = lane_extremes(
-      lanes.tables(), lanes.lane_step(), i, record.min_stretch.value, record.max_stretch.value, run_->breaks);
+    auto [smallest, largest] =
+      lane_extremes(lanes.tables(), lanes.lane_step(), i, record.min_stretch.value, record.max_stretch.value, breaks_);
     if (!run_->observers.empty() && i + 1 == lanes.tables().setup.n_stages)
     {
-      const auto &[min, max] = run_->stretch;
+      const auto &[min, max] = run_->state.stretch;
       smallest               = {min.value, min.s, smallest.t, smallest.jump};
       largest                = {max.value, max.s, largest.t, largest.jump};
     }
@@ -57,8 +57,6 @@ namespace crawler
     const LaneStage &stage   = lanes.lane_step().stages[i];
     const double place       = lanes.tables().setup.method.c[i];
     see_stretch_of_lanes(i);
-    if (!mesh_.end_power)
-      mesh_.end_power = std::make_unique<EndPower>(*mesh_.assembler);
     const double end_power = mesh_.end_power->of_ends({step.time - (1. - place) * step.size,
                                                        {{stage.end_stretch[0], stage.end_stretch[1]}},
                                                        {{stage.end_rate[0], stage.end_rate[1]}},

@@ -17,7 +17,7 @@ namespace crawler
     const auto old_assembler      = std::move(mesh_.assembler);
     PositionForm &old_form        = *mesh_.position;
     const auto old_discretization = std::move(mesh_.discretization);
-    build(old_discretization->adapted(run_->changes));
+    build(old_discretization->adapted(mesh_.changes));
     y_ = transferred(old_form, run_->accepted.y, *mesh_.position);
     if (run_->accepted.time == 0. && !scene_.is_plain())
       mesh_.assembler->set_initial_state(y_);
@@ -32,8 +32,7 @@ namespace crawler
         mesh_.assembler->integrals(run_->accepted.time, y_, new_v).elastic_energy;
     }
     run_->accepted.y = y_;
-    ++result().mesh_changes;
-    result().most_cells = std::max(result().most_cells, mesh_.discretization->n_cells());
+    ++result().mesh.changes;
   }
 
   /**
@@ -81,14 +80,15 @@ namespace crawler
   bool
   Simulation::mesh_is_good(const Step &step, const std::span<const double> y)
   {
-    run_->indicators = mesh_.discretization->gather(mesh_.position->error_indicators(step.time, y, v_));
-    const double sum = std::accumulate(run_->indicators.begin(), run_->indicators.end(), 0.);
-    run_->changes.clear();
+    mesh_.indicators = mesh_.discretization->gather(mesh_.position->error_indicators(step.time, y, v_));
+    const double sum = std::accumulate(mesh_.indicators.begin(), mesh_.indicators.end(), 0.);
+    mesh_.changes.clear();
     if (sum > numerics_.mesh.tolerance)
-      run_->changes = mark_for_division(run_->indicators, *mesh_.discretization, numerics_.mesh);
-    if (run_->changes.empty())
-      result().largest_indicator = std::max(result().largest_indicator, sum);
-    return run_->changes.empty();
+      mesh_.changes = mark_for_division(mesh_.indicators, *mesh_.discretization, numerics_.mesh);
+    double &largest = result().size.largest_indicator;
+    if (mesh_.changes.empty())
+      largest = std::max(largest, sum);
+    return mesh_.changes.empty();
   }
 
   bool
@@ -97,7 +97,7 @@ namespace crawler
     constexpr unsigned int max_joins_every = 10;
     if (!is_adaptive() || step.number == 0 || step.number % max_joins_every != 0 || step.time >= 1.)
       return false;
-    run_->changes = mark_for_joining(run_->indicators, *mesh_.discretization, numerics_.mesh);
-    return !run_->changes.empty();
+    mesh_.changes = mark_for_joining(mesh_.indicators, *mesh_.discretization, numerics_.mesh);
+    return !mesh_.changes.empty();
   }
 } // namespace crawler

@@ -11,16 +11,17 @@ namespace crawler
   Simulation::Ending
   Simulation::see(const Step &step, const std::span<const double> y)
   {
-    Ending ending       = examine(step, y);
-    const double before = now();
-    if (ending == Ending::none && !show_pictures_within(step, step.time))
+    const EnergyBalance at_start = result().energy_balance.value_or(EnergyBalance());
+    Ending ending                = examine(step, y);
+    const double before          = now();
+    if (ending == Ending::none && !show_pictures_within(step, step.time, at_start))
       ending = Ending::lost;
     if (ending == Ending::none)
       show_step(step, y);
     else if (step.size > 0. && !run_->observers.empty() && run_->diagnosis &&
              run_->diagnosis->status == Status::inverted)
       show_pictures_before_inversion(step);
-    result().output_seconds += now() - before;
+    result().seconds.output += now() - before;
     return ending;
   }
 
@@ -29,22 +30,19 @@ namespace crawler
   Simulation::show_step(const Step &step, const std::span<const double> y)
   {
     const bool is_picture = run_->output_times.next() <= step.time + min_time_between_breaks;
-    show({step,
-          y,
-          v_,
-          run_->integrals,
-          run_->stretch,
-          result().energy_balance.value_or(EnergyBalance()),
-          /*is_step_end=*/true,
-          is_picture ? &run_->output_times.picture() : nullptr});
+    show(run_->state,
+         y,
+         v_,
+         /*is_step_end=*/true,
+         is_picture ? &run_->output_times.picture() : nullptr);
     if (is_picture)
       run_->output_times.pass();
   }
 
-  /// Shows the pictures within the step that has just been made, before the time @p until. Returns false if one of
-  /// these states has no velocity.
+  /// Shows the pictures within the step that has just been made, before the time @p until, with the energies
+  /// @p at_start of the step. Returns false if one of these states has no velocity.
   bool
-  Simulation::show_pictures_within(const Step &step, const double until)
+  Simulation::show_pictures_within(const Step &step, const double until, const EnergyBalance &at_start)
   {
     for (; run_->output_times.next() < until - min_time_between_breaks; run_->output_times.pass())
     {
@@ -60,20 +58,17 @@ namespace crawler
       EnergyBalance energies;
       if (run_->options.energy_balance)
       {
-        energies = run_->balance_before;
+        energies = at_start;
         energies.add_works(run_->quadrature.until(1. - (step.time - t) / step.size));
         energies.elastic_energy = integrals.elastic_energy;
       }
       Step inside = step;
       inside.time = t;
-      show({inside,
-            inside_.y,
-            inside_.v,
-            integrals,
-            stretch,
-            energies,
-            /*is_step_end=*/false,
-            &run_->output_times.picture()});
+      show(simulation_parts::numbers_of(inside, integrals, stretch, energies),
+           inside_.y,
+           inside_.v,
+           /*is_step_end=*/false,
+           &run_->output_times.picture());
     }
     return true;
   }
@@ -88,7 +83,6 @@ namespace crawler
     const double start = step.time - step.size, end = std::min(result().inversion->t, step.time);
     if (run_->options.energy_balance)
     {
-      run_->balance_before = *result().energy_balance;
       run_->quadrature.begin_step(step.size);
       for (const double place : {0.1, 0.5, 0.9})
       {
@@ -99,7 +93,7 @@ namespace crawler
         run_->quadrature.add_stage(t, rates_within(t));
       }
     }
-    show_pictures_within(step, end);
+    show_pictures_within(step, end, result().energy_balance.value_or(EnergyBalance()));
     run_->diagnosis = inverted;
   }
 
@@ -112,53 +106,37 @@ namespace crawler
     if (picture == nullptr || !picture->kinds.is_row || !finds_velocity(t, 0., y_, v_))
       return;
     const double before = now();
-    Step step           = run_->latest;
-    step.size           = 0.;
     const PictureTimes::Time row{picture->value, {.is_snapshot = false, .is_row = true}};
-    show({step,
-          y_,
-          v_,
-          mesh_.assembler->integrals(t, y_, v_),
-          run_->stretch,
-          result().energy_balance.value_or(EnergyBalance()),
-          /*is_step_end=*/false,
-          &row});
-    result().output_seconds += now() - before;
+    StateNumbers numbers = simulation_parts::numbers_of(
+      run_->state.step, mesh_.assembler->integrals(t, y_, v_), run_->state.stretch, run_->state.energy_balance);
+    numbers.step.size = 0.;
+    show(numbers, y_, v_, /*is_step_end=*/false, &row);
+    result().seconds.output += now() - before;
   }
 
+  /// Shows a state, whose numbers are in natural units; @p picture is null if it is none.
   void
-  Simulation::show(const simulation_parts::Shown &shown)
+  Simulation::show(const StateNumbers &natural,
+                   const std::span<const double> y,
+                   const std::span<const double> v,
+                   const bool is_step_end,
+                   const PictureTimes::Time *picture)
   {
     if (run_->observers.empty())
       return;
-    Step physical = shown.step;
-    // Pictures are shown at exactly the requested times.
-    physical.time = shown.picture != nullptr ? shown.picture->value : shown.step.time * units_.time;
-    physical.size *= units_.time;
-    const double energy = units_.energy(), power = units_.power();
-    CellIntegrals sums = shown.integrals;
-    sums.displacement *= units_.length * units_.length;
-    sums.velocity *= units_.length * units_.velocity();
-    sums.elastic_energy *= energy;
-    for (double *rate : {&sums.stress_power, &sums.positive_power, &sums.absolute_power, &sums.dissipation})
-      *rate *= power;
-    sums.net_friction *= units_.force;
-    sums.abs_friction *= units_.force;
-    const StretchRange range{{shown.stretch.min.value, shown.stretch.min.s * units_.length},
-                             {shown.stretch.max.value, shown.stretch.max.s * units_.length}};
+    StateNumbers numbers = natural.in_units(units_);
+    if (picture != nullptr) // shown at exactly the requested time
+      numbers.step.time = picture->value;
     for (const auto &observer : run_->observers)
-      observer->observe({physical,
-                         shown.is_step_end,
+      observer->observe({numbers,
+                         is_step_end,
                          /*is_in_lost_step=*/run_->diagnosis.has_value(),
-                         shown.picture != nullptr ? shown.picture->kinds : PictureKinds(),
+                         picture != nullptr ? picture->kinds : PictureKinds(),
                          *mesh_.assembler,
-                         mesh_number_,
+                         result().mesh.changes,
                          units_,
-                         shown.step.time,
-                         shown.y,
-                         shown.v,
-                         sums,
-                         range,
-                         shown.energy_balance.scaled(energy)});
+                         natural.step.time,
+                         y,
+                         v});
   }
 } // namespace crawler

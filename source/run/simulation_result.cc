@@ -35,9 +35,8 @@ namespace crawler
   SimulationResult::exchange(Archive &archive)
   {
     archive(time);
-    archive(model, displacement, integrator, engine, error, corrected, errors, largest_u, last_u, unresolved, strain);
+    archive(model, displacement, integrator, engine, error, corrected, errors, size);
     archive(energy_balance, jumps_move, net_friction, min_stretch, max_stretch, inversion);
-    archive(gait, gait_efficiency, cycles, formulation, mesh_changes, most_cells, mesh);
-    archive(largest_indicator, setup_seconds, solve_seconds, output_seconds, estimate_seconds, refinements);
+    archive(gait, gait_efficiency, cycles, formulation, mesh, seconds, refinements);
   }
 } // namespace crawler

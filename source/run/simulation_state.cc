@@ -30,7 +30,7 @@ namespace crawler
     if (stress_failed())
       return Ending::lost;
     const bool lane_samples = run_->observers.empty() && samples_lanes(step);
-    StretchRange &stretch = run_->stretch = lane_samples ? stretch_of_lanes() : mesh_.assembler->stretch_range(y);
+    StretchRange &stretch = run_->state.stretch = lane_samples ? stretch_of_lanes() : mesh_.assembler->stretch_range(y);
     if (!std::isfinite(stretch.min.value) || !std::isfinite(stretch.max.value))
     {
       run_->diagnosis = {Status::failed,
@@ -106,30 +106,27 @@ namespace crawler
   void
   Simulation::look_at_resolution(const Step &step, const std::span<const double> y)
   {
-    SimulationResult &result = this->result();
-    result.last_u            = mesh_.assembler->root_mean_square(y);
-    result.largest_u         = std::max(result.largest_u, result.last_u);
+    SolutionSize &size = result().size;
+    size.last_u        = mesh_.assembler->root_mean_square(y);
+    size.largest_u     = std::max(size.largest_u, size.last_u);
     if (mesh_.stretch != nullptr || run_->options.resolution != ResolutionWish::all)
       return;
     if (!is_adaptive() && mesh_.velocity->compute(step.time, step.size, y, v_))
     {
       const auto indicators = mesh_.discretization->gather(mesh_.position->error_indicators(step.time, y, v_));
-      result.largest_indicator =
-        std::max(result.largest_indicator, std::accumulate(indicators.begin(), indicators.end(), 0.));
+      size.largest_indicator =
+        std::max(size.largest_indicator, std::accumulate(indicators.begin(), indicators.end(), 0.));
     }
     const Resolution now = mesh_.position->resolution(y);
-    Resolution &largest  = run_->largest;
-    largest.highest_mode = std::max(largest.highest_mode, now.highest_mode);
-    largest.strain       = std::max(largest.strain, now.strain);
-    result.unresolved    = largest.strain > 0. ? largest.highest_mode / largest.strain : 0.;
-    result.strain        = largest.strain;
+    size.highest_mode    = std::max(size.highest_mode, now.highest_mode);
+    size.strain          = std::max(size.strain, now.strain);
   }
 
   /// True if there are too many small steps; sets the diagnosis then.
   bool
   Simulation::stagnates(const Step &step)
   {
-    const StretchAt &smallest = run_->stretch.min;
+    const StretchAt &smallest = run_->state.stretch.min;
     const double tiny         = tiny_step * std::min(1., 10. * run_->limiter.longest_step(step.time));
     run_->tiny_steps          = step.size > 0. && step.size < tiny ? run_->tiny_steps + 1 : 0;
     if (run_->tiny_steps > max_steps_at_zero && scene_.friction_exponent() >= 0. && smallest.value < nearly_zero)
@@ -157,8 +154,6 @@ namespace crawler
                     const std::span<const double> y,
                     const std::span<const double> v)
   {
-    if (!mesh_.end_power)
-      mesh_.end_power = std::make_unique<EndPower>(*mesh_.assembler);
     return rates_of(sums, (*mesh_.end_power)(t, y, v));
   }
 
@@ -237,8 +232,9 @@ namespace crawler
   {
     if (!run_->options.energy_balance && run_->observers.empty())
       return true;
-    const CellIntegrals &integrals = run_->integrals = mesh_.assembler->integrals(step.time, y, v_);
-    result().displacement                            = integrals.displacement;
+    const CellIntegrals integrals = mesh_.assembler->integrals(step.time, y, v_);
+    result().displacement         = integrals.displacement;
+    run_->state                   = simulation_parts::numbers_of(step, integrals, run_->state.stretch, {});
     if (!run_->options.energy_balance && run_->output_times.next() > step.time + min_time_between_breaks)
       return true;
     if (!std::isfinite(integrals.dissipation))
@@ -248,14 +244,13 @@ namespace crawler
         "nonfinite",
         fmt::format("the velocity at t = {:.6g} is not a finite number; the smallest stretch is {:.3g} at s = {:.6g}",
                     step.time * units_.time,
-                    run_->stretch.min.value,
-                    run_->stretch.min.s * units_.length)};
+                    run_->state.stretch.min.value,
+                    run_->state.stretch.min.s * units_.length)};
       return false;
     }
     if (!run_->options.energy_balance)
       return true;
     EnergyBalance &energies = *result().energy_balance;
-    run_->balance_before    = energies;
     const Rates now         = rates(step.time, integrals, y, v_);
     if (integrators_.present->stage_places().empty())
       run_->quadrature.advance(step.time, now);
@@ -265,6 +260,7 @@ namespace crawler
     energies.elastic_energy = integrals.elastic_energy;
     if (step.number == 0)
       energies.initial_energy = integrals.elastic_energy;
+    run_->state.energy_balance = energies;
     run_->recorder.see_friction(step.size, integrals.abs_friction, std::abs(integrals.net_friction));
     return true;
   }

@@ -197,7 +197,7 @@ namespace crawler
                   time.time,
                   units.behind("time"),
                   time.steps > 0 ? fmt::format(" after {} steps ({} rejected)", time.steps, time.rejected_steps) : "",
-                  result.solve_seconds + result.output_seconds),
+                  result.seconds.solve + result.seconds.output),
       "  displacement      " + displacement_in_words(result, units)};
     if (result.corrected)
       lines.push_back(fmt::format("  corrected         {:.12g} +- {:.2g}{} (by the adjoint)",

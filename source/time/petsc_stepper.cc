@@ -49,15 +49,12 @@ namespace crawler
         solution_.reset(vec);
         petsc(VecSetSizes(vec, static_cast<PetscInt>(system_.n_owned()), PETSC_DECIDE));
         petsc(VecSetType(vec, VECSTANDARD));
-        PetscInt n = 0;
-        petsc(VecGetSize(vec, &n));
-        n_unknowns_ = static_cast<std::size_t>(n);
         petsc(VecDuplicate(solution_.get(), &vec));
         residual_.reset(vec);
         Mat mat          = nullptr;
         const auto local = static_cast<PetscInt>(system_.n_owned());
         petsc(MatCreateShell(communicator, local, local, PETSC_DECIDE, PETSC_DECIDE, this, &mat));
-        jacobian_.reset(mat);
+        const PetscOwner<Mat> jacobian(mat);
         petsc(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<ShellOperation>(multiply)));
 
         petsc(register_radau());
@@ -75,38 +72,28 @@ namespace crawler
       void
       begin(const ConstVector start, const Course &course) override
       {
-        TS stepper              = ts_.get();
-        ends_                   = course.ends;
-        next_end_               = 0;
-        step_                   = {};
-        end_                    = std::nullopt;
-        refused_at_             = -1.;
-        nonfinite_at_           = -1.;
-        limits_                 = course.limits;
-        limit_                  = 0;
-        underflow_              = false;
-        tolerance_              = user_tolerance_.value_or(course.tolerance);
-        const double first_step = user_step_.value_or(course.initial_step);
-        fixed_step_             = parameters_.step_control == StepControl::fixed ? first_step : 0.;
-        last_correction_        = 0.;
-        convergence_constant_   = std::numeric_limits<double>::infinity();
-        double time             = course.start;
+        TS stepper           = ts_.get();
+        progress_            = {};
+        course_              = course;
+        course_.tolerance    = user_tolerance_.value_or(course.tolerance);
+        course_.initial_step = user_step_.value_or(course.initial_step);
         if (goes_on_)
         {
-          (*goes_on_)(time, next_end_, limit_, refused_at_, nonfinite_at_);
-          goes_on_->require(next_end_ < ends_.size() && limit_ <= limits_.size(), "the next step");
+          (*goes_on_)(course_.start, progress_);
+          goes_on_->require(progress_.next_end < course_.ends.size() && progress_.limit <= course_.limits.size(),
+                            "the next step");
         }
         y_.assign(start.begin(), start.end());
         {
           const WriteAccess access(solution_.get());
           std::copy(start.begin(), start.end(), access.span.begin());
         }
-        petsc(TSSetTolerances(stepper, tolerance_, nullptr, relative_tolerance_, nullptr));
-        petsc(TSSetTime(stepper, time));
+        petsc(TSSetTolerances(stepper, course_.tolerance, nullptr, ts_->rtol, nullptr));
+        petsc(TSSetTime(stepper, course_.start));
         petsc(TSSetStepNumber(stepper, 0));
         ts_->reject = ts_->snes_its = ts_->ksp_its = 0;
-        petsc(TSSetMaxTime(stepper, ends_.back()));
-        petsc(TSSetTimeStep(stepper, first_step));
+        petsc(TSSetMaxTime(stepper, course_.ends.back()));
+        petsc(TSSetTimeStep(stepper, course_.initial_step));
         petsc(TSRestartStep(stepper));
         if (goes_on_)
           radau_exchange(stepper, *goes_on_);
@@ -117,7 +104,8 @@ namespace crawler
       const Step *
       next() override
       {
-        if (end_)
+        std::optional<TimeOutcome> &end = progress_.end;
+        if (end)
           return nullptr;
         choose_step();
         const PetscErrorCode code = make_step();
@@ -126,22 +114,22 @@ namespace crawler
         petsc(TSGetConvergedReason(ts_.get(), &reason));
         const Step *const made = code == 0 && reason >= 0 ? arrive() : nullptr;
         if (made == nullptr)
-          end_ = failure(code);
-        else if (next_end_ == ends_.size())
+          end = failure(code);
+        else if (progress_.next_end == course_.ends.size())
         {
-          end_         = counts();
-          end_->status = Status::finished;
+          end         = counts();
+          end->status = Status::finished;
         }
         else if (reason == TS_CONVERGED_ITS)
         {
-          end_          = counts();
-          end_->status  = Status::stopped;
-          end_->reason  = "step_limit";
-          end_->message = "the maximum number of steps was reached";
+          end          = counts();
+          end->status  = Status::stopped;
+          end->reason  = "step_limit";
+          end->message = "the maximum number of steps was reached";
         }
         if (made != nullptr)
           show();
-        if (end_)
+        if (end)
           petsc(PetscObjectViewFromOptions(reinterpret_cast<PetscObject>(ts_.get()), nullptr, "-ts_view"));
         return made;
       }
@@ -155,7 +143,7 @@ namespace crawler
       TimeOutcome
       outcome() override
       {
-        return end_ ? *end_ : counts();
+        return progress_.end ? *progress_.end : counts();
       }
 
       /// Exchanges the state; only the radau methods can.
@@ -172,7 +160,7 @@ namespace crawler
           return true;
         }
         Archive own;
-        own(ts_->ptime, next_end_, limit_, refused_at_, nonfinite_at_);
+        own(ts_->ptime, progress_);
         radau_exchange(ts_.get(), own);
         std::string bytes = own.bytes();
         archive(bytes);
@@ -182,23 +170,37 @@ namespace crawler
       void
       interpolate(const double time, const Vector result) override
       {
-        if (!interpolated_)
-        {
-          Vec vec = nullptr;
-          petsc(VecDuplicate(solution_.get(), &vec));
-          interpolated_.reset(vec);
-        }
         // Times outside of the step are refused by PETSc, even by a last bit: it takes the start of a step as its end
         // less its size.
         const double from = ts_->ptime_prev, to = ts_->ptime;
         const double inside = std::clamp(time, from, to);
         const bool is_there = std::abs(inside - time) <= 1e-12 * std::abs(to);
-        petsc(TSInterpolate(ts_.get(), is_there ? inside : time, interpolated_.get()));
-        const ReadAccess access(interpolated_.get());
+        petsc(TSInterpolate(ts_.get(), is_there ? inside : time, residual_.get()));
+        const ReadAccess access(residual_.get());
         std::copy(access.span.begin(), access.span.end(), result.begin());
       }
 
     private:
+      /// Progress since begin().
+      struct Progress
+      {
+        std::size_t next_end           = 0;
+        unsigned int limit             = 0;     ///< number of the present limit
+        double refused_at              = -1.;   ///< time of the last refused state
+        double nonfinite_at            = -1.;   ///< time of the last residual that was not finite
+        bool underflow                 = false; ///< a step is below the resolution of the time
+        double convergence_constant    = std::numeric_limits<double>::infinity();
+        double last_correction         = 0.;
+        Step step                      = {};
+        std::optional<TimeOutcome> end = {}; ///< outcome, once the course has ended
+
+        void
+        exchange(Archive &archive)
+        {
+          archive(next_end, limit, refused_at, nonfinite_at);
+        }
+      };
+
       /// Sets the choices of the program, then the user's options after "--".
       void
       set_options()
@@ -222,6 +224,7 @@ namespace crawler
         petsc(TSSetMaxStepRejections(stepper, 30));
         petsc(TSSetErrorIfStepFails(stepper, PETSC_FALSE));
         petsc(TSSetMaxSteps(stepper, static_cast<PetscInt>(parameters_.max_steps)));
+        stepper->rtol = 0.; // unless the user has another
 
         set_newton();
         apply_user_options();
@@ -279,9 +282,8 @@ namespace crawler
           petsc(PetscOptionsGetReal(nullptr, parameters_.petsc_prefix.c_str(), option_name, &value, &found));
           return found ? std::optional<double>(value) : std::nullopt;
         };
-        user_tolerance_     = option("-ts_atol");
-        user_step_          = option("-ts_dt");
-        relative_tolerance_ = option("-ts_rtol").value_or(0.);
+        user_tolerance_ = option("-ts_atol");
+        user_step_      = option("-ts_dt");
         if (option("-ts_max_time"))
           throw InputError(
             "the PETSc option -ts_max_time is refused: Time/End time is expected to say when the run ends");
@@ -317,11 +319,11 @@ namespace crawler
           for (const double value : F_access.span)
             sum += value;
           if (accepted && !std::isfinite(sum))
-            self.nonfinite_at_ = t;
+            self.progress_.nonfinite_at = t;
         });
         if (code == 0 && !accepted)
         {
-          self.refused_at_ = t;
+          self.progress_.refused_at = t;
           return SNESSetFunctionDomainError(ts->snes);
         }
         return code;
@@ -384,26 +386,19 @@ namespace crawler
                        SNESConvergedReason *reason,
                        void *context)
       {
-        auto &self = *static_cast<PetscStepper *>(context);
-        *reason    = SNES_CONVERGED_ITERATING;
-        if (!std::isfinite(F_norm) || !std::isfinite(dx_norm))
-        {
-          *reason = newton_not_finite;
+        if (ends_without_correction(it, dx_norm, F_norm, *reason))
           return 0;
-        }
-        if (it == 0)
-        {
-          if (F_norm == 0.)
-            *reason = SNES_CONVERGED_FNORM_ABS;
-          return 0;
-        }
+        auto &self     = *static_cast<PetscStepper *>(context);
+        Progress &past = self.progress_;
+        PetscInt n     = 0;
+        VecGetSize(self.solution_.get(), &n);
         // Norms in units of the admissible error.
-        const double rms = 1. / std::sqrt(static_cast<double>(self.n_unknowns_));
-        const double d = dx_norm / self.tolerance_ * rms, rounding = 1e-15 * (x_norm / self.tolerance_) * rms;
-        if (it >= 2 && self.last_correction_ > 0.)
-          self.convergence_constant_ = d / (self.last_correction_ * self.last_correction_);
-        self.last_correction_ = d;
-        const bool small      = d <= newton_fraction || self.convergence_constant_ * d * d <= predicted_fraction;
+        const double unit = self.course_.tolerance, rms = 1. / std::sqrt(static_cast<double>(n));
+        const double d = dx_norm / unit * rms, rounding = 1e-15 * (x_norm / unit) * rms;
+        if (it >= 2 && past.last_correction > 0.)
+          past.convergence_constant = d / (past.last_correction * past.last_correction);
+        past.last_correction = d;
+        const bool small     = d <= newton_fraction || past.convergence_constant * d * d <= predicted_fraction;
         if (small || d <= rounding)
           *reason = SNES_CONVERGED_SNORM_RELATIVE;
         return 0;
@@ -413,14 +408,18 @@ namespace crawler
       void
       choose_step()
       {
-        double size = fixed_step_;
-        if (fixed_step_ == 0.)
-          size = admitted_step(
-            limits_.data(), static_cast<unsigned int>(limits_.size()), limit_, ts_->ptime, ts_->time_step);
-        const double remaining = ends_[next_end_] - ts_->ptime;
+        const bool is_fixed = parameters_.step_control == StepControl::fixed;
+        double size         = course_.initial_step;
+        if (!is_fixed)
+          size = admitted_step(course_.limits.data(),
+                               static_cast<unsigned int>(course_.limits.size()),
+                               progress_.limit,
+                               ts_->ptime,
+                               ts_->time_step);
+        const double remaining = course_.ends[progress_.next_end] - ts_->ptime;
         if (size >= remaining * (1. - 1e-9))
           size = remaining;
-        else if (fixed_step_ == 0. && size > 0.5 * remaining)
+        else if (!is_fixed && size > 0.5 * remaining)
           size = 0.5 * remaining;
         petsc(TSSetTimeStep(ts_.get(), size));
       }
@@ -441,24 +440,25 @@ namespace crawler
       {
         double time           = ts_->ptime;
         const double previous = ts_->ptime_prev;
-        const bool is_end =
-          std::abs(time - ends_[next_end_]) <= 1e-13 * std::max(ends_[next_end_] - previous, ends_[next_end_]);
+        const double end      = course_.ends[progress_.next_end];
+        const bool is_end     = std::abs(time - end) <= 1e-13 * std::max(end - previous, end);
         if (is_end)
         {
-          time = ends_[next_end_++];
+          time = end;
+          ++progress_.next_end;
           petsc(TSSetTime(ts_.get(), time));
         }
         const double size = time - previous;
         if (!(size > 4. * std::numeric_limits<double>::epsilon() * time))
         {
-          underflow_ = true; // shorter steps do not help, and `size` cannot be a divisor
+          progress_.underflow = true; // shorter steps do not help, and `size` cannot be a divisor
           return nullptr;
         }
         const TimeOutcome so_far = counts();
-        step_                    = {time, size, so_far.steps, is_end, so_far.rejected_steps, so_far.newton_iterations};
+        progress_.step           = {time, size, so_far.steps, is_end, so_far.rejected_steps, so_far.newton_iterations};
         const ReadAccess access(solution_.get());
         std::copy(access.span.begin(), access.span.end(), y_.begin());
-        return &step_;
+        return &progress_.step;
       }
 
       /// Shows the state to the monitors of PETSc's options.
@@ -490,7 +490,7 @@ namespace crawler
         SNESGetConvergedReason(ts_->snes, &newton_reason);
         // Refused states and residuals count if their times were close: they made the steps small. Each rank knows its
         // own.
-        double latest[2] = {refused_at_, nonfinite_at_};
+        double latest[2] = {progress_.refused_at, progress_.nonfinite_at};
         MPI_Allreduce(
           MPI_IN_PLACE, latest, 2, MPI_DOUBLE, MPI_MAX, PetscObjectComm(reinterpret_cast<PetscObject>(ts_.get())));
         const double close  = result.time - 1e-6 * parameters_.end_time;
@@ -512,7 +512,7 @@ namespace crawler
           return named("nonfinite", "the residual is not a finite number");
         if (newton_reason == SNES_DIVERGED_LINEAR_SOLVE)
           return named("linear_failed", "the linear system of Newton's method is singular or could not be solved");
-        if (underflow_ || result.step_size < 1e-13 * parameters_.end_time)
+        if (progress_.underflow || result.step_size < 1e-13 * parameters_.end_time)
           return named("step_underflow", "the step size fell below the resolution of the time");
         if (newton_reason < 0)
           return named("newton_diverged",
@@ -523,32 +523,17 @@ namespace crawler
       ImplicitSystem &system_;
       const TimeParameters parameters_;
 
-      PetscOwner<Vec> solution_, residual_;
-      PetscOwner<Vec> interpolated_;
-      PetscOwner<Mat> jacobian_;
+      PetscOwner<Vec> solution_;
+      PetscOwner<Vec> residual_; ///< between steps for interpolated states
       PetscOwner<TS> ts_;
-
-      // Values since begin().
-      std::vector<double> ends_; ///< of the course
-      std::size_t next_end_ = 0;
-      double tolerance_     = 0.;
-      double fixed_step_    = 0.;
-      Step step_{};
-      std::vector<double> y_;          ///< state after `step`
-      std::optional<TimeOutcome> end_; ///< outcome, once the course has ended
-      std::optional<Archive> goes_on_; ///< where begin() is to continue from
-      bool jacobian_ok_    = true;
-      double refused_at_   = -1.; ///< time of the last refused state
-      double nonfinite_at_ = -1.; ///< time of the last residual that was not finite
-      std::span<const StepLimit> limits_;
-      unsigned int limit_ = 0;                           ///< number of the present limit
-      bool underflow_     = false;                       ///< a step is below the resolution of the time
       std::optional<double> user_tolerance_, user_step_; ///< options -ts_atol and -ts_dt
-      double relative_tolerance_   = 0.;                 ///< option -ts_rtol
-      double convergence_constant_ = std::numeric_limits<double>::infinity();
-      double last_correction_      = 0.;
-      std::size_t n_unknowns_      = 0;
       PetscGuard guarded_;
+      bool jacobian_ok_ = true;
+
+      Course course_ = {}; ///< with the user's options
+      Progress progress_;
+      std::vector<double> y_;          ///< state after `progress_.step`
+      std::optional<Archive> goes_on_; ///< where begin() is to continue from
     };
   } // namespace
 

@@ -22,7 +22,7 @@ namespace crawler
     {
       Radau &radau        = radau_data(ts);
       const bool settling = radau.steps < radau::settling_steps;
-      if (!radau.factors_ok)
+      if (!radau.newton.factors_ok)
       {
         radau.error = hopeless_error;
         return 0;
@@ -73,7 +73,7 @@ namespace crawler
     {
       Radau &radau = radau_data(ts);
       const ReadAccess z(radau.z.get()), start(radau.start.get());
-      if (radau.factors_h != radau.h) // no system had to be solved
+      if (radau.newton.factors_h != radau.h) // no system had to be solved
         PetscCall(radau_factorize(ts, z.span));
       PetscCall(estimate_error(ts));
       {
@@ -89,10 +89,10 @@ namespace crawler
       PetscCall(TSAdaptChoose(ts->adapt, ts, ts->time_step, nullptr, &next, &accept));
       if (accept)
       {
-        radau.old_z.assign(z.span.begin(), z.span.end());
-        radau.old_start.assign(start.span.begin(), start.span.end());
-        radau.old_h = radau.h;
-        radau.old_t = radau.t;
+        radau.last.z.assign(z.span.begin(), z.span.end());
+        radau.last.start.assign(start.span.begin(), start.span.end());
+        radau.last.h = radau.h;
+        radau.last.t = radau.t;
         ++radau.steps;
         ts->ptime += ts->time_step;
       }
@@ -144,10 +144,10 @@ namespace crawler
       Radau &radau = radau_data(ts);
       const WriteAccess x(X);
       double weights[radau::max_stages];
-      radau::collocation_weights(radau.n_stages(), radau.tableau->c.data(), (t - radau.old_t) / radau.old_h, weights);
-      radau::combine(radau.n_stages(), weights, radau.old_z.data(), radau.n(), x.span.data());
+      radau::collocation_weights(radau.n_stages(), radau.tableau->c.data(), (t - radau.last.t) / radau.last.h, weights);
+      radau::combine(radau.n_stages(), weights, radau.last.z.data(), radau.n(), x.span.data());
       for (std::size_t k = 0; k < radau.n_owned; ++k)
-        x.span[k] += radau.old_start[k];
+        x.span[k] += radau.last.start[k];
       return 0;
     }
 
@@ -168,21 +168,13 @@ namespace crawler
         PetscCall(VecDuplicate(ts->vec_sol, &vec));
         owner->reset(vec);
       }
-      PetscInt local = 0, global = 0;
+      PetscInt local = 0;
       PetscCall(VecGetLocalSize(ts->vec_sol, &local));
-      PetscCall(VecGetSize(ts->vec_sol, &global));
       radau.n_owned = static_cast<std::size_t>(local);
-      radau.n_all   = static_cast<double>(global);
-      const auto n  = static_cast<PetscInt>(radau.tableau->n);
       PetscCall(VecCreate(comm, &vec));
       radau.z.reset(vec);
-      PetscCall(VecSetSizes(vec, n * local, PETSC_DECIDE));
+      PetscCall(VecSetSizes(vec, static_cast<PetscInt>(radau.tableau->n) * local, PETSC_DECIDE));
       PetscCall(VecSetType(vec, VECSTANDARD));
-      PetscCall(VecDuplicate(radau.z.get(), &vec));
-      radau.residual.reset(vec);
-      Mat mat = nullptr;
-      PetscCall(MatCreateShell(comm, n * local, n * local, PETSC_DECIDE, PETSC_DECIDE, ts, &mat));
-      radau.jacobian.reset(mat);
       return radau_set_up_newton(ts);
     }
 
@@ -201,18 +193,6 @@ namespace crawler
           PetscObjectComm(reinterpret_cast<PetscObject>(ts)), PETSC_ERR_ARG_OUTOFRANGE, "-ts_radau_stages is 3 or 5");
       if (found)
         radau_data(ts).tableau = &radau_tableau(static_cast<unsigned int>(n));
-      return 0;
-    }
-
-    PetscErrorCode
-    reset(TS ts)
-    {
-      Radau &radau = radau_data(ts);
-      for (PetscOwner<Vec> *owner : {&radau.y, &radau.y_dot, &radau.f, &radau.start, &radau.z, &radau.residual})
-        owner->reset();
-      radau.jacobian.reset();
-      radau.linear.reset();
-      radau.krylov.reset();
       return 0;
     }
 
@@ -242,7 +222,6 @@ namespace crawler
       ts->ops->snesfunction   = radau_stage_function;
       ts->ops->snesjacobian   = radau_stage_jacobian;
       ts->ops->setfromoptions = set_from_options;
-      ts->ops->reset          = reset;
       ts->ops->destroy        = destroy;
       ts->ops->view           = view;
       ts->default_adapt_type  = TSADAPTBASIC;
@@ -275,17 +254,18 @@ namespace crawler
   void
   radau_exchange(TS ts, Archive &archive)
   {
-    Radau &radau = radau_data(ts);
-    archive(radau.hard_steps, radau.steps, radau.old_start, radau.old_z, radau.old_h, radau.old_t);
-    archive(radau.known_rate, ts->time_step, ts->steps, ts->reject, ts->snes_its, ts->ksp_its);
+    Radau &radau      = radau_data(ts);
+    Radau::Last &last = radau.last;
+    archive(radau.newton.hard_steps, radau.steps, last.start, last.z, last.h, last.t);
+    archive(radau.newton.known_rate, ts->time_step, ts->steps, ts->reject, ts->snes_its, ts->ksp_its);
     PetscInt n = 0;
     VecGetLocalSize(ts->vec_sol, &n);
     const auto size     = static_cast<std::size_t>(n);
-    const bool has_step = radau.old_start.size() == size && radau.old_z.size() == radau.n_stages() * size;
-    archive.require(has_step || (radau.old_start.empty() && radau.old_z.empty() && radau.old_h == 0.), "the last step");
+    const bool has_step = last.start.size() == size && last.z.size() == radau.n_stages() * size;
+    archive.require(has_step || (last.start.empty() && last.z.empty() && last.h == 0.), "the last step");
     if (!archive.reads())
       return;
-    radau.factors_h = 0.;
-    ts->steprestart = PETSC_FALSE;
+    radau.newton.factors_h = 0.;
+    ts->steprestart        = PETSC_FALSE;
   }
 } // namespace crawler

@@ -28,7 +28,7 @@ namespace crawler
       Radau &radau = radau_data(ts);
       const WriteAccess z(radau.z.get());
       std::fill(z.span.begin(), z.span.end(), 0.);
-      if (ts->steprestart || radau.old_h == 0.)
+      if (ts->steprestart || radau.last.h == 0.)
         return false;
       double weights[radau::max_stages];
       for (int i = 0; i < radau.n_stages(); ++i)
@@ -38,9 +38,9 @@ namespace crawler
                              radau.tableau->inverse.data(),
                              i,
                              /*start=*/1.,
-                             radau.h / radau.old_h,
+                             radau.h / radau.last.h,
                              weights);
-        radau::combine(radau.n_stages(), weights, radau.old_z.data(), radau.n(), &z.span[i * radau.n_owned]);
+        radau::combine(radau.n_stages(), weights, radau.last.z.data(), radau.n(), &z.span[i * radau.n_owned]);
       }
       return true;
     }
@@ -51,10 +51,10 @@ namespace crawler
     {
       Radau &radau = radau_data(ts);
       if (krylov)
-        PetscCall(SNESSetKSP(ts->snes, radau.krylov.get()));
+        PetscCall(SNESSetKSP(ts->snes, radau.newton.krylov.get()));
       PetscCall(SNESSolve(ts->snes, nullptr, radau.z.get()));
       if (krylov)
-        PetscCall(SNESSetKSP(ts->snes, radau.linear.get()));
+        PetscCall(SNESSetKSP(ts->snes, radau.newton.linear.get()));
       PetscInt newton = 0, linear = 0;
       SNESConvergedReason reason;
       SNESGetIterationNumber(ts->snes, &newton);
@@ -82,7 +82,7 @@ namespace crawler
         const double t = radau.t + radau.tableau->c[i] * radau.h;
         code           = (*radau.guard)([&]() { radau.system->setup_stage(i, t, y.span, y_dot.span); });
       }
-      radau.products_ready = true;
+      radau.newton.products_ready = true;
       return code;
     }
 
@@ -91,16 +91,15 @@ namespace crawler
     {
       TS ts               = &context_of<std::remove_pointer_t<TS>>(A);
       Radau &radau        = radau_data(ts);
-      PetscErrorCode code = radau.products_ready ? 0 : setup_products(ts);
+      PetscErrorCode code = radau.newton.products_ready ? 0 : setup_products(ts);
       const ReadAccess x(X);
-      const WriteAccess y(Y);
-      radau.x_dot.resize(radau.n_owned);
+      const WriteAccess y(Y), x_dot(radau.y_dot.get());
       for (unsigned int i = 0; code == 0 && i < radau.tableau->n; ++i)
       {
-        radau.derivative_of_stage(x.span, i, radau.x_dot);
+        radau.derivative_of_stage(x.span, i, x_dot.span);
         code = (*radau.guard)([&]() {
           radau.system->stage_vmult(
-            i, radau.stage(x.span, i), radau.x_dot, y.span.subspan(i * radau.n_owned, radau.n_owned));
+            i, radau.stage(x.span, i), x_dot.span, y.span.subspan(i * radau.n_owned, radau.n_owned));
         });
       }
       return code;
@@ -109,7 +108,7 @@ namespace crawler
     PetscErrorCode
     set_up_preconditioner(PC pc)
     {
-      const bool ok = radau_data(&context_of<std::remove_pointer_t<TS>>(pc)).factors_ok;
+      const bool ok = radau_data(&context_of<std::remove_pointer_t<TS>>(pc)).newton.factors_ok;
       return PCSetFailedReason(pc, ok ? PC_NOERROR : PC_FACTOR_NUMERIC_ZEROPIVOT);
     }
 
@@ -121,36 +120,35 @@ namespace crawler
       const RadauTableau &tableau = *radau.tableau;
       const std::size_t size      = radau.n_owned;
       const ReadAccess b(B);
-      const WriteAccess x(X);
-      if (!radau.factors_ok) // PETSc applies it once before it asks why the set-up failed
+      const WriteAccess x(X), real(radau.f.get());
+      if (!radau.newton.factors_ok) // PETSc applies it once before it asks why the set-up failed
       {
         std::fill(x.span.begin(), x.span.end(), 0.);
         return 0;
       }
       const int s = radau.n_stages(), n = radau.n();
-      radau.work.resize(size);
-      radau.complex_work.resize(tableau.n_pairs() * size);
-      radau::to_eigenbasis(s, parts(tableau.rows), b.span.data(), n, radau.work.data(), radau.complex_work.data());
+      auto &pairs = radau.newton.complex_work;
+      pairs.resize(tableau.n_pairs() * size);
+      radau::to_eigenbasis(s, parts(tableau.rows), b.span.data(), n, real.span.data(), pairs.data());
       const PetscErrorCode code = (*radau.guard)([&]() {
-        radau.system->solve_with_jacobian(radau.work, radau.work);
+        radau.system->solve_with_jacobian(real.span, real.span);
         for (unsigned int p = 0; p < tableau.n_pairs(); ++p)
         {
-          const std::span<std::complex<double>> own(radau.complex_work.data() + p * size, size);
+          const std::span<std::complex<double>> own(pairs.data() + p * size, size);
           radau.system->solve_with_complex_jacobian(p, own, own);
         }
       });
       for (int i = 0; i < s; ++i)
         for (int d = 0; d < n; ++d)
           x.span[i * size + d] =
-            radau::from_eigenbasis(s, parts(tableau.vectors), i, d, n, radau.work.data(), radau.complex_work.data());
+            radau::from_eigenbasis(s, parts(tableau.vectors), i, d, n, real.span.data(), pairs.data());
       return code;
     }
 
     /// Root mean square over all stages and ranks, in units of the tolerance.
     double
-    scaled_norm(TS ts, Vec all, const double tolerance)
+    scaled_norm(Vec all, const double tolerance)
     {
-      const Radau &radau = radau_data(ts);
       const ReadAccess a(all);
       double sum = 0.;
       for (const double value : a.span)
@@ -160,7 +158,9 @@ namespace crawler
       MPI_Comm_size(communicator, &size);
       if (size > 1)
         MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, communicator);
-      return std::sqrt(sum / (radau.n_all * radau.tableau->n));
+      PetscInt n = 0;
+      VecGetSize(all, &n);
+      return std::sqrt(sum / static_cast<double>(n));
     }
 
     /// Convergence test: the iteration converges linearly; with the rate so far the remaining error is rate/(1-rate)
@@ -174,38 +174,29 @@ namespace crawler
                      SNESConvergedReason *reason,
                      void *context)
     {
-      TS ts        = static_cast<TS>(context);
-      Radau &radau = radau_data(ts);
-      *reason      = SNES_CONVERGED_ITERATING;
-      if (!std::isfinite(F_norm) || !std::isfinite(dx_norm))
-      {
-        *reason = newton_not_finite;
-        return 0;
-      }
+      TS ts                 = static_cast<TS>(context);
+      Radau::Newton &newton = radau_data(ts).newton;
       if (it == 0)
-      {
-        radau.rate = 0.;
-        if (F_norm == 0.)
-          *reason = SNES_CONVERGED_FNORM_ABS;
+        newton.rate = 0.;
+      if (ends_without_correction(it, dx_norm, F_norm, *reason))
         return 0;
-      }
       Vec correction = nullptr, state = nullptr;
       SNESGetSolutionUpdate(snes, &correction);
       SNESGetSolution(snes, &state);
-      const double d = scaled_norm(ts, correction, ts->atol);
+      const double d = scaled_norm(correction, ts->atol);
       if (it >= 2)
       {
-        radau.rate       = d / radau.last_correction;
-        radau.known_rate = std::clamp(radau.rate, 1e-6, 0.9);
+        newton.rate       = d / newton.last_correction;
+        newton.known_rate = std::clamp(newton.rate, 1e-6, 0.9);
       }
       else
-        radau.known_rate = std::pow(radau.known_rate, 0.8);
-      radau.last_correction = d;
-      const double left     = radau.known_rate / (1. - std::min(radau.known_rate, 0.9)) * d;
-      const double enough   = radau.tableau->newton_fraction;
-      if (left <= enough || d <= 1e-15 * scaled_norm(ts, state, ts->atol))
+        newton.known_rate = std::pow(newton.known_rate, 0.8);
+      newton.last_correction = d;
+      const double left      = newton.known_rate / (1. - std::min(newton.known_rate, 0.9)) * d;
+      const double enough    = radau_data(ts).tableau->newton_fraction;
+      if (left <= enough || d <= 1e-15 * scaled_norm(state, ts->atol))
         *reason = SNES_CONVERGED_SNORM_RELATIVE;
-      else if (it >= 3 && radau.rate >= 1.)
+      else if (it >= 3 && newton.rate >= 1.)
         *reason = SNES_DIVERGED_DTOL;
       return 0;
     }
@@ -227,10 +218,10 @@ namespace crawler
     for (auto &value : sigma)
       value /= radau.h;
     const ReadAccess y(radau.y.get()), y_dot(radau.y_dot.get());
-    radau.factors_h = radau.h;
-    const double t  = radau.t + radau.tableau->c[middle] * radau.h;
+    radau.newton.factors_h = radau.h;
+    const double t         = radau.t + radau.tableau->c[middle] * radau.h;
     return (*radau.guard)([&]() {
-      radau.factors_ok =
+      radau.newton.factors_ok =
         radau.system->setup_jacobian(t, y.span, y_dot.span, radau.tableau->real_eigenvalue / radau.h) &&
         radau.system->setup_complex_jacobians(t, y.span, y_dot.span, sigma);
     });
@@ -242,18 +233,18 @@ namespace crawler
     Radau &radau            = radau_data(ts);
     const bool extrapolated = first_guess(ts);
     bool ok                 = false;
-    bool krylov             = radau.linear && radau.hard_steps > 0;
+    bool krylov             = radau.newton.linear && radau.newton.hard_steps > 0;
     if (krylov)
-      --radau.hard_steps;
+      --radau.newton.hard_steps;
     PetscCall(attempt(ts, krylov, ok));
     if (!ok && extrapolated)
     {
       VecSet(radau.z.get(), 0.);
       PetscCall(attempt(ts, krylov, ok));
     }
-    if (!ok && radau.linear && !krylov)
+    if (!ok && radau.newton.linear && !krylov)
     {
-      radau.hard_steps = krylov_steps;
+      radau.newton.hard_steps = krylov_steps;
       VecSet(radau.z.get(), 0.);
       PetscCall(attempt(ts, true, ok));
     }
@@ -284,9 +275,9 @@ namespace crawler
     PetscInt iteration = 0;
     SNESGetIterationNumber(snes, &iteration);
     const ReadAccess z(Z);
-    const bool is_renewed = iteration == 0 || radau.rate > slow;
-    if (is_renewed || radau.linear) // exact where the simplified Newton method failed
-      radau.products_ready = false;
+    const bool is_renewed = iteration == 0 || radau.newton.rate > slow;
+    if (is_renewed || radau.newton.linear) // exact where the simplified Newton method failed
+      radau.newton.products_ready = false;
     if (is_renewed)
       PetscCall(radau_factorize(ts, z.span));
     MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY); // tells PETSc that the matrix has changed
@@ -298,14 +289,21 @@ namespace crawler
   {
     Radau &radau        = radau_data(ts);
     const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(ts));
-    Mat mat             = radau.jacobian.get();
-    PetscCall(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<ShellOperation>(multiply)));
-    SNES snes = nullptr;
-    KSP ksp   = nullptr;
-    PC pc     = nullptr;
+    const auto n        = static_cast<PetscInt>(radau.tableau->n * radau.n_owned);
+    SNES snes           = nullptr;
+    KSP ksp             = nullptr;
+    PC pc               = nullptr;
     PetscCall(TSGetSNES(ts, &snes));
-    PetscCall(SNESSetFunction(snes, radau.residual.get(), SNESTSFormFunction, ts));
-    PetscCall(SNESSetJacobian(snes, mat, mat, SNESTSFormJacobian, ts));
+    // The solver keeps its function's vector and its matrix.
+    Vec residual = nullptr;
+    PetscCall(VecDuplicate(radau.z.get(), &residual));
+    PetscCall(SNESSetFunction(snes, residual, SNESTSFormFunction, ts));
+    PetscCall(VecDestroy(&residual));
+    Mat jacobian = nullptr;
+    PetscCall(MatCreateShell(comm, n, n, PETSC_DECIDE, PETSC_DECIDE, ts, &jacobian));
+    PetscCall(MatShellSetOperation(jacobian, MATOP_MULT, reinterpret_cast<ShellOperation>(multiply)));
+    PetscCall(SNESSetJacobian(snes, jacobian, jacobian, SNESTSFormJacobian, ts));
+    PetscCall(MatDestroy(&jacobian));
     PetscCall(SNESSetConvergenceTest(snes, newton_converged, ts, nullptr));
     PetscCall(SNESGetKSP(snes, &ksp));
     PetscCall(KSPGetPC(ksp, &pc));
@@ -319,9 +317,9 @@ namespace crawler
     if (is_preonly)
     {
       PetscCall(PetscObjectReference(reinterpret_cast<PetscObject>(ksp)));
-      radau.linear.reset(ksp);
+      radau.newton.linear.reset(ksp);
       PetscCall(KSPCreate(comm, &ksp));
-      radau.krylov.reset(ksp);
+      radau.newton.krylov.reset(ksp);
       PetscCall(KSPSetType(ksp, KSPGMRES));
       PetscCall(KSPSetPC(ksp, pc));
       PetscCall(KSPSetPCSide(ksp, PC_RIGHT));

@@ -38,7 +38,7 @@ namespace crawler::test
   BatchResults
   run_scenes(const std::span<const Scene> scenes,
              const Setting &setting,
-             const Simulation::Options &options,
+             const RecordOptions &options,
              const LaneEngine &engine)
   {
     std::vector<BatchRun> runs;

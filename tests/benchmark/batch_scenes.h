@@ -22,6 +22,6 @@ namespace crawler::test
   BatchResults
   run_scenes(std::span<const Scene> scenes,
              const Setting &setting,
-             const Simulation::Options &options = {},
-             const LaneEngine &engine           = batch_engine());
+             const RecordOptions &options = {},
+             const LaneEngine &engine     = batch_engine());
 } // namespace crawler::test

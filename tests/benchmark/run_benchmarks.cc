@@ -141,7 +141,7 @@ namespace crawler::test
     }
 
     void
-    repeat_run(benchmark::State &state, const Case &body, const Setting &setting, const Simulation::Options &options)
+    repeat_run(benchmark::State &state, const Case &body, const Setting &setting, const RecordOptions &options)
     {
       OneBody own(body, setting);
       SimulationResult result;
@@ -161,7 +161,7 @@ namespace crawler::test
     run_many(benchmark::State &state,
              const Case &body,
              const double accuracy,
-             const Simulation::Options &options,
+             const RecordOptions &options,
              const LaneEngine &engine)
     {
       const Setting &setting = cheapest(body, "batch", accuracy);
@@ -226,7 +226,7 @@ namespace crawler::test
       Answer answer;
       for (auto _ : state)
         answer = answer_in_memory({parameters, scene}, {.energy_balance = true});
-      state.counters["cells"] = answer.result.most_cells;
+      state.counters["cells"] = answer.result.mesh.most_cells;
       state.counters["steps"] = answer.result.time.steps;
       state.counters["bound"] = answer.result.error ? answer.result.error->total : HUGE_VAL;
     }
@@ -293,11 +293,10 @@ namespace crawler::test
       const std::string end = fmt::format("/{:.0e}", accuracy).replace(4, 1, ""); // /1e-4
       add("run/petsc" + end, run_one, fig_s1, "petsc", accuracy);
       add("run/fused" + end, run_one, fig_s1, "fused", accuracy);
-      const auto add_batch =
-        [&](const std::string &name, const LaneEngine *engine, const Simulation::Options &options) {
-          if (engine != nullptr)
-            add(name + end, run_many, fig_s1, accuracy, options, *engine);
-        };
+      const auto add_batch = [&](const std::string &name, const LaneEngine *engine, const RecordOptions &options) {
+        if (engine != nullptr)
+          add(name + end, run_many, fig_s1, accuracy, options, *engine);
+      };
       add_batch("run/batch", &batch_engine(), {});
       add_batch("run/batch_avx2", batch_engine("avx2"), {});
       add_batch("run/batch_baseline", batch_engine("baseline"), {});
@@ -323,8 +322,7 @@ namespace crawler::test
       const std::string name = "case/" + body.name + "/1e-6";
       add(name + "/petsc", run_one, body, "petsc", 1e-6);
       add(name + "/fused", run_one, body, "fused", 1e-6);
-      benchmark::RegisterBenchmark(
-        (name + "/batch").c_str(), run_many, body, 1e-6, Simulation::Options(), batch_engine())
+      benchmark::RegisterBenchmark((name + "/batch").c_str(), run_many, body, 1e-6, RecordOptions(), batch_engine())
         ->Unit(benchmark::kMillisecond);
     }
     for (const unsigned int n_segments : {8, 64})

@@ -83,7 +83,7 @@ namespace
                result.time.status == Status::finished || result.time.status == Status::inverted
                  ? word_of(result.time.status)
                  : result.time.reason.c_str(),
-               result.mesh ? result.mesh->n_cells : 0,
+               result.mesh.n_cells,
                result.time.steps,
                inverted != c.inverts ? ", WRONG" : "");
     if (std::getenv("VERBOSE") != nullptr)

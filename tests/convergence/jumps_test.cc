@@ -50,7 +50,7 @@ TEST(Jumps, InSpaceKeepTheOrder)
                              {});
     const auto result = run->simulate(Engine::automatic, {});
     EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
-    EXPECT_EQ(result.most_cells, n);
+    EXPECT_EQ(result.mesh.most_cells, n);
     return result.displacement;
   };
   const double exact = displacement(Formulation::position, 8, 20, true);

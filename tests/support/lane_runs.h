@@ -38,7 +38,7 @@ namespace crawler::test
 
     /// Runs a Simulation, on the fused engine or on PETSc.
     SimulationResult
-    simulate(const Engine engine, const Simulation::Options &options = {.energy_balance = true}) const
+    simulate(const Engine engine, const RecordOptions &options = {.energy_balance = true}) const
     {
       TimeParameters time = parameters.time;
       time.engine         = engine;
@@ -59,8 +59,8 @@ namespace crawler::test
   /// Computes one run alone in a batch.
   inline std::optional<SimulationResult>
   run_alone(const LaneRun &run,
-            const Simulation::Options &options = {.energy_balance = true},
-            const LaneEngine &engine           = batch_engine())
+            const RecordOptions &options = {.energy_balance = true},
+            const LaneEngine &engine     = batch_engine())
   {
     const std::array<BatchRun, 1> only = {{run.entry()}};
     return run_batch(only, options, {}, engine).front();
@@ -94,9 +94,9 @@ namespace crawler::test
                                   static_cast<double>(r.time.rejected_steps),
                                   static_cast<double>(r.time.newton_iterations),
                                   r.displacement,
-                                  r.largest_u,
-                                  r.unresolved,
-                                  r.strain,
+                                  r.size.largest_u,
+                                  r.size.unresolved(),
+                                  r.size.strain,
                                   r.net_friction,
                                   r.min_stretch.value,
                                   r.min_stretch.s,
@@ -104,9 +104,9 @@ namespace crawler::test
                                   r.max_stretch.value,
                                   r.max_stretch.s,
                                   r.max_stretch.t,
-                                  static_cast<double>(r.mesh_changes),
-                                  static_cast<double>(r.most_cells),
-                                  r.largest_indicator};
+                                  static_cast<double>(r.mesh.changes),
+                                  static_cast<double>(r.mesh.most_cells),
+                                  r.size.largest_indicator};
     if (r.energy_balance)
       for (double EnergyBalance::*energy : EnergyBalance::energies())
         result.push_back((*r.energy_balance).*energy);

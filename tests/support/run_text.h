@@ -134,9 +134,7 @@ namespace crawler::test
 
   /// Runs with the numerics that the program chooses, without the error by the adjoint (as in answers.h).
   inline Outcome
-  run_with(const Parameters &parameters,
-           const Scene &scene,
-           const Simulation::Options &options = {.energy_balance = true})
+  run_with(const Parameters &parameters, const Scene &scene, const RecordOptions &options = {.energy_balance = true})
   {
     Outcome outcome;
     outcome.choice = *choose_numerics({parameters, scene, {}, MPI_COMM_WORLD});
@@ -152,13 +150,13 @@ namespace crawler::test
   }
 
   inline Outcome
-  run_with(const Parameters &parameters, const Simulation::Options &options = {.energy_balance = true})
+  run_with(const Parameters &parameters, const RecordOptions &options = {.energy_balance = true})
   {
     return run_with(parameters, parameters.create_scene(), options);
   }
 
   inline Outcome
-  run_with(const Settings &settings, const Simulation::Options &options = {.energy_balance = true})
+  run_with(const Settings &settings, const RecordOptions &options = {.energy_balance = true})
   {
     return run_with(parameters_with(settings), options);
   }

@@ -241,11 +241,11 @@ namespace
                       error.time,
                       answer.choice.wanted_error,
                       scene.body.length,
-                      result.most_cells,
+                      result.mesh.most_cells,
                       result.time.steps,
                       result.refinements,
-                      result.solve_seconds,
-                      result.estimate_seconds});
+                      result.seconds.solve,
+                      result.seconds.error});
     }
     return rows;
   }

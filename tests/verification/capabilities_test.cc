@@ -65,11 +65,10 @@ namespace
   std::string
   line(const Row &row)
   {
-    const Parameters parameters    = test::parameters_with(test::with(wave, row.settings));
-    const Scene scene              = parameters.create_scene();
-    Simulation::Options options    = {.energy_balance = true,
-                                      .cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false),
-                                      .gait           = Simulation::GaitWish::any};
+    const Parameters parameters = test::parameters_with(test::with(wave, row.settings));
+    const Scene scene           = parameters.create_scene();
+    RecordOptions options       = {
+            .energy_balance = true, .cycles = cycle_wish(parameters, scene, /*has_pictures=*/false), .gait = GaitWish::any};
     const Answer answer            = answer_in_memory({parameters, scene}, options);
     const SimulationResult &result = answer.result;
     EXPECT_EQ(result.time.status, Status::finished) << row.name << ": " << result.time.message;

@@ -80,9 +80,9 @@ main(int argc, char **argv)
                word_of(result.time.status),
                result.time.reason,
                verdict,
-               result.most_cells,
+               result.mesh.most_cells,
                result.time.steps,
-               result.solve_seconds,
+               result.seconds.solve,
                ok ? "" : "  <- FAILS");
   }
   fmt::print("{} rows, {} failed\n", done, failures);

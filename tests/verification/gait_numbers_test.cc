@@ -11,9 +11,9 @@ namespace
   SimulationResult
   stride(const test::Settings &settings, const bool with_cycle_stop = false)
   {
-    const Simulation::Options options{.energy_balance = true,
-                                      .cycles = with_cycle_stop ? std::optional(CycleWish{1., 1e-8}) : std::nullopt,
-                                      .gait   = Simulation::GaitWish::any};
+    const RecordOptions options{.energy_balance = true,
+                                .cycles         = with_cycle_stop ? std::optional(CycleWish{1., 1e-8}) : std::nullopt,
+                                .gait           = GaitWish::any};
     return test::run_with(test::with(settings, "Accuracy = 1e-8"), options).result;
   }
 
@@ -21,8 +21,7 @@ namespace
   std::optional<Gait>
   declared_gait(const test::Settings &settings)
   {
-    return test::run_with(test::with(settings, "Accuracy = 1e-4"), {.gait = Simulation::GaitWish::declared})
-      .result.gait;
+    return test::run_with(test::with(settings, "Accuracy = 1e-4"), {.gait = GaitWish::declared}).result.gait;
   }
 } // namespace
 
@@ -163,7 +162,7 @@ TEST(GaitNumbers, SideBySideTheyAreTheSame)
   add(test::with(test::wave(-1., 0.3, 1., 4.), segments));
   add(test::with(test::wave(-1., 0.3, 1., 4.03), pulses)); // too fast for the samples
   add(test::wave(-1., 0.3, 1., 0.7));                      // no whole stride
-  const Simulation::Options options{.energy_balance = true, .gait = Simulation::GaitWish::declared};
+  const RecordOptions options{.energy_balance = true, .gait = GaitWish::declared};
   const auto together = run_batch(test::entries(runs), options);
   for (std::size_t i = 0; i < runs.size(); ++i)
   {

@@ -53,7 +53,7 @@ namespace
     const auto result         = test::run_alone(run, {.energy_balance = false}, single_engine());
     if (!result)
       return {std::nan(""), 0, 0};
-    return {result->displacement, result->most_cells, result->time.steps};
+    return {result->displacement, result->mesh.most_cells, result->time.steps};
   }
 } // namespace
 

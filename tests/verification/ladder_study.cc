@@ -49,9 +49,9 @@ main(int argc, char **argv)
       continue;
     }
     ++total;
-    const double D            = *truth / levels.units().length; // these are in natural units
-    const double series       = perturbation::displacement(*levels.wave(), 1.);
-    const double motion       = kinematic(levels.scene(), *levels.strain(), 1e-8).displacement;
+    const double D            = *truth / levels.units.length; // these are in natural units
+    const double series       = perturbation::displacement(*levels.wave, 1.);
+    const double motion       = kinematic(levels.scene, *levels.strain, 1e-8).displacement;
     const double is[2]        = {std::abs(series - D), std::abs(motion - D)};
     const double estimated[2] = {errors.perturbation, errors.kinematic};
     for (unsigned int i = 0; i < 2; ++i)

@@ -35,7 +35,7 @@ namespace
     FieldSampler sampler([&](const Discretization &) { return points; });
     const Fields &fields = sampler.sample(snapshot);
     return {snapshot.step.time,
-            snapshot.integrals.displacement,
+            snapshot.displacement,
             snapshot.energy_balance.dissipation,
             snapshot.energy_balance.residual(),
             fields.stretch,

@@ -167,7 +167,7 @@ namespace
     if (own_is_position)
       cells = std::max(cells, 1.3 * chosen.n_cells * chosen.degree / 8.);
     cells *= more;
-    const double size = std::max(std::abs(own.computed.result.displacement), 1e-4 * own.computed.result.largest_u);
+    const double size = std::max(std::abs(own.computed.result.displacement), 1e-4 * own.computed.result.size.largest_u);
     const double wanted =
       std::max(parameters.accuracy * (size > 0. && std::isfinite(size) ? size : 1e-3 * L), 1e-13 * L);
     Judgement judgement;

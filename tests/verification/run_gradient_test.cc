@@ -60,8 +60,8 @@ namespace
   std::array<double, all_quantities.size()>
   numbers_of(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
   {
-    const SimulationResult result = Simulation(MPI_COMM_SELF, scene, time, numerics)
-                                      .run({}, {.energy_balance = true, .gait = Simulation::GaitWish::declared});
+    const SimulationResult result =
+      Simulation(MPI_COMM_SELF, scene, time, numerics).run({}, {.energy_balance = true, .gait = GaitWish::declared});
     const EnergyBalance &works = *result.energy_balance;
     const Gait stride          = result.gait.value_or(Gait());
     return {{result.displacement,

@@ -17,5 +17,5 @@ namespace crawler
    * inverts the time of inversion has to settle. @p options are those of each run, without output times.
    */
   Answer
-  answer_of_family(const Problem &problem, const NumericsChoice &choice, const Simulation::Options &options);
+  answer_of_family(const Problem &problem, const NumericsChoice &choice, const RecordOptions &options);
 } // namespace crawler

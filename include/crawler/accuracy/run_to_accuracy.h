@@ -19,10 +19,10 @@ namespace crawler
   run_to_accuracy(const Problem &problem,
                   const NumericsChoice &choice,
                   const std::function<SimulationResult(const NumericsChoice &)> &simulate,
-                  const Simulation::Options &options,
+                  const RecordOptions &options,
                   bool writes);
 
   /// Answer on one rank without files, with numerics chosen for it.
   Answer
-  answer_in_memory(const Problem &problem, const Simulation::Options &options);
+  answer_in_memory(const Problem &problem, const RecordOptions &options);
 } // namespace crawler

@@ -12,8 +12,9 @@ namespace crawler
   /// Resolution of the stretch by the mesh: squared norms over the whole body (see doc/numerics.md, "Accuracy").
   struct Resolution
   {
-    double highest_mode; ///< int of (highest Legendre mode of w in each cell, relative to the cell's smallest w)^2 ds
-    double strain;       ///< int (w - 1)^2 ds
+    /// int of (highest Legendre mode of w in each cell, relative to the cell's smallest w)^2 ds
+    double highest_mode = 0.;
+    double strain       = 0.; ///< int (w - 1)^2 ds
   };
 
   /// Position form F(t, u, u') = M(u) u' + K u + m = 0 of a plain body (crawler_equation.h; doc/numerics.md, "The

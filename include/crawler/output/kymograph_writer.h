@@ -33,7 +33,7 @@ namespace crawler
     show(const StateWithoutMesh &state) override
     {
       if (state.pictures.is_row)
-        add(state.numbers.step.time, state.frame.fields);
+        add(state.step.time, state.frame.fields);
     }
     void
     exchange(Archive &archive) override;

@@ -8,16 +8,43 @@
 #include <crawler/time/stepper.h>
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <vector>
 
 namespace crawler
 {
+  /// Numbers of a state: a row of the statistics.
+  struct StateNumbers
+  {
+    Step step{};              ///< with the time of this state, which may be within the step
+    double displacement = 0.; ///< of the centre of mass
+    StretchRange stretch{};
+    double velocity              = 0.; ///< of the centre of mass
+    EnergyBalance energy_balance = {};
+    double net_friction          = std::numeric_limits<double>::quiet_NaN();
+
+    /// Returns them in the user's units, from natural ones.
+    StateNumbers
+    in_units(const Units &units) const
+    {
+      StateNumbers result = *this;
+      result.step.time *= units.time;
+      result.step.size *= units.time;
+      result.displacement *= units.length;
+      for (StretchAt *extreme : {&result.stretch.min, &result.stretch.max})
+        extreme->s *= units.length;
+      result.velocity *= units.velocity();
+      result.energy_balance = energy_balance.scaled(units.energy());
+      result.net_friction *= units.force;
+      return result;
+    }
+  };
+
   /// A state of a run, read-only, in the user's units except for assembler, y, v and computed_time, which are in
   /// `units`. It is the end of an accepted step, or interpolated within one; the first is the initial state.
-  struct Snapshot
+  struct Snapshot : StateNumbers
   {
-    const Step &step;           ///< with the time of this state, which may be within the step
     bool is_step_end;           ///< an accepted state
     bool is_in_lost_step;       ///< before an inversion, but later than the answer's last state
     PictureKinds pictures;      ///< pictures for which it was requested
@@ -25,11 +52,8 @@ namespace crawler
     unsigned int mesh_number;   ///< ... together with this number
     const Units &units;
     double computed_time;
-    std::span<const double> y;      ///< the unknowns (assembler.h), owned values of this rank
-    std::span<const double> v;      ///< velocity at the nodes; only for pictures if there is no energy balance
-    const CellIntegrals &integrals; ///< those that contain v belong to the same time as `v`
-    const StretchRange &stretch;
-    const EnergyBalance &energy_balance;
+    std::span<const double> y; ///< the unknowns (assembler.h), owned values of this rank
+    std::span<const double> v; ///< velocity at the nodes; only for pictures if there is no energy balance
   };
 
   /// Output fields at a list of points, in the user's units.
@@ -66,23 +90,11 @@ namespace crawler
     Fields fields;
   };
 
-  /// Numbers of a state, in the user's units: a row of the statistics.
-  struct StateNumbers
-  {
-    const Step &step;
-    double displacement;
-    StretchRange stretch;
-    double velocity; ///< of the centre of mass
-    const EnergyBalance &energy_balance;
-    double net_friction;
-  };
-
-  /// A state of a level without a mesh: its body is one cell.
-  struct StateWithoutMesh
+  /// A state of a level without a mesh, in the user's units: its body is one cell.
+  struct StateWithoutMesh : StateNumbers
   {
     PictureKinds pictures; ///< pictures for which it was requested
     Frame frame;
-    StateNumbers numbers;
   };
 
   /// Sees the accepted states of a run and the requested ones. Called on all ranks together.

@@ -15,8 +15,7 @@ namespace crawler
   class Statistics : public Observer
   {
   public:
-    /// Takes the @p length of the body.
-    Statistics(double length, bool with_energy_balance);
+    explicit Statistics(bool with_energy_balance);
 
     void
     observe(const Snapshot &snapshot) override;
@@ -25,7 +24,7 @@ namespace crawler
     show(const StateWithoutMesh &state) override
     {
       if (state.pictures.is_snapshot)
-        write(state.numbers);
+        write(state);
     }
 
     /// Adds a row.
@@ -43,7 +42,6 @@ namespace crawler
     }
 
   private:
-    const double length_;
     std::vector<double> values_;
 
   protected:
@@ -55,8 +53,7 @@ namespace crawler
   {
   public:
     /// Takes the folder of the file, which is made with the first row.
-    StatisticsWriter(double length,
-                     bool is_first_rank,
+    StatisticsWriter(bool is_first_rank,
                      const std::filesystem::path &folder,
                      bool with_energy_balance,
                      const UnitNames &units);

@@ -13,43 +13,26 @@ namespace crawler
   class ReducedScene
   {
   public:
-    /// @p scene is in the user's units and must outlive it.
-    explicit ReducedScene(const Scene &scene);
+    /// @p physical is in the user's units and must outlive it.
+    explicit ReducedScene(const Scene &physical);
     ReducedScene(const ReducedScene &) = delete;
 
-    const Units &
-    units() const
-    {
-      return units_;
-    }
-    /// Scene in natural units.
-    const Scene &
-    scene() const
-    {
-      return scene_;
-    }
+    const Units units;
+    const Scene scene; ///< in natural units
 
     /// Optimal wave; nothing for other active stresses. The perturbation level needs it.
-    const std::optional<NaturalWave> &
-    wave() const
-    {
-      return wave_;
-    }
+    std::optional<NaturalWave> wave;
 
     /// Strain of the kinematic level: the prescribed one, that of the optimal wave to leading order, or that of a stiff
     /// body, -m/k. Null if the rate of the active stress is not known, or the stress jumps, so that the level does not
     /// fit.
-    const ActiveStress *
-    strain() const
-    {
-      return strain_;
-    }
+    const ActiveStress *strain = nullptr;
 
     /// True if that strain is the body's by definition.
     bool
     is_prescribed() const
     {
-      return scene_.active_stress->prescribed_strain() != nullptr;
+      return scene.active_stress->prescribed_strain() != nullptr;
     }
 
     /// Model errors with the approximate strain.
@@ -57,10 +40,6 @@ namespace crawler
     model_errors() const;
 
   private:
-    const Units units_;
-    const Scene scene_;
-    std::optional<NaturalWave> wave_;
-    std::optional<StressByFunctions> approximate_; ///< if none is prescribed
-    const ActiveStress *strain_ = nullptr;
+    std::optional<StressByFunctions> approximate_; ///< strain, if none is prescribed
   };
 } // namespace crawler

@@ -32,7 +32,7 @@ namespace crawler
    */
   std::vector<std::optional<SimulationResult>>
   run_batch(std::span<const BatchRun> runs,
-            const Simulation::Options &options,
+            const RecordOptions &options,
             const std::function<bool()> &keep_going = {},
             const LaneEngine &engine                = batch_engine());
 } // namespace crawler

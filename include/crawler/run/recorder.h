@@ -31,8 +31,8 @@ namespace crawler
   enum class ResolutionWish
   {
     none,
-    size, ///< SimulationResult::largest_u and last_u
-    all   ///< and SimulationResult::unresolved, strain and largest_indicator, which cost as much as a short step
+    size, ///< SolutionSize::largest_u and last_u
+    all   ///< all of SolutionSize, which costs as much as a short step
   };
 
   /// Options: numbers computed at each accepted step besides the state.

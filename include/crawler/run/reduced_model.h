@@ -6,7 +6,6 @@
 #include <crawler/run/simulation.h>
 
 #include <functional>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,12 +29,9 @@ namespace crawler
     compute(double accuracy, bool energy_balance, const std::function<bool()> &keep_going = {}, bool gait = false);
 
     /// State at one time, in natural units.
-    struct State
+    struct State : StateNumbers // without a step
     {
-      double displacement = 0., velocity = 0., net_friction = std::numeric_limits<double>::quiet_NaN();
-      EnergyBalance energies;
-      StrainExtreme smallest{}, largest{};
-      ReducedFields fields;
+      ReducedFields fields = {};
     };
 
     /**

@@ -24,10 +24,6 @@ namespace crawler
   class Simulation
   {
   public:
-    using GaitWish  = crawler::GaitWish;
-    using Options   = RecordOptions;
-    using Observers = crawler::Observers;
-
     Simulation(MPI_Comm communicator, const Scene &scene, const TimeParameters &time, const Numerics &numerics);
     ~Simulation();
 
@@ -36,7 +32,7 @@ namespace crawler
     /// runs in its journal are not computed again, and the journal gets the states and the result of this one.
     SimulationResult
     run(const PictureTimes &pictures,
-        const Options &options,
+        const RecordOptions &options,
         const Observers &observers  = {},
         const KeepGoing &keep_going = {});
 
@@ -139,7 +135,7 @@ namespace crawler
     TimeOutcome
     failure_while_integrating();
     std::string
-    identity(const Options &options, bool has_pictures) const;
+    identity(const RecordOptions &options, bool has_pictures) const;
     void
     exchange(Archive &archive);
     void
@@ -153,13 +149,17 @@ namespace crawler
     void
     show_step(const Step &step, std::span<const double> y);
     bool
-    show_pictures_within(const Step &step, double until);
+    show_pictures_within(const Step &step, double until, const EnergyBalance &at_start);
     void
     show_pictures_before_inversion(const Step &step);
     void
     show_row_after_jump();
     void
-    show(const simulation_parts::Shown &shown);
+    show(const StateNumbers &natural,
+         std::span<const double> y,
+         std::span<const double> v,
+         bool is_step_end,
+         const PictureTimes::Time *picture);
     SimulationResult &
     result()
     {
@@ -169,13 +169,13 @@ namespace crawler
     const Scene &physical_scene_;
     const Units units_;
     TimeSegments segments_;
-    const Scene scene_;       ///< in natural units
-    const Numerics numerics_; ///< in natural units
-    TimeParameters time_;     ///< in natural units
+    const Scene scene_;                ///< in natural units
+    const Numerics numerics_;          ///< in natural units
+    TimeParameters time_;              ///< in natural units
+    const std::vector<double> breaks_; ///< breaks in space
     const MPI_Comm communicator_;
 
     simulation_parts::OnMesh mesh_;
-    unsigned int mesh_number_ = 0;
     simulation_parts::Integrators integrators_;
     simulation_parts::Past past_;
     std::optional<Run> run_;

@@ -45,8 +45,11 @@ namespace crawler::simulation_parts
     PositionForm *position = nullptr; ///< the assembler, if it has this form
     StretchForm *stretch   = nullptr;
     std::unique_ptr<StateVelocity> velocity;
-    std::unique_ptr<EndPower> end_power; ///< created once it is needed
-    bool is_first = false;               ///< the mesh is that of the start
+    std::unique_ptr<EndPower> end_power;
+    bool is_first = false; ///< the mesh is that of the start
+    // Of an adaptive mesh:
+    std::vector<double> indicators;  ///< indicators of all cells for the latest state
+    std::vector<CellChange> changes; ///< changes that are wanted
   };
 
   /// Time integrators; built when they are needed.
@@ -85,6 +88,13 @@ namespace crawler::simulation_parts
     }
   };
 
+  /// Numbers of the state that a step has reached, in natural units.
+  inline StateNumbers
+  numbers_of(const Step &step, const CellIntegrals &sums, const StretchRange &stretch, const EnergyBalance &energies)
+  {
+    return {step, sums.displacement, stretch, sums.velocity, energies, sums.net_friction};
+  }
+
   /// Diagnosis that replaces the time stepper's account of the end.
   struct Diagnosis
   {
@@ -103,34 +113,12 @@ namespace crawler::simulation_parts
     OutputTimes output_times;
     StepLimiter limiter;
     Accepted accepted = {};
-    StretchRange stretch{};     ///< range of the state under examination
-    std::vector<double> breaks; ///< breaks in space
-    CellIntegrals integrals{};
-    bool lane_samples            = false; ///< the extremes and rates that they see in the stages of steps are used
-    bool lanes_gave_up           = false;
-    RateQuadrature quadrature    = {}; ///< quadrature of works
-    EnergyBalance balance_before = {}; ///< energy balance at the start of the latest step
-    Resolution largest{};              ///< largest over time, if computed
-    TimeOutcome before{};              ///< counts of the parts of the run before the last change of mesh
-    Step latest{};                     ///< last step that was tried, with the counts of the whole run
+    StateNumbers state{}; ///< numbers of the state under examination; its step has the counts of the whole run
+    bool lanes_gave_up        = false;
+    RateQuadrature quadrature = {}; ///< quadrature of works
+    TimeOutcome before{};           ///< counts and end of the parts of the run before the present one
     std::optional<Diagnosis> diagnosis = {};
     unsigned int tiny_steps            = 0;
-    std::vector<CellChange> changes    = {};
-    std::vector<double> indicators     = {};    ///< indicators of all cells of an adaptive mesh, at present
-    unsigned long n_failures           = 0;     ///< failures of the active stress before this run
-    double part_start                  = 0.;    ///< time at which the present integrator has started
-    bool goes_on                       = false; ///< continues within a part that was left
-  };
-
-  /// State that observers see.
-  struct Shown
-  {
-    const Step &step; ///< with the time of the state
-    std::span<const double> y, v;
-    const CellIntegrals &integrals;
-    const StretchRange &stretch;
-    const EnergyBalance &energy_balance;
-    bool is_step_end;
-    const PictureTimes::Time *picture; ///< null if the state is none
+    unsigned long n_failures           = 0; ///< failures of the active stress before this run
   };
 } // namespace crawler::simulation_parts

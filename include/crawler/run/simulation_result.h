@@ -3,7 +3,7 @@
 
 #include <crawler/base/archive.h>
 #include <crawler/base/extreme_history.h>
-#include <crawler/equation/stretch_form.h>
+#include <crawler/equation/position_form.h>
 #include <crawler/reduced_models/model.h>
 #include <crawler/run/cycle_stop.h>
 #include <crawler/run/gait.h>
@@ -26,6 +26,21 @@ namespace crawler
     double space = unknown; ///< part of the mesh
     double time  = unknown; ///< part of the time steps, and of cycles that were extrapolated
     double model = unknown; ///< part of the model level; 0 if the full equation was solved
+  };
+
+  /// Size and resolution of a solution, largest over time, for the choice of the numerics (ResolutionWish).
+  struct SolutionSize : Resolution
+  {
+    double largest_u         = 0.; ///< root mean square of u over the body [length]
+    double last_u            = 0.; ///< the same of the last state [length]
+    double largest_indicator = 0.; ///< sum of the error indicators of an accepted state [length]
+
+    /// Part of the strain that the mesh does not resolve.
+    double
+    unresolved() const
+    {
+      return strain > 0. ? highest_mode / strain : 0.;
+    }
   };
 
   /// Place and time at which the body inverted; value is the stretch there.
@@ -99,10 +114,7 @@ namespace crawler
     /// nothing if there are none, or if a derivative is not known.
     std::optional<double>
     standard_deviation(const std::string &key) const;
-    double largest_u  = 0.; ///< root mean square of u over the body, largest over time [length]
-    double last_u     = 0.; ///< root mean square of u over the body, of the last state [length]
-    double unresolved = 0.; ///< Resolution: largest highest_mode over largest strain, if computed
-    double strain     = 0.; ///< largest int (w - 1)^2 ds over time, if the resolution is computed [length]
+    SolutionSize size;
     std::optional<EnergyBalance> energy_balance;
     /// Energy residual of a balance that is discarded, since works that do not balance are not known [1].
     std::optional<double> residual_of_unknown_works;
@@ -116,26 +128,29 @@ namespace crawler
     std::optional<double> gait_efficiency; ///< efficiency of the whole run (gait.h), if it is known [1]
     std::optional<Cycles> cycles;          ///< set if the run ended as they repeat; numbers above are at the end time
 
-    Formulation formulation   = Formulation::position;
-    unsigned int mesh_changes = 0, most_cells = 0; ///< counts of an adaptive mesh
-    /// Last mesh; nothing if there was none.
+    Formulation formulation = Formulation::position;
+    /// Last mesh, without cells if there was none; changes and most_cells count those of an adaptive one.
     struct Mesh
     {
-      unsigned int n_cells, degree;
-      std::size_t n_unknowns;
-      bool is_shared; ///< true if several ranks share it
+      unsigned int n_cells = 0, degree = 0;
+      std::size_t n_unknowns = 0;
+      bool is_shared         = false; ///< true if several ranks share it
+      unsigned int changes = 0, most_cells = 0;
 
       void
       exchange(auto &archive)
       {
-        archive(n_cells, degree, n_unknowns, is_shared);
+        archive(n_cells, degree, n_unknowns, is_shared, changes, most_cells);
       }
     };
-    std::optional<Mesh> mesh;
-    double largest_indicator = 0.; ///< largest sum of the error indicators of an accepted state [length]
-    double setup_seconds = 0., solve_seconds = 0., output_seconds = 0.;
-    double estimate_seconds  = 0.; ///< time spent on the error (error_estimate.h)
-    unsigned int refinements = 0;  ///< tries before this one, whose errors were too large
+    Mesh mesh;
+    /// Wall times; error: spent on the error (error_estimate.h).
+    struct Seconds
+    {
+      double setup = 0., solve = 0., output = 0., error = 0.;
+    };
+    Seconds seconds;
+    unsigned int refinements = 0; ///< tries before this one, whose errors were too large
 
     /// Exchanges everything but sensitivities, which no run has.
     void

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <petscpc.h>
+#include <crawler/base/petsc_releases.h>
 
+#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -38,6 +39,20 @@ namespace crawler
   private:
     std::exception_ptr exception_;
   };
+
+  /// Begins a convergence test of Newton's method: true if no correction is to be measured, before the first one or
+  /// since a norm is not finite.
+  inline bool
+  ends_without_correction(const PetscInt it,
+                          const PetscReal dx_norm,
+                          const PetscReal F_norm,
+                          SNESConvergedReason &reason)
+  {
+    reason = !std::isfinite(F_norm) || !std::isfinite(dx_norm) ? newton_not_finite
+             : it == 0 && F_norm == 0.                         ? SNES_CONVERGED_FNORM_ABS
+                                                               : SNES_CONVERGED_ITERATING;
+    return it == 0 || reason != SNES_CONVERGED_ITERATING;
+  }
 
   /// The context of a shell matrix, or of a shell preconditioner.
   template <typename Context>

@@ -21,28 +21,34 @@ namespace crawler
     ImplicitSystem *system      = nullptr;
     PetscGuard *guard           = nullptr;
 
-    // Vectors of the size of y, and of all stages: on each rank its part of stage 1, then that of stage 2, ...
-    PetscOwner<Vec> y, y_dot, f, start;
-    PetscOwner<Vec> z, residual;
-    PetscOwner<Mat> jacobian;
-    PetscOwner<KSP> linear, krylov; ///< if `linear`, the solver's own, is preonly
-    unsigned int hard_steps = 0;
-    std::size_t n_owned     = 0;
-    double n_all            = 0.; ///< unknowns of all ranks
-    std::vector<double> work, x_dot;
-    std::vector<std::complex<double>> complex_work;
+    PetscOwner<Vec> start; ///< state at the start of the step
+    PetscOwner<Vec> z;     ///< increments of all stages: on each rank its part of stage 1, then that of stage 2, ...
+    PetscOwner<Vec> y, y_dot, f; ///< state, rate and residual of one stage
+    std::size_t n_owned = 0;
 
     double h = 0., t = 0.;   ///< of the attempted step
     double error       = 0.; ///< its error in units of the tolerance
     unsigned int steps = 0;  ///< accepted since the last start
-    // The last accepted step, for interpolation and the next first guess.
-    std::vector<double> old_start, old_z;
-    double old_h = 0., old_t = 0.;
 
-    // Newton's method.
-    double last_correction = 0., rate = 0., known_rate = 1.;
-    bool factors_ok = true, products_ready = false;
-    double factors_h = 0.;
+    /// The last accepted step, for interpolation and the next first guess.
+    struct Last
+    {
+      std::vector<double> start, z;
+      double h = 0., t = 0.;
+    };
+    Last last;
+
+    /// Newton's method for the stages.
+    struct Newton
+    {
+      PetscOwner<KSP> linear, krylov; ///< if `linear`, the solver's own, is preonly
+      unsigned int hard_steps = 0;    ///< steps that are still to be made with `krylov`
+      double last_correction = 0., rate = 0., known_rate = 1.;
+      bool factors_ok = true, products_ready = false;
+      double factors_h = 0.; ///< step size for which the factors were computed
+      std::vector<std::complex<double>> complex_work;
+    };
+    Newton newton;
 
     std::span<const double>
     stage(const std::span<const double> all, const unsigned int i) const

@@ -18,11 +18,11 @@ namespace crawler
 {
   namespace
   {
-    Simulation::Options
+    RecordOptions
     options_of_batch(const Task &task)
     {
       return {.energy_balance = task.parameters.output.energy_balance,
-              .gait           = task.gait ? Simulation::GaitWish::declared : Simulation::GaitWish::none};
+              .gait           = task.gait ? GaitWish::declared : GaitWish::none};
     }
 
     /// Times a part of the work for one task. An exception becomes the status of the task, unless the user has to mend
@@ -148,9 +148,7 @@ namespace crawler
      * finished without.
      */
     void
-    compute_members(std::vector<Member> members,
-                    const Simulation::Options &options,
-                    const std::function<bool()> &is_in_time)
+    compute_members(std::vector<Member> members, const RecordOptions &options, const std::function<bool()> &is_in_time)
     {
       std::vector<BatchRun> runs, finer_runs;
       for (const Member &member : members)
@@ -220,16 +218,16 @@ namespace crawler
         task.is_out_of_time = before + clock.seconds() > time_limit;
         return !task.is_out_of_time && !interrupted();
       };
-      Simulation::Options options = options_of_batch(task);
-      options.cycles              = cycle_wish(task.parameters, *task.scene, /*has_pictures=*/false);
-      bool is_computed            = task.computed.result.time.status != Status::none;
-      task.computed               = run_to_accuracy(
+      RecordOptions options = options_of_batch(task);
+      options.cycles        = cycle_wish(task.parameters, *task.scene, /*has_pictures=*/false);
+      bool is_computed      = task.computed.result.time.status != Status::none;
+      task.computed         = run_to_accuracy(
         {task.parameters, *task.scene, keep_going},
         task.computed.choice,
         [&](const NumericsChoice &choice) {
           return std::exchange(is_computed, false)
-                                 ? task.computed.result
-                                 : Simulation(MPI_COMM_SELF, *task.scene, task.parameters.time, choice.numerics)
+                           ? task.computed.result
+                           : Simulation(MPI_COMM_SELF, *task.scene, task.parameters.time, choice.numerics)
                        .run({}, options, {}, keep_going);
         },
         options,

@@ -40,8 +40,8 @@ namespace crawler
       {
         constexpr unsigned int most = 128;
         const State state(family.parameters(start));
-        const ActiveStress &stress = *state.reduced.scene().active_stress;
-        n_space_                   = GaussPanels::number_ending_at(state.reduced.scene().breaks_in_space(), 1, most);
+        const ActiveStress &stress = *state.reduced.scene.active_stress;
+        n_space_                   = GaussPanels::number_ending_at(state.reduced.scene.breaks_in_space(), 1, most);
         n_time_                    = GaussPanels::number_ending_at(stress.breaks_in_time(), 1, most);
         grid_.emplace(n_space_, n_time_);
         while (refine(start))
@@ -78,7 +78,7 @@ namespace crawler
         const State &state = *possible;
         const auto with    = [&](const unsigned int n_space, const unsigned int n_time) {
           const StrainFunctional grid(n_space, n_time);
-          return grid.values(grid.sample(*state.reduced.strain()), state.body(grid));
+          return grid.values(grid.sample(*state.reduced.strain), state.body(grid));
         };
         const auto own = with(n_space_, n_time_);
         if (!own)
@@ -98,7 +98,7 @@ namespace crawler
       {
         const State state(family.parameters(x));
         const StrainExtremes extremes =
-          find_extremes(*state.reduced.strain(), 1., 1., 16 * n_space_ + 1, 16 * n_time_ + 1);
+          find_extremes(*state.reduced.strain, 1., 1., 16 * n_space_ + 1, 16 * n_time_ + 1);
         return {extremes.smallest.strain, extremes.largest.strain};
       }
 
@@ -140,7 +140,7 @@ namespace crawler
           : physical(parameters.create_scene())
           , reduced(physical)
         {
-          if (reduced.strain() == nullptr)
+          if (reduced.strain == nullptr)
             throw InputError(
               "the kinematic level needs a prescribed strain, or an active stress whose rate is known and "
               "that does not jump",
@@ -150,7 +150,7 @@ namespace crawler
         BodyAtPoints
         body(const StrainFunctional &grid) const
         {
-          return {reduced.scene(), grid.points};
+          return {reduced.scene, grid.points};
         }
 
         /// True if body, ground, units and time are those of another state, so that only the strain may differ.
@@ -158,10 +158,10 @@ namespace crawler
         is_like(const State &other) const
         {
           std::array<double, 3> w = {{0.5, 1., 1.7}}, own{}, others{};
-          reduced.scene().friction->values(w, own);
-          other.reduced.scene().friction->values(w, others);
-          const Units &a = reduced.units(), &b = other.reduced.units();
-          return own == others && reduced.scene().body.elastic_modulus == other.reduced.scene().body.elastic_modulus &&
+          reduced.scene.friction->values(w, own);
+          other.reduced.scene.friction->values(w, others);
+          const Units &a = reduced.units, &b = other.reduced.units;
+          return own == others && reduced.scene.body.elastic_modulus == other.reduced.scene.body.elastic_modulus &&
                  a.length == b.length && a.time == b.time && a.force == b.force;
         }
 
@@ -191,11 +191,11 @@ namespace crawler
       Samples
       sample(const State &state) const
       {
-        Samples samples{grid_->sample(*state.reduced.strain()), {}};
+        Samples samples{grid_->sample(*state.reduced.strain), {}};
         if (!wishes.strain)
           return samples;
         std::vector<double> strain(n_limited_s_ + 1);
-        const auto at = state.reduced.strain()->at(equal_parts(0., 1., n_limited_s_));
+        const auto at = state.reduced.strain->at(equal_parts(0., 1., n_limited_s_));
         for (const double t : equal_parts(0., 1., n_limited_t_))
         {
           at->values(t, strain);
@@ -350,12 +350,12 @@ namespace crawler
       ByGaitNumber<double>
       numbers(const State &state, const Samples &samples, const StrainFunctional::Values &values) const
       {
-        const Units &units  = state.reduced.units();
+        const Units &units  = state.reduced.units;
         const Scene &scene  = state.physical;
         const double energy = units.energy(), D = units.length * values[StrainFunctional::displacement];
         // The bound holds for the sums of the quadrature, too, with the strains at its points.
         const auto [least, most] = std::ranges::minmax(samples.on_grid.strain);
-        const double bound       = largest_merit(*state.reduced.scene().friction, 1. + least, 1. + most) *
+        const double bound       = largest_merit(*state.reduced.scene.friction, 1. + least, 1. + most) *
                              std::sqrt(values[StrainFunctional::dissipation]),
                      part = std::abs(values[StrainFunctional::displacement]) / bound;
         return {{D,
@@ -399,7 +399,7 @@ namespace crawler
           }
         }
         const std::vector<Samples> &slopes = linear_ ? linear_->slopes : own_slopes;
-        const Units &units                 = state.reduced.units();
+        const Units &units                 = state.reduced.units;
         const auto put = [&](const StrainFunctional::Number number, const GaitNumber::Index what, const double unit) {
           if (!wishes.numbers[what])
             return;

@@ -57,7 +57,7 @@ namespace crawler
                 const Observers &observers,
                 const std::function<bool()> &keep_going)
   {
-    const Units &units = level.reduced_scene.units();
+    const Units &units = level.reduced_scene.units;
     std::vector<double> natural;
     for (std::size_t i = 0; i < times.all().size(); ++i)
       natural.push_back(times.natural(i));
@@ -70,26 +70,20 @@ namespace crawler
     level.replay(natural, points, [&](const double t, const ReducedModel::State &state) {
       const PictureTimes::Time &picture = times.all()[number++];
       const double time                 = picture.value;
-      const Step step{time, time - before, n_snapshots, true, 0, 0};
+      StateNumbers numbers              = state.in_units(units);
+      numbers.step                      = {time, time - before, n_snapshots, true, 0, 0};
       if (picture.kinds.is_snapshot)
       {
         ++n_snapshots;
         before = time;
       }
-      const auto stretch_at = [&](const StrainExtreme &e) { return StretchAt{1. + e.strain, e.s * units.length}; };
-      const EnergyBalance energies = state.energies.scaled(units.energy());
-      const StateWithoutMesh shown{picture.kinds,
+      const StateWithoutMesh shown{numbers,
+                                   picture.kinds,
                                    {time,
-                                    step.number,
+                                    numbers.step.number,
                                     static_cast<unsigned int>(points.size()),
                                     places,
-                                    physical_fields(state.fields, points, level.reduced_scene.scene(), units)},
-                                   {step,
-                                    state.displacement * units.length,
-                                    {stretch_at(state.smallest), stretch_at(state.largest)},
-                                    state.velocity * units.velocity(),
-                                    energies,
-                                    state.net_friction * units.force}};
+                                    physical_fields(state.fields, points, level.reduced_scene.scene, units)}};
       for (const auto &observer : observers)
         observer->show(shown);
       stopped = !keep_going();

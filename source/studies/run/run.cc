@@ -57,7 +57,6 @@ namespace crawler
       RunProgress(Log &log, const Scene &scene)
         : log_(log)
         , end_time_(scene.end_time)
-        , length_(scene.body.length)
         , bar_(log, /*between_lines=*/HUGE_VAL)
       {
       }
@@ -69,12 +68,12 @@ namespace crawler
           return;
         const Step &step          = snapshot.step;
         const StretchRange &range = snapshot.stretch;
-        const double done = step.time / end_time_, displacement = snapshot.integrals.displacement / length_;
+        const double done         = step.time / end_time_;
         if (bar_.is_due())
           bar_.show(std::min(done, 1.),
                     fmt::format("t = {:.4g}  displacement {:.6g}  stretch {:.3g} to {:.3g}",
                                 step.time,
-                                displacement,
+                                snapshot.displacement,
                                 range.min.value,
                                 range.max.value));
         if (10. * done < next_tenth_)
@@ -87,14 +86,14 @@ namespace crawler
           step.time,
           step.number,
           step.size,
-          displacement,
+          snapshot.displacement,
           range.min.value,
           range.max.value));
       }
 
     private:
       Log &log_;
-      const double end_time_, length_;
+      const double end_time_;
       ProgressBar bar_;
       unsigned int next_tenth_ = 1;
     };
@@ -147,11 +146,12 @@ namespace crawler
         }
         sharing_.has_output = sharing_.is_shared || is_first_;
         begin_output();
-        result_.setup_seconds = clock_.seconds();
+        const double setup = result_.seconds.setup = clock_.seconds();
         if (has_mesh)
           compute_on_mesh();
         else if (is_first_)
           compute_without_mesh();
+        result_.seconds.setup = setup;
         return finish();
       }
 
@@ -208,17 +208,15 @@ namespace crawler
       {
         guarded([&]() {
           const OutputParameters &output = input_.parameters.output;
-          const double setup             = result_.setup_seconds;
           const auto keep_going          = [&]() { return !is_stopped(); };
           ReducedModel level(input_.scene, model_->model);
           result_ = level.compute(input_.parameters.accuracy, output.energy_balance, keep_going, /*gait=*/true);
-          result_.setup_seconds = setup;
           log_.line(level.description());
           const Stopwatch watch;
           if (result_.error && (output.has_snapshots() || output.statistics) &&
               !show_pictures(level, times_without_mesh(input_), Kymograph::equidistant(), observers(), keep_going))
             result_.time.status = Status::stopped;
-          result_.output_seconds = watch.seconds();
+          result_.seconds.output = watch.seconds();
         });
       }
 
@@ -236,11 +234,10 @@ namespace crawler
               return !is_true_anywhere(clock_.is_over(), sharing_.ranks);
             },
             &memory_.journal);
-          const Simulation::Options options = {.energy_balance = output.energy_balance,
-                                               .cycles = cycle_wish(parameters, input_.scene, output.has_snapshots()),
-                                               .gait   = Simulation::GaitWish::any};
-          const double setup                = result_.setup_seconds;
-          Answer answer                     = run_to_accuracy(
+          const RecordOptions options = {.energy_balance = output.energy_balance,
+                                         .cycles         = cycle_wish(parameters, input_.scene, output.has_snapshots()),
+                                         .gait           = GaitWish::any};
+          Answer answer               = run_to_accuracy(
             {parameters, input_.scene, keep_going, sharing_.ranks},
             *choice_,
             [&](const NumericsChoice &choice) {
@@ -255,8 +252,7 @@ namespace crawler
           result_ = std::move(answer.result);
           if (answer.choice.is_of_several_runs())
             log_.line("  (" + answer.choice.explanation + ")");
-          choice_               = answer.choice;
-          result_.setup_seconds = setup;
+          choice_ = answer.choice;
         });
       }
 
@@ -264,11 +260,11 @@ namespace crawler
       void
       announce_next_try(const NumericsChoice &choice)
       {
-        const bool is_again         = ++n_runs_ > 1;
+        const TimeOutcome &latest   = result_.time;
+        const bool is_again         = latest.status != Status::none;
         const bool is_of_other_form = choice_->is_of_several_runs() && !choice.is_of_several_runs();
         if (is_again)
         {
-          const TimeOutcome &latest = result_.time;
           log_.line((latest.status == Status::failed ? latest.reason + ": " + latest.message
                                                      : "The error is larger than Accuracy asks for") +
                     ": running again, " + (choice.is_family ? "in the stretch form." : "finer."));
@@ -284,12 +280,12 @@ namespace crawler
         other_runs_.reset();
       }
 
-      Simulation::Observers
+      Observers
       observers()
       {
         const OutputParameters &output = input_.parameters.output;
         const double length            = input_.scene.body.length;
-        Simulation::Observers observers;
+        Observers observers;
         if (!sharing_.has_output)
           return observers;
         if (output.has_snapshots())
@@ -300,7 +296,7 @@ namespace crawler
             length, input_.scene.end_time, input_.scene.ground.profile, memory_.folder));
         if (output.statistics)
           observers.push_back(std::make_shared<StatisticsWriter>(
-            length, is_first_, memory_.folder, output.energy_balance, input_.parameters.units));
+            is_first_, memory_.folder, output.energy_balance, input_.parameters.units));
         if (!options_.quiet)
           observers.push_back(std::make_shared<RunProgress>(log_, input_.scene));
         return observers;
@@ -431,7 +427,6 @@ namespace crawler
       std::optional<Scene> shown_scene_;
       std::unique_ptr<Simulation> simulation_;
       std::optional<WaitProgress> other_runs_; ///< progress of runs without one of their own
-      unsigned int n_runs_ = 0;
       SimulationResult result_;
     };
   } // namespace

@@ -25,13 +25,13 @@ namespace crawler
   {
     /// Makes new tables for a run, or for the next attempt.
     Observers
-    begin_tables(const OutputParameters &output, const Scene &scene, const WantedFields &wanted, RunInMemory &run)
+    begin_tables(const OutputParameters &output, const WantedFields &wanted, RunInMemory &run)
     {
       Observers tables;
       if (!wanted.points.empty())
         tables.push_back(run.kymograph = std::make_shared<Kymograph>(wanted.points));
       if (output.statistics)
-        tables.push_back(run.statistics = std::make_shared<Statistics>(scene.body.length, output.energy_balance));
+        tables.push_back(run.statistics = std::make_shared<Statistics>(output.energy_balance));
       return tables;
     }
 
@@ -54,7 +54,7 @@ namespace crawler
       show_pictures(level,
                     wanted.times ? PictureTimes({}, *wanted.times, input.scene.end_time) : times_without_mesh(input),
                     wanted.points.empty() ? Kymograph::equidistant() : wanted.points,
-                    begin_tables(output, input.scene, wanted, run),
+                    begin_tables(output, wanted, run),
                     keep_going);
     }
 
@@ -80,14 +80,13 @@ namespace crawler
         run.result.time.status = Status::stopped;
         return;
       }
-      run.notes                         = notes_on_choice(input, parameters.model, &chosen->numerics);
-      const Simulation::Options options = {.energy_balance = parameters.output.energy_balance,
-                                           .cycles         = cycle_wish(parameters, input.scene, !pictures.is_empty()),
-                                           .gait =
-                                             wanted.is_all ? Simulation::GaitWish::none : Simulation::GaitWish::any};
-      const auto simulate               = [&](const NumericsChoice &choice) {
+      run.notes                   = notes_on_choice(input, parameters.model, &chosen->numerics);
+      const RecordOptions options = {.energy_balance = parameters.output.energy_balance,
+                                     .cycles         = cycle_wish(parameters, input.scene, !pictures.is_empty()),
+                                     .gait           = wanted.is_all ? GaitWish::none : GaitWish::any};
+      const auto simulate         = [&](const NumericsChoice &choice) {
         const Scene scene      = shown_scene(choice, input.scene);
-        const Observers tables = begin_tables(parameters.output, scene, wanted, run);
+        const Observers tables = begin_tables(parameters.output, wanted, run);
         return Simulation(MPI_COMM_SELF, scene, parameters.time, choice.numerics)
           .run(pictures, options, tables, keep_going);
       };

@@ -140,8 +140,8 @@ namespace crawler
         if (parameters.model != Model::nonlinear)
           return ReducedModel(scene, parameters.model).compute(parameters.accuracy, energy_balance, keep_going);
         // Single runs are those of crawler run, whose steps end where the last stride begins.
-        const auto gait                   = is_batch ? Simulation::GaitWish::none : Simulation::GaitWish::any;
-        const Simulation::Options options = {.energy_balance = energy_balance, .gait = gait};
+        const auto gait             = is_batch ? GaitWish::none : GaitWish::any;
+        const RecordOptions options = {.energy_balance = energy_balance, .gait = gait};
         if (!is_batch)
           return Simulation(MPI_COMM_SELF, scene, parameters.time, numerics).run({}, options, {}, keep_going);
         const std::vector<BatchRun> runs(batch_size, {&scene, &parameters.time, &numerics});
@@ -248,7 +248,7 @@ namespace crawler
         row["steps"]             = to_text(result.time.steps);
         row["rejected steps"]    = to_text(result.time.rejected_steps);
         row["newton iterations"] = to_text(result.time.newton_iterations);
-        row["most cells"]        = to_text(std::max(result.most_cells, run.numerics.n_cells));
+        row["most cells"]        = to_text(std::max(result.mesh.most_cells, run.numerics.n_cells));
       }
       // Levels that miss the requested accuracy have an answer all the same; its message says so.
       const bool misses_accuracy = result.time.reason == accuracy_not_met && std::isfinite(result.displacement);

@@ -81,7 +81,7 @@ TEST_P(FallbackTest, EndsAsWithPetsc)
     for (const bool energy_balance : {true, false})
     {
       const LaneRun run(now.settings, integrator, now.numerics);
-      const Simulation::Options options = {.energy_balance = energy_balance};
+      const RecordOptions options = {.energy_balance = energy_balance};
       ASSERT_TRUE(lane_method(run.scene, run.parameters.time, run.numerics));
       EXPECT_FALSE(test::run_alone(run, options)) << integrator;
       const SimulationResult petsc = run.simulate(Engine::petsc, options),

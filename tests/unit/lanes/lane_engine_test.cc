@@ -67,7 +67,7 @@ TEST(LaneEngine, AResultDoesNotDependOnWhatSharesTheBatch)
       for (const bool energy_balance : {true, false})
       {
         const LaneRuns runs = mixture(integrator);
-        const Simulation::Options options{.energy_balance = energy_balance, .gait = Simulation::GaitWish::declared};
+        const RecordOptions options{.energy_balance = energy_balance, .gait = GaitWish::declared};
         const auto all        = test::entries(runs);
         const auto together   = run_batch(all, options, {}, *engine);
         unsigned int finished = 0;
@@ -106,7 +106,7 @@ TEST(LaneEngine, MethodsMayBeMixed)
   for (std::size_t i = 0; i < runs.size(); ++i)
   {
     ASSERT_TRUE(results[i]) << i;
-    EXPECT_EQ(results[i]->most_cells, runs[i]->numerics.n_cells);
+    EXPECT_EQ(results[i]->mesh.most_cells, runs[i]->numerics.n_cells);
     EXPECT_TRUE(test::same_bits(results[i], test::run_alone(*runs[i]))) << i;
   }
 }

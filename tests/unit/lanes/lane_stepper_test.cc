@@ -174,11 +174,15 @@ namespace
       seen.times.push_back(snapshot.step.time);
       seen.computed_times.push_back(snapshot.computed_time);
       seen.y.insert(seen.y.end(), snapshot.y.begin(), snapshot.y.end());
-      const CellIntegrals &i    = snapshot.integrals;
-      const StretchRange &range = snapshot.stretch;
-      seen.numbers.insert(
-        seen.numbers.end(),
-        {i.displacement, i.velocity, i.stress_power, i.dissipation, range.min.value, range.max.value});
+      const EnergyBalance &works = snapshot.energy_balance;
+      const StretchRange &range  = snapshot.stretch;
+      seen.numbers.insert(seen.numbers.end(),
+                          {snapshot.displacement,
+                           snapshot.velocity,
+                           works.stress_work,
+                           works.dissipation,
+                           range.min.value,
+                           range.max.value});
     });
     const auto result    = Simulation(MPI_COMM_WORLD, run.scene, time, run.numerics)
                           .run({output_times, {}, run.scene.end_time}, {.energy_balance = true}, observers);

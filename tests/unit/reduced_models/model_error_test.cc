@@ -74,9 +74,9 @@ TEST(ModelError, RandomWaves)
       continue;
     const Scene scene = test::parameters_with(wave.settings).create_scene();
     const ReducedScene levels(scene);
-    const double D = *truth / levels.units().length, of_truth = 2e-6 * std::abs(D) + 1e-15;
-    const double series = std::abs(perturbation::displacement(*levels.wave(), 1.) - D);
-    const double motion = std::abs(kinematic(levels.scene(), *levels.strain(), 1e-8).displacement - D);
+    const double D = *truth / levels.units.length, of_truth = 2e-6 * std::abs(D) + 1e-15;
+    const double series = std::abs(perturbation::displacement(*levels.wave, 1.) - D);
+    const double motion = std::abs(kinematic(levels.scene, *levels.strain, 1e-8).displacement - D);
     EXPECT_LE(series, errors.perturbation + of_truth) << number;
     EXPECT_LE(motion, errors.kinematic + of_truth) << number;
     ratios.push_back(errors.perturbation / series);
