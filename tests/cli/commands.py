@@ -307,6 +307,15 @@ def test_last_row_of_an_inversion(folder):
     expect(output_times(folder / "results")[-1] > summary["end_time"], "pictures until the body inverts")
 
 
+def test_files_of_the_other_form(folder):
+    """An answer that the position form gives in place of the stretch form is the one that the files show."""
+    run(folder, BY_SPEED, "Accuracy=2e-8", "Body/Elastic modulus=1e-3", "Body/Anchoring exponent=4.5", OPTIMAL + "Wave speed=1.3",
+        OPTIMAL + "Perturbation parameter=0.25")
+    summary, row = summary_of(folder / "results"), statistics(folder / "results")[-1]
+    expect(summary["formulation"] == "position" and row[0] > 100 and abs(row[3] - summary["displacement"]) <= summary["displacement_error"]["total"],
+           f"the last row: {row}, {summary}")
+
+
 def test_inversion(folder):
     """With a = 1 and chi = 0.6 the body really inverts, inside, near t = 0.308 (ends: verification/extremes_test.cc)."""
     done = run(folder, BY_SPEED, OPTIMAL + "Wave speed=-1", OPTIMAL + "Perturbation parameter=0.6", "Body/Anchoring exponent=0",
@@ -360,4 +369,5 @@ def test_signals(folder):
 checks.run((test_check, test_files, test_files_without_a_mesh, test_accuracy_not_met, test_overrides, test_places_of_files,
             test_byte_order_mark, test_minus_zero, test_notes, test_quiet, test_overwrite, test_without_energies,
             test_numerics_of_the_user, test_unused_petsc_options, test_options_of_the_krylov_method,
-            test_inversion_of_the_position_form, test_last_row_of_an_inversion, test_inversion, test_exit_codes, test_signals))
+            test_inversion_of_the_position_form, test_last_row_of_an_inversion, test_files_of_the_other_form, test_inversion,
+            test_exit_codes, test_signals))

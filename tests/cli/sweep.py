@@ -89,7 +89,7 @@ def test_grid(folder):
 
 
 def test_designs(folder):
-    """zip, random, Latin hypercube, column of a file, files as an axis."""
+    """zip, column of a file, files as an axis (points drawn by chance: unit/sweep_design)."""
     (folder / "values.csv").write_text("name,p,chi\na,2,0.1\nb,3,0.2\n", encoding="utf-8")
     write(folder, f"{P} : column(values.csv, p); {CHI} : column(values.csv, chi)", "set Design = zip")
     sweep(folder, "zip")
@@ -97,13 +97,6 @@ def test_designs(folder):
     expect(list(rows[P]) == [2, 3] and list(rows[CHI]) == [0.1, 0.2], "zip takes the rows of a CSV file")
     many = sweep(folder, "many", command=on_ranks(MPIRUN, 4))
     expect(many.returncode == 0 and same_columns(rows, table(folder / "many")), "more ranks than points give the same table")
-    for design in ("random", "latin hypercube"):  # how their points are spread: unit/sweep_design
-        write(folder, f"{P} : uniform(1.5, 4); {CHI} : loguniform(0.01, 0.4)",
-              f"set Design = {design}\n set Number of points = 6\n set Seed = 3")
-        sweep(folder, design)
-        sweep(folder, "again", "--overwrite")
-        rows = table(folder / design)
-        expect(len(set(rows[P])) == 6 and same_columns(rows, table(folder / "again")), f"{design}: the same seed gives the same table")
     values = ["max(1, s + 0.5)", "2", "1 + 0.1*min(2, s)"]
     write(folder, f'Body/Friction profile : {values[0]}, {values[1]}, "{values[2]}"; {CHI} : 0.1')
     result = sweep(folder, "formulas")

@@ -288,25 +288,6 @@ TEST(Pilots, ThatDoNotSettleAreGivenUp)
   EXPECT_THROW(pilots.run(run.numerics, ResolutionWish::size), PilotsUnsettled);
 }
 
-/// A robot that repeats its cycle: the run ends early, at a break, and knows the displacement at the end.
-TEST(Jumps, MayEndWhenCyclesRepeat)
-{
-  const auto times = equal_parts(0., 20., 160);
-  const auto run   = jumping(test::expression(-1., robot, 20.),
-                           "radau 9",
-                           {.degree = 6, .n_cells = 5, .tolerance = 1e-7, .initial_step = 1e-8, .grading = {3, 0.25}},
-                           {0.4},
-                           times);
-  const auto all   = run->simulate(Engine::automatic);
-  const auto early = run->simulate(Engine::automatic, {.energy_balance = true, .cycles = CycleWish{1., 1e-6}});
-  ASSERT_EQ(early.time.status, Status::finished);
-  ASSERT_TRUE(early.cycles);
-  EXPECT_EQ(early.cycles->computed + early.cycles->extrapolated, 20u);
-  EXPECT_GT(early.cycles->extrapolated, 10u);
-  EXPECT_NEAR(early.displacement / all.displacement, 1., 1e-6);
-  EXPECT_NEAR(early.energy_balance->stress_work / all.energy_balance->stress_work, 1., 1e-5);
-}
-
 /// An initial stretch that does not fit the ends makes layers like a stress that starts suddenly, and gets the same
 /// meshes.
 TEST(Jumps, AreMadeByAnInitialStretch)

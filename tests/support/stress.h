@@ -76,13 +76,4 @@ namespace crawler::test
   {
     expect_words(complaint(settings), words);
   }
-
-  /// Expects each of these values of entries of a generator to be refused, with the name of the entry and its range.
-  inline void
-  expect_outside_of_ranges(const std::string &generator, const std::string &entries)
-  {
-    for (const Settings::value_type &entry : set(generator + "; " + entries))
-      if (entry.second != generator)
-        expect_complaint({entry}, {entry.first + ": ", "expected"});
-  }
 } // namespace crawler::test

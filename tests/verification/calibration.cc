@@ -2,181 +2,45 @@
 //
 // Is the error that a run reports larger than its true error, and not much larger? (doc/numerics.md, "Error bounds")
 //   [mpirun -n N] calibration SCENES OUTPUT.csv [ACCURACY ...]       (default: 1e-3 1e-5 1e-8)
-// Runs so many random scenes (random_scenes.h), or those from one number to another (300-519; from 10000 on their
-// stresses start or jump suddenly; from 20000 on they are hard to judge), at each accuracy as
-// `crawler run` does, and compares them with a far finer run in the position form, of degree 8, by radau 5 through
-// PETSc; its own error is the difference to bdf. Where that form cannot hold the stretch the reference is the stretch
-// form's for a hundred times smaller an Accuracy. Writes a row for each run and prints a table. Exit status 1 if less
-// than 99 % of the true errors are below the reported ones (one miss is admitted in any case), one is three times as
-// large, or the median of reported over true is above 10.
-#include "random_scenes.h"
+// Runs so many random scenes (random_scenes.h), or those from one number to another (300-519; the ten thousands choose
+// the family: from 10000 on their stresses start or jump suddenly, from 20000 on they are hard to judge, from 30000 on
+// bodies are soft), at each accuracy as `crawler run` does, and compares them with second_method.h, asked for a tenth
+// of the smallest accuracy, or, where that knows less, with the stretch form at a hundredth of it. Writes a row for
+// each run and prints a table. Exit status 1 if less than 99 % of the true errors are below the reported ones (one miss
+// is admitted in any case), one is three times as large, or, but for soft bodies, the median of reported over true is
+// above 10.
+#include "second_method.h"
 
-#include <crawler/accuracy/error_estimate.h>
-#include <crawler/accuracy/mesh_choices.h>
-#include <crawler/accuracy/mesh_family.h>
-#include <crawler/accuracy/run_to_accuracy.h>
+#include <crawler/accuracy/answer.h>
 #include <crawler/base/archive.h>
 #include <crawler/base/communication.h>
-#include <crawler/base/exceptions.h>
 #include <crawler/base/mpi_session.h>
 #include <crawler/base/work_queue.h>
-#include <crawler/run/self_check.h>
+#include <crawler/run/cycle_stop.h>
 
 #include <algorithm>
 #include <fstream>
-#include <limits>
 #include <map>
 
 namespace
 {
   using namespace crawler;
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  using namespace crawler::test;
   /// The error of a reference that can judge an error is at most this part of it.
   constexpr double part_of_reported = 0.05;
+  /// No reference is waited for longer [steps].
+  constexpr unsigned long limit = 400000;
 
-  /// A displacement; not a number if the run did not finish, and then why.
-  struct Reference
+  RandomScene
+  scene_of(const unsigned int number, const std::filesystem::path &folder)
   {
-    double displacement = unknown, bar = unknown;
-    std::string problem;
-  };
-
-  std::string
-  problem_of(const SimulationResult &result)
-  {
-    return fmt::format("{} at t = {:.4g}, smallest stretch {:.3g}",
-                       result.time.reason.empty() ? word_of(result.time.status) : result.time.reason.c_str(),
-                       result.time.time,
-                       result.min_stretch.value);
-  }
-
-  /// The displacement by an engine that the runs do not use, and by finer meshes and steps.
-  double
-  displacement(const Parameters &parameters, const std::string &integrator)
-  {
-    Parameters p                 = parameters;
-    p.accuracy                   = integrator == "bdf" ? 3e-10 : 1e-9;
-    p.time.integrator            = integrator;
-    p.time.engine                = Engine::petsc;
-    p.time.max_steps             = 40000;
-    p.time.cycle_stop            = CycleStopMode::off;
-    p.discretization.formulation = FormulationEntry::position;
-    p.discretization.mesh        = MeshKind::uniform;
-    p.discretization.degree      = 8;
-    p.output.energy_balance      = false;
-    const Scene scene            = p.create_scene();
-    Numerics numerics            = choose_numerics({p, scene})->numerics;
-    numerics.n_cells             = std::clamp(numerics.n_cells, 8u, 128u); // layers of a start ask for thousands
-    if (integrator == "bdf")                                               // so that the bar knows the mesh, too
-      numerics.n_cells += (numerics.n_cells + 2) / 3;
-    Simulation simulation(MPI_COMM_SELF, scene, p.time, numerics);
-    const SimulationResult result = simulation.run({}, {});
-    return result.time.status == Status::finished ? result.displacement : unknown;
-  }
-
-  Reference
-  displacement_of_smooth(const Parameters &parameters)
-  {
-    Reference reference;
-    reference.displacement = displacement(parameters, "radau 5");
-    reference.bar          = std::abs(displacement(parameters, "bdf") - reference.displacement);
-    return reference;
-  }
-
-  /// By the stretch form, which reports its own error.
-  Reference
-  displacement_by_stretch(const Parameters &parameters, const test::RandomScene &random, const double accuracy)
-  {
-    Parameters p                 = parameters;
-    p.accuracy                   = accuracy;
-    p.time.cycle_stop            = CycleStopMode::off;
-    p.discretization.formulation = FormulationEntry::stretch;
-    p.output.energy_balance      = false;
-    const Scene scene            = random.create(p);
-    if (!reason_against_stretch_form(scene).empty())
-      return {unknown, unknown, "the stretch form cannot compute it"};
-    const auto choice             = choose_numerics({p, scene});
-    const SimulationResult result = answer_of_family({p, scene}, *choice, {}).result;
-    if (!result.error || !std::isfinite(result.error->total))
-      return {unknown, unknown, "stretch form: " + problem_of(result)};
-    return {result.displacement, result.error->total, ""};
-  }
-
-  /// The same for a jumping scene, on graded meshes; the bar is the difference of two such displacements, on two
-  /// engines.
-  Reference
-  displacement_of_jumping(const Parameters &parameters, const test::RandomScene &random)
-  {
-    Parameters p       = parameters;
-    p.accuracy         = 1e-3;
-    p.time.cycle_stop  = CycleStopMode::off;
-    const Scene scene  = random.create(p);
-    const double rough = std::abs(
-      Simulation(MPI_COMM_SELF, scene, p.time, choose_numerics({p, scene})->numerics).run({}, {}).displacement);
-    Reference reference;
-    const auto run = [&](const std::string &integrator,
-                         const std::string &engine,
-                         const double tolerance,
-                         const Grading &grading,
-                         const unsigned int n_cells = 14) {
-      Numerics n                    = {.degree    = 8,
-                                       .n_cells   = n_cells,
-                                       .tolerance = std::max(tolerance * rough, 3e-14 * scene.body.length),
-                                       .grading   = grading};
-      n.initial_step                = first_step_on_graded_mesh(scene, n);
-      TimeParameters time           = p.time;
-      time.integrator               = integrator;
-      time.engine                   = from_word<Engine>(engine).value();
-      time.max_steps                = 100000;
-      const SimulationResult result = Simulation(MPI_COMM_SELF, scene, time, n).run({}, {});
-      if (result.time.status == Status::finished)
-        return result.displacement;
-      reference.problem += (reference.problem.empty() ? "" : "; ") + integrator + ": " + problem_of(result);
-      return unknown;
-    };
-    // The tiny first steps of the finest cells of stiff bodies may fail.
-    double first = run("radau 9", "petsc", 1e-8, {9, 0.35});
-    if (!std::isfinite(first))
-      first = run("radau 9", "petsc", 1e-7, {8, 0.35});
-    double second = run("radau 5", "automatic", 1e-9, {11, 0.4}, 20);
-    if (!std::isfinite(second))
-      second = run("radau 5", "automatic", 1e-9, {8, 0.4}, 20);
-    reference.displacement = first;
-    reference.bar          = std::abs(second - first);
-    return reference;
-  }
-
-  /// The same by steps that no event can escape, and of all cycles.
-  Reference
-  displacement_by_short_steps(const Parameters &parameters, const test::RandomScene &random)
-  {
-    Reference reference;
-    const Scene scene                = random.create(parameters);
-    Parameters rough                 = parameters;
-    rough.accuracy                   = 1e-6;
-    rough.discretization.formulation = FormulationEntry::position;
-    const Numerics by_rule           = choose_numerics({rough, scene})->numerics;
-    const auto run = [&](const std::string &integrator, const double tolerance, const unsigned int more) {
-      Numerics n   = by_rule;
-      n.degree     = 8;
-      n.mesh       = {};
-      n.n_cells    = std::max(12u, by_rule.n_cells) + more;
-      n.tolerance  = tolerance * by_rule.tolerance;
-      n.integrator = integrator;
-      if (random.step > 0.)
-        n.step_limits = {{0., random.step}};
-      TimeParameters time           = parameters.time;
-      time.integrator               = integrator;
-      time.max_steps                = 400000;
-      const SimulationResult result = Simulation(MPI_COMM_SELF, scene, time, n).run({}, {});
-      if (result.time.status == Status::finished)
-        return result.displacement;
-      reference.problem += (reference.problem.empty() ? "" : "; ") + integrator + ": " + problem_of(result);
-      return unknown;
-    };
-    reference.displacement = run("radau 9", 1e-5, 0);
-    reference.bar          = std::abs(run("radau 9", 1e-3, 5) - reference.displacement);
-    return reference;
+    static const std::vector<std::vector<Family>> families = {
+      {Family::smooth},
+      {Family::jumps},
+      {Family::pulse, Family::event, Family::long_gait, Family::soft, Family::robot},
+      {Family::soft}};
+    const std::vector<Family> &which = families.at(number / 10000);
+    return random_scene(which[number % which.size()], number, folder);
   }
 
   struct Row
@@ -197,50 +61,53 @@ namespace
 
   /// All rows of one scene; none if it inverts or has no reference.
   std::vector<Row>
-  rows_of(const unsigned int number, const std::vector<double> &accuracies)
+  rows_of(const unsigned int number, const std::vector<double> &accuracies, const std::filesystem::path &folder)
   {
-    const bool jumping             = number >= test::first_jumping_scene;
-    const bool hard                = number >= test::first_hard_scene;
-    const test::RandomScene random = hard      ? test::hard_scene(number)
-                                     : jumping ? test::jumping_scene(number)
-                                               : test::random_scene(number);
-    Parameters parameters          = test::parameters_with(random.settings);
-    Reference reference = random.step > 0. || random.kind == "long" ? displacement_by_short_steps(parameters, random)
-                          : jumping || random.kind == "sudden"      ? displacement_of_jumping(parameters, random)
-                                                                    : displacement_of_smooth(parameters);
-    const double least  = *std::min_element(accuracies.begin(), accuracies.end());
-    if (!(reference.bar <= part_of_reported * least * std::abs(reference.displacement)))
+    const RandomScene random = scene_of(number, folder);
+    Parameters parameters    = parameters_with(random.settings);
+    std::vector<Row> rows;
+    std::vector<Task> tasks;
+    for (const double accuracy : accuracies)
     {
-      const Reference other = displacement_by_stretch(parameters, random, std::max(0.01 * least, 1e-8));
-      if (!(reference.bar <= other.bar) && std::isfinite(other.bar))
+      parameters.accuracy             = accuracy;
+      const Scene scene               = parameters.create_scene();
+      tasks.emplace_back().parameters = parameters;
+      tasks.back().computed           = answer_in_memory(
+        {parameters, scene}, {.energy_balance = true, .cycles = cycle_wish(parameters, scene, /*has_pictures=*/false)});
+    }
+    const auto finest                = std::min_element(accuracies.begin(), accuracies.end()) - accuracies.begin();
+    parameters.output.energy_balance = false;
+    parameters.accuracy              = std::max(0.1 * accuracies[finest], 1e-9);
+    Judgement reference              = by_position_form(parameters, random, tasks[finest], limit);
+    if (!(reference.error <= part_of_reported * accuracies[finest] * std::abs(reference.displacement)))
+    {
+      parameters.accuracy                   = std::max(0.01 * accuracies[finest], 1e-8);
+      parameters.discretization.formulation = FormulationEntry::stretch;
+      const Judgement other                 = by_program(parameters, "stretch", limit);
+      if (!(reference.error <= other.error) && std::isfinite(other.error))
         reference = other;
     }
-    std::vector<Row> rows;
-    if (!std::isfinite(reference.bar))
+    if (!std::isfinite(reference.error))
     {
       fmt::print("scene {} ({}) has no reference; {}\n", number, random.kind, reference.problem);
       return rows;
     }
-    for (const double accuracy : accuracies)
+    for (std::size_t i = 0; i < tasks.size(); ++i)
     {
-      parameters.accuracy = accuracy;
-      const Scene scene   = random.create(parameters);
-      const Answer answer = answer_in_memory(
-        {parameters, scene}, {.energy_balance = true, .cycles = cycle_wish(parameters, scene, /*has_pictures=*/false)});
-      const SimulationResult &result = answer.result;
+      const SimulationResult &result = tasks[i].computed.result;
       const DisplacementError error  = result.error.value_or(DisplacementError());
       rows.push_back({number,
                       random.kind,
-                      result.time.status == Status::finished ? "finished" : result.time.reason,
-                      accuracy,
+                      reason_of(result),
+                      accuracies[i],
                       reference.displacement,
-                      reference.bar,
+                      reference.error,
                       result.displacement,
                       error.total,
                       error.space,
                       error.time,
-                      answer.choice.wanted_error,
-                      scene.body.length,
+                      tasks[i].computed.choice.wanted_error,
+                      parameters.body.length,
                       result.mesh.most_cells,
                       result.time.steps,
                       result.refinements,
@@ -312,10 +179,10 @@ namespace
                  judged,
                  100. * covered / judged,
                  100. * met / judged,
-                 test::quantile(ratios, 0.5),
+                 quantile(ratios, 0.5),
                  refined,
                  failed,
-                 test::quantile(overheads, 0.5));
+                 quantile(overheads, 0.5));
     }
   };
 } // namespace
@@ -341,10 +208,11 @@ main(int argc, char **argv)
   if (accuracies.empty())
     accuracies = {1e-3, 1e-5, 1e-8};
 
+  const auto folder = std::filesystem::path(argv[2]).replace_extension("");
   WorkQueue queue(MPI_COMM_WORLD, n_scenes);
   std::vector<Row> rows;
   while (const auto number = queue.next())
-    for (const Row &row : rows_of(static_cast<unsigned int>(first + *number), accuracies))
+    for (const Row &row : rows_of(static_cast<unsigned int>(first + *number), accuracies, folder))
       rows.push_back(row);
   const auto all = gather(archived(rows), MPI_COMM_WORLD);
   if (rank_of(MPI_COMM_WORLD) > 0)
@@ -381,7 +249,7 @@ main(int argc, char **argv)
   // The median of few ratios says little.
   const double max_median = total.judged < 50 ? 20. : 10.;
   const bool kept         = total.judged - total.covered <= std::max(1., 0.01 * total.judged) &&
-                    test::quantile(total.ratios, 0.5) <= max_median && least > 1. / 3.;
+                    (first >= 30000 || quantile(total.ratios, 0.5) <= max_median) && least > 1. / 3.;
   fmt::print("{}\n", kept ? "the promise is kept" : "THE PROMISE IS NOT KEPT");
   return kept ? 0 : 1;
 }

@@ -119,12 +119,13 @@ TEST(CycleStop, PartOfACycle)
   EXPECT_EQ(pair.cycles.cycles->computed + pair.cycles.cycles->extrapolated, 7u);
 }
 
-/// Where a ramp or a window delays the start, cycles begin behind it.
+/// Where a ramp or a window delays the start, cycles begin behind it. A stress that jumps ends them at its breaks.
 TEST(CycleStop, BehindAStart)
 {
   for (const std::string stress :
        {"travelling wave; Amplitude = 0.3; Ramp duration = 2.3",
         "segments; Number of segments = 4; Amplitude = 0.3; Frequency = 1; Rate limit = 1.5; Ramp duration = 0.5",
+        "segments; Number of segments = 2; Amplitude = 0.3",
         "sum; Term 1/Generator = travelling wave; Term 1/Travelling wave/Amplitude = 0.25; "
         "Term 1/Travelling wave/Ramp duration = 0.25; "
         "Term 2/Combine = multiply; Term 2/Generator = expression; Term 2/Expression/Active stress = 0.5 + s/L; "

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// The extremes of what can be asked for: each ends in the right outcome, under its name, with the right number. The
-// exponents, moduli and collapses of an independent solver are in extremes.cc.
+// The extremes of what can be asked for: each ends in the right outcome, under its name, with the right number.
 #include "../support/run_text.h"
 #include "../support/test.h"
 
 #include <crawler/base/exceptions.h>
+
+#include <nlohmann/json.hpp>
 
 using namespace crawler;
 using test::with;
@@ -17,6 +18,41 @@ namespace
   /// That of a = +1, c = -1, whose mirror image is c = 1.
   constexpr double prograde = -8.1377661410e-2;
 } // namespace
+
+/// Exponents, moduli and collapses of an independent solver (contrib/reference/extremes.py), with the automatic choice
+/// of form and mesh: a run ends as the body does, with the displacement, or the time of the inversion, that it says.
+TEST(Extremes, ThoseOfAnIndependentSolver)
+{
+  const auto words = [](const nlohmann::json &numbers) {
+    std::string text;
+    for (const double number : numbers)
+      text += (text.empty() ? "" : ", ") + test::text(number);
+    return text.empty() ? "0" : text;
+  };
+  std::ifstream file(CRAWLER_SOURCE_DIR "/contrib/reference/extremes.json");
+  const auto rows = nlohmann::json::parse(file)["rows"];
+  EXPECT_FALSE(rows.empty());
+  for (const auto &row : rows)
+  {
+    const auto name             = row["name"].get<std::string>();
+    const auto [result, choice] = test::run_with(
+      test::with(test::wave(row["exponent"], row["chi"], row["speed"], row["end_time"], row["elastic_modulus"]),
+                 "Accuracy = 1e-3; optimal wave; Sine coefficients = {}; Cosine coefficients = {}",
+                 words(row["sine"]),
+                 words(row["cosine"])));
+    if (row.contains("inversion") && !row["inversion"].is_null())
+    {
+      ASSERT_TRUE(result.inversion) << name;
+      EXPECT_NEAR(result.inversion->t, row["inversion"]["t"].get<double>(), 1e-3 * row["end_time"].get<double>())
+        << name;
+      continue;
+    }
+    EXPECT_EQ(result.time.status, Status::finished) << name;
+    EXPECT_NEAR(
+      result.displacement, row["displacement"].get<double>(), choice.wanted_error + row["error"].get<double>())
+      << name;
+  }
+}
 
 TEST(Extremes, ThousandStrides)
 {

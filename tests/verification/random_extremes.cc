@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// Random scenes of everything that generators, laws and ranges allow (anything.h). The answer of `crawler run` is
-// compared with a second method: the position form of degree 8 through PETSc with far smaller steps, on a mesh of its
-// own, by radau 9 and, for its error, by radau 5 on a coarser mesh; where that does not decide, the other form or finer
-// automatic numerics, which report their errors. Where an answer seems wrong the second method gets more and more
+// Random scenes of everything that generators, laws and ranges allow (random_scenes.h). The answer of `crawler run` is
+// compared with that of second_method.h; where that does not decide, with the other form or finer automatic numerics,
+// which report their errors. Where an answer seems wrong the second method gets more and more
 // cells, and changes by these count as its error: all of its meshes may have missed a layer. An answer is wrong if the
 // difference is larger than both errors together
 // ("the bound only" if it is still as small as Accuracy asks for). Prints coverage, failures by reason, and the cost
@@ -15,15 +14,9 @@
 //     random_extremes FIRST-LAST OUT.csv [steps that a run of the second method may take; 0: nothing is compared
 //                                         [steps that the program may take]]
 //     random_extremes NUMBER --prm           prints the parameter file of one scene
-#include "../support/processor_time.h"
-#include "anything.h"
+#include "second_method.h"
 
-#include <crawler/accuracy/answer.h>
-#include <crawler/accuracy/mesh_choices.h>
-#include <crawler/base/exceptions.h>
 #include <crawler/base/mpi_session.h>
-#include <crawler/run/self_check.h>
-#include <crawler/studies/core/compute.h>
 
 #include <cstdio>
 #include <map>
@@ -31,7 +24,7 @@
 namespace
 {
   using namespace crawler;
-  using test::Settings;
+  using namespace crawler::test;
 
   /// What is required.
   constexpr double largest_failed_share = 0.005, largest_missed_share = 0.01, usual_seconds = 0.02, usual_share = 0.95,
@@ -40,35 +33,17 @@ namespace
   constexpr unsigned int fewest = 500;
   /// No answer is waited for longer, and no second method unless the user says so [steps].
   constexpr unsigned long own_limit = 200000, second_limit = 20000;
-  constexpr double longest = 60., longest_second = 20.; ///< of processor time [s]
   constexpr double most_cells =
     16.; ///< of the second method, where it does not agree, relative to those it begins with
   /// Of the answers so many must have been compared.
   constexpr double min_compared_share = 0.5;
   /// The error is larger than the reported one, but not larger than Accuracy asks for.
   constexpr const char *bound_only = "WRONG: the bound only";
-  /// Inversions inside agree if they are within this part of the duration.
-  constexpr double same_time = 0.03;
-
-  /// What one method says.
-  struct Judgement
-  {
-    std::string by;
-    double displacement = NAN, error = NAN;
-    std::optional<double> inversion; ///< its time
-    std::string problem;             ///< why it says nothing
-
-    bool
-    is_answer() const
-    {
-      return inversion || (std::isfinite(displacement) && std::isfinite(error));
-    }
-  };
 
   struct Row
   {
     unsigned int number = 0;
-    test::RandomScene scene;
+    RandomScene scene;
     std::string status, reason, form, verdict, refused;
     double accuracy = 0., seconds = 0., displacement = NAN, bound = NAN, inversion = NAN;
     Judgement second;
@@ -79,142 +54,6 @@ namespace
       return refused.empty() && status != "finished" && status != "inverted";
     }
   };
-
-  std::string
-  reason_of(const SimulationResult &result)
-  {
-    return result.time.reason.empty() ? word_of(result.time.status) : result.time.reason;
-  }
-
-  /// How long a computation is waited for.
-  class Patience
-  {
-  public:
-    Patience(const unsigned long steps, const double max_seconds)
-      : max_steps_(steps)
-      , max_seconds_(max_seconds)
-      , begin_(test::processor_seconds())
-    {
-    }
-
-    double
-    seconds() const
-    {
-      return test::processor_seconds() - begin_;
-    }
-    /// Called once a step.
-    bool
-    ends_now()
-    {
-      has_ended_ = has_ended_ || ++steps_ > max_steps_ || seconds() > max_seconds_;
-      return has_ended_;
-    }
-    bool
-    has_ended() const
-    {
-      return has_ended_;
-    }
-
-  private:
-    const unsigned long max_steps_;
-    const double max_seconds_, begin_;
-    unsigned long steps_ = 0;
-    bool has_ended_      = false;
-  };
-
-  /// What `crawler run` computes, stopped if it takes more than @p limit steps, or too long.
-  Task
-  computed(const Parameters &parameters, const unsigned long limit, const double max_seconds = longest)
-  {
-    Task task;
-    task.parameters = parameters;
-    Patience patience(limit, max_seconds);
-    compute_all({&task, 1}, std::numeric_limits<double>::infinity(), [&]() { return patience.ends_now(); });
-    task.seconds        = patience.seconds();
-    task.is_out_of_time = patience.has_ended();
-    return task;
-  }
-
-  /// The answer of the program for another form or accuracy.
-  Judgement
-  by_program(const Parameters &parameters, const std::string &name, const unsigned long limit)
-  {
-    const Task task                = computed(parameters, limit, longest_second);
-    const SimulationResult &result = task.computed.result;
-    if (task.error || task.is_out_of_time)
-      return {name, NAN, NAN, {}, task.error ? "refused" : "time_limit"};
-    if (result.inversion)
-      return {name, NAN, NAN, result.inversion->t, ""};
-    if ((result.time.status != Status::finished && result.time.reason != accuracy_not_met) || !result.error)
-      return {name, NAN, NAN, {}, reason_of(result)};
-    return {name, result.displacement, result.error->total, {}, ""};
-  }
-
-  /// Numerics that owe nothing to the choice of the program but a number of cells that is not smaller.
-  Judgement
-  by_position_form(const Parameters &parameters,
-                   const test::RandomScene &random,
-                   const Task &own,
-                   const unsigned long limit,
-                   const double more = 1.)
-  {
-    const Scene scene      = parameters.create_scene();
-    const Numerics &chosen = own.computed.choice.numerics;
-    const double L = scene.body.length, T = scene.end_time;
-    const bool own_is_position = chosen.n_cells > 0 && chosen.formulation == Formulation::position;
-    const bool is_graded = chosen.grading.levels > 0 || !own_is_position || parameters.body.initial_stretch != "1";
-    double cells         = std::max(12., 2. * L / random.length);
-    if (own_is_position)
-      cells = std::max(cells, 1.3 * chosen.n_cells * chosen.degree / 8.);
-    cells *= more;
-    const double size = std::max(std::abs(own.computed.result.displacement), 1e-4 * own.computed.result.size.largest_u);
-    const double wanted =
-      std::max(parameters.accuracy * (size > 0. && std::isfinite(size) ? size : 1e-3 * L), 1e-13 * L);
-    Judgement judgement;
-    judgement.by   = "position";
-    const auto run = [&](const std::string &integrator, const double tolerance, const double part) {
-      Numerics n;
-      n.degree  = 8;
-      n.n_cells = static_cast<unsigned int>(part * std::min(cells, 800.));
-      if (is_graded)
-        n.grading = {11, part < 1. ? 0.4 : 0.35};
-      n.tolerance         = std::max(tolerance * wanted, 3e-15 * L);
-      n.integrator        = integrator;
-      n.step_limits       = {{0., random.step}};
-      n.initial_step      = is_graded ? first_step_on_graded_mesh(scene, n) : 1e-3 * std::min(random.step, T / 8.);
-      TimeParameters time = parameters.time;
-      time.integrator     = integrator;
-      time.cycle_stop     = CycleStopMode::off;
-      time.engine         = Engine::petsc;
-      time.max_steps      = 1000000;
-      Patience patience(limit, longest_second);
-      SimulationResult result;
-      try
-      {
-        result = Simulation(MPI_COMM_SELF, scene, time, n).run({}, {}, {}, [&]() { return !patience.ends_now(); });
-      }
-      catch (const std::exception &error)
-      {
-        judgement.problem = error.what();
-        return result;
-      }
-      if (result.time.status != Status::finished)
-        judgement.problem = patience.has_ended() ? "time_limit" : reason_of(result);
-      return result;
-    };
-    const SimulationResult fine = run("radau 9", 1e-3, 1.);
-    if (fine.time.status != Status::finished && !fine.inversion)
-      return judgement;
-    const SimulationResult coarse = run("radau 5", 3e-2, 0.8);
-    if (fine.inversion && coarse.inversion && std::abs(fine.inversion->t - coarse.inversion->t) < same_time * T)
-      judgement.inversion = fine.inversion->t;
-    else if (fine.time.status == Status::finished && coarse.time.status == Status::finished)
-    {
-      judgement.displacement = fine.displacement;
-      judgement.error        = std::abs(fine.displacement - coarse.displacement) + 1e-14 * L;
-    }
-    return judgement;
-  }
 
   /// agree, WRONG, or undecided.
   std::string
@@ -304,10 +143,10 @@ namespace
   {
     Row row;
     row.number = number;
-    row.scene  = test::anything(number, folder);
+    row.scene  = random_scene(Family::everything, number, folder);
     try
     {
-      const Parameters parameters    = test::parameters_with(row.scene.settings);
+      const Parameters parameters    = parameters_with(row.scene.settings);
       row.accuracy                   = parameters.accuracy;
       const Task own                 = computed(parameters, max_steps);
       row.seconds                    = own.seconds;
@@ -340,8 +179,8 @@ namespace
     for (const auto &[entry, value] : settings)
     {
       const std::size_t slash = entry.rfind('/');
-      text += test::in_section(slash == std::string::npos ? "" : entry.substr(0, slash),
-                               fmt::format("set {} = {}", entry.substr(slash + 1), value));
+      text += in_section(slash == std::string::npos ? "" : entry.substr(0, slash),
+                         fmt::format("set {} = {}", entry.substr(slash + 1), value));
     }
     return text;
   }
@@ -407,9 +246,9 @@ namespace
                  compared,
                  missed,
                  wrong,
-                 test::quantile(seconds, 0.5),
-                 test::quantile(seconds, usual_share),
-                 test::quantile(seconds, 1.));
+                 quantile(seconds, 0.5),
+                 quantile(seconds, usual_share),
+                 quantile(seconds, 1.));
     }
   };
 
@@ -471,9 +310,9 @@ namespace
     for (const Row &row : slow)
       print(row);
     const bool kept = all.wrong == 0 && all.missed <= std::max(1., largest_missed_share * all.n) &&
-                      (all.n < fewest || (all.failed < largest_failed_share * all.n &&
-                                          test::quantile(all.seconds, usual_share) < usual_seconds &&
-                                          test::quantile(all.seconds, 1.) < max_seconds));
+                      (all.n < fewest ||
+                       (all.failed < largest_failed_share * all.n &&
+                        quantile(all.seconds, usual_share) < usual_seconds && quantile(all.seconds, 1.) < max_seconds));
     const bool enough = !is_compared || all.compared >= min_compared_share * (all.finished + all.inverted);
     fmt::print("{} of {} answers compared: {}\n",
                all.compared,
@@ -496,7 +335,7 @@ main(int argc, char **argv)
   const int n_numbers = argc < 3 ? 0 : std::sscanf(argv[1], "%u-%u", &first, &last);
   if (n_numbers == 1 && std::string(argv[2]) == "--prm")
   {
-    fmt::print("{}", parameter_file(test::anything(first, ".").settings));
+    fmt::print("{}", parameter_file(random_scene(Family::everything, first, ".").settings));
     return 0;
   }
   if (n_numbers < 1)
@@ -511,7 +350,7 @@ main(int argc, char **argv)
   std::ofstream out(argv[2]);
   out << "number,kind,form,accuracy,status,reason,seconds,displacement,bound,inversion,second,second displacement,"
          "second error,second inversion,second problem,verdict\n";
-  computed(test::parameters_with({}), own_limit); // what a process does once
+  computed(parameters_with({}), own_limit); // what a process does once
   std::vector<Row> rows;
   for (unsigned int number = first; number <= last; ++number)
   {

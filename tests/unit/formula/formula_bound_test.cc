@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/random.h"
 #include "../../support/test.h"
-
-#include "../../verification/random_scenes.h"
 
 #include <crawler/formula/formula_bound.h>
 #include <crawler/formula/formula_gradient.h>

@@ -230,15 +230,6 @@ TEST(Segments, ManyAreATravellingWave)
     }
 }
 
-TEST(Segments, EntriesHaveRanges)
-{
-  test::expect_outside_of_ranges(
-    "segments",
-    "Number of segments = 0; Amplitude = 0.1, x; Frequency = 0; Phase lag = 1.5; Phase = much; "
-    "Direction = up; Duty cycle = 1; Switching = fast; Front width = 0.6; Gap = -1; "
-    "Saturation = 0; Rate limit = -2; Ramp duration = -1");
-}
-
 TEST(Segments, SaysWhatIsWrong)
 {
   EXPECT_NO_THROW(Segments({}, 1., 1.));

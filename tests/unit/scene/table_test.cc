@@ -140,13 +140,6 @@ TEST(Table, Breaks)
   EXPECT_EQ(ActiveStressTable({.file = Samples(40, 5, wave_of).csv}, 1., 1.).breaks_in_space(), List());
 }
 
-TEST(Table, EntriesHaveRanges)
-{
-  test::expect_outside_of_ranges("table",
-                                 "Interpolation = spline; Outside = zero; Outside in s = periodic; Unit of s = 0; "
-                                 "Unit of t = -1; Unit of m = mN");
-}
-
 TEST(Table, SaysWhatIsWrong)
 {
   const Samples small(3, 5, wave_of), good(5, 5, wave_of), high(5, 5, wave_of, 100.), late(5, 5, wave_of, 1., 2., 3.),

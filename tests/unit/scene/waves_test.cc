@@ -295,17 +295,3 @@ TEST(Waves, RefuseWhatMakesNoSense)
   expect_complaint(pulse("Start position = 2"), {"Active stress/Pulse/Speed: ", "from 2 to 7"});
   expect_complaint(pulse("Width = 1e-5"), {"Active stress/Pulse/Width: ", "at least 0.0001"});
 }
-
-TEST(Waves, EntriesHaveRanges)
-{
-  test::expect_outside_of_ranges(
-    "travelling wave",
-    "Wave number = -1; Wave number = 1001; Frequency = -1; Wave speed = -1; Profile = triangle; "
-    "Direction = left; Given by = period; Duty cycle = 1; Front width = 0.6; Window edge = -0.1; "
-    "Ramp duration = -1; Amplitude = nan; Offset = much; Phase = inf; Window start = -0.2");
-  test::expect_outside_of_ranges("standing wave",
-                                 "Frequency = -1; Wave number = -1; Phase in space = x; Profile = x; Phase = ");
-  test::expect_outside_of_ranges("pulse",
-                                 "Shape = square; Width = 0; Speed = -1; Direction = up; Repetition period = -1; "
-                                 "Start position = x; Amplitude = ");
-}
