@@ -120,10 +120,4 @@ namespace crawler
   {
     (*source_)(step, sources);
   }
-
-  bool
-  LaneAdjoint::laws(unsigned int, const LanePoints &points)
-  {
-    return laws_->evaluate(points);
-  }
 } // namespace crawler

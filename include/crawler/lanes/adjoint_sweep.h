@@ -32,7 +32,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     AdjointSweep(const LaneSetup &setup, LaneAdjointHost *host, double *memory)
       : setup_(setup)
       , host_(host)
-      , system_(setup, host)
+      , system_(setup)
       , n_(system_.n_unknowns)
       , stages_(setup, system_)
       , memory_(memory)
@@ -58,7 +58,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     bool
     run(const LaneBody &body, const LanePast &past)
     {
-      system_.set_body(0, body, true);
+      system_.set_body(0, body);
       for (int d = 0; d < n_; ++d)
       {
         lambda_[d]   = past.gradient[d];

@@ -99,8 +99,6 @@ namespace crawler
     step(unsigned int step, const double *mu, const double *zeta) override;
     void
     sources(unsigned int step, const LaneSources &sources) override;
-    bool
-    laws(unsigned int lane, const LanePoints &points) override;
 
     const Scene &scene_;
     const std::shared_ptr<const LaneTables> tables_;

@@ -29,10 +29,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static constexpr bool gives_rates = false; ///< for LaneHost::look_inside
     static constexpr bool keeps_tries = false;
 
-    StretchSystem(const LaneSetup &setup, LawHost *host)
+    explicit StretchSystem(const LaneSetup &setup)
       : n_points(static_cast<int>(setup.n_cells))
       , setup_(setup)
-      , host_(host)
       , nodes_{setup.stretch.node_rule, n_points, setup.sizes, setup.direction}
       , cells_(n_points)
     {
@@ -50,8 +49,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     void
-    set_body(const int l, const LaneBody &body, const bool)
+    set_body(const int l, const LaneBody &body)
     {
+      host_ = body.host;
       set_lane(k_, l, body.k);
       set_lane(a_, l, body.a);
       friction_.set(l, -body.a);
@@ -172,7 +172,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       constexpr double nothing = 1e-300;
       if constexpr (lanes == 1)
         if ((setup_.laws & LaneLaws::general) != 0) // the unknowns are no powers
-          return host_->cell_laws(*t, m, q, q_dot, nodes_.laws);
+          return host_->evaluate_cells(*t, m, q, q_dot, nodes_.laws);
       find_stretch(q);
       Pack least = broadcast<Pack>(1.);
       for (int j = 0; j < n_points; ++j)
@@ -195,7 +195,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     const LaneSetup &setup_;
-    LawHost *const host_;
+    LawHost *host_ = nullptr; ///< of a general body
     StretchNodes<Pack> nodes_;
     LaneFriction<Pack> friction_; ///< friction that gives the mobility, w^-a
     Pack k_, a_;

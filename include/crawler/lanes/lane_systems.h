@@ -24,12 +24,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static constexpr bool gives_rates = true;  ///< for LaneHost::look_inside
     static constexpr bool keeps_tries = true;  ///< a failed try is a guess, see Lane::control_step
 
-    PositionSystem(const LaneSetup &setup, LawHost *host)
+    explicit PositionSystem(const LaneSetup &setup)
       : n_unknowns(static_cast<int>(setup.n_cells * setup.degree + 1))
       , n_points(static_cast<int>(setup.n_cells * (setup.degree + 1)))
       , setup_(setup)
       , is_general_((setup.laws & LaneLaws::general) != 0)
-      , general_(setup, host)
+      , general_(setup)
       , kernels_(lane_kernels<Pack>(setup.degree, setup.n_cells))
     {
       mesh_.n_cells = static_cast<int>(setup.n_cells);
@@ -44,11 +44,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     const int n_controlled = n_unknowns; ///< unknowns whose error is controlled
 
     void
-    set_body(const int l, const LaneBody &body, const bool is_busy)
+    set_body(const int l, const LaneBody &body)
     {
       set_lane(mesh_.k, l, body.k);
       mesh_.friction.set(l, body.a);
-      general_.set_body(l, body, is_busy);
+      general_.set_body(l, body);
     }
 
     Pack

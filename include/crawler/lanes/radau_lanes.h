@@ -29,7 +29,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     RadauLanes(const LaneSetup &setup, LaneHost *host, double *memory)
       : setup_(setup)
       , host_(host)
-      , step_(setup, host)
+      , step_(setup)
       , memory_(memory)
     {
       step_.lay_out(memory_);
@@ -67,21 +67,13 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
   private:
-    /// Takes the next body for a lane, or one at rest that needs nothing.
+    /// Takes the next body for a lane.
     void
     take_next(const int l)
     {
-      Lane &lane   = step_.bodies[l];
-      lane         = Lane();
-      lane.busy    = host_->take(l, lane.job);
-      lane.is_idle = !lane.busy;
-      if (lane.is_idle)
-        lane.job = LaneJob();
-      lane.t    = lane.job.start_time;
-      lane.next = lane.job.initial_step;
-      if (lane.job.progress != nullptr)
-        static_cast<LaneProgress &>(lane) = *lane.job.progress;
-      step_.system.set_body(l, lane.job.body, lane.busy);
+      Lane &lane = step_.bodies[l];
+      lane.take(*host_, l);
+      step_.system.set_body(l, lane.job.body);
       set_lane(step_.tolerance, l, lane.job.tolerance);
       step_.states.start(l, lane.job.start, lane.job.old_z);
       for (int i = 0; i < s * step_.n_points; ++i)
