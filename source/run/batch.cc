@@ -253,6 +253,7 @@ namespace crawler
         if (!step.is_settled || !lane.ends->is_good(step))
           return false;
         const unsigned int n = tableau_.n;
+        const LaneStage &end = step.stages[n - 1];
         for (unsigned int i = options_.energy_balance ? 0 : n - 1; i < n; ++i)
         {
           if (!(step.stages[i].min_stretch > small_stretch))
@@ -268,10 +269,11 @@ namespace crawler
             add_rates(lane, step, i);
         }
         if (options_.energy_balance)
-          lane.recorder->result.energy_balance->elastic_energy = step.elastic_energy;
-        const auto sample    = [&](const double time) { return sampler_.sample(step, time); };
-        const LaneStage &end = step.stages[n - 1];
-        lane.recorder->see_step(step.time, step.is_output_time, end.min_stretch, end.max_stretch, sample);
+          lane.recorder->result.energy_balance->elastic_energy = end.elastic_energy;
+        const auto sample = [&](const double time) { return sampler_.sample(step, time); };
+        if (lane.recorder->see_step(step.time, step.is_output_time, end.min_stretch, end.max_stretch, sample) ||
+            step.time == lane.output_times.back())
+          lane.recorder->result.displacement = sample(step.time).displacement;
         if (step.is_output_time && !lane.segments.is_last() && step.time == lane.segments.end())
         {
           lane.segments.go_on();
@@ -311,7 +313,6 @@ namespace crawler
         result.time.steps             = outcome.progress->steps;
         result.time.rejected_steps    = outcome.progress->rejected;
         result.time.newton_iterations = outcome.progress->newton;
-        result.displacement           = outcome.displacement;
         result.most_cells             = tables_->setup.n_cells;
         result.mesh = {result.most_cells, tables_->setup.degree, result.most_cells * tables_->setup.degree + 1, false};
         result.integrator = runs_[lane.run].time->integrator == "automatic" ? runs_[lane.run].numerics->integrator

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/lanes/adjoint_host.h>
 #include <crawler/lanes/adjoint_stages.h>
 #include <crawler/lanes/lane_engine.h>
 #include <crawler/lanes/lane_memory.h>

@@ -146,8 +146,8 @@ namespace crawler
   {
     double min_stretch, max_stretch;     ///< extremes among the samples
     unsigned int min_sample, max_sample; ///< cell*n_samples + sample
-    // Rates, if they are requested (CellIntegrals).
-    double stress_power, positive_power, absolute_power, dissipation, net_friction, abs_friction;
+    // Energy and rates, if they are requested (CellIntegrals).
+    double elastic_energy, stress_power, positive_power, absolute_power, dissipation, net_friction, abs_friction;
     double left_velocity, right_velocity; ///< velocities of the ends of the body
     // Stretch at both ends and its rate, if the active stress depends on them, too.
     double end_stretch[2], end_rate[2];
@@ -162,7 +162,6 @@ namespace crawler
     const double *y;         ///< [unknowns] displacement
     const double *z;         ///< [stages][unknowns] displacements in the stages relative to the start of the step
     const LaneStage *stages; ///< [n_stages]; the last one alone is filled unless `look_inside` is set
-    double elastic_energy;   ///< elastic energy at the end, if rates are requested
     bool is_settled;         ///< the velocity at the end was found, if rates are requested
     const LaneProgress *progress;
   };
@@ -176,7 +175,6 @@ namespace crawler
       gave_up  ///< given up for a reason that only the full path can tell
     } status;
     const LaneProgress *progress;
-    double displacement; ///< int u ds in the last accepted state
   };
 
   /// Host that supplies the bodies and takes the answers.
@@ -201,41 +199,8 @@ namespace crawler
     done(unsigned int lane, const LaneOutcome &outcome) = 0;
   };
 
-  /// Run to traverse backwards. All arrays belong to the caller.
-  struct LanePast
-  {
-    unsigned int n_steps = 0;
-    const double *times = nullptr, *sizes = nullptr; ///< [n_steps] ends and lengths of the steps
-    const double *z             = nullptr;           ///< [n_steps][stages][unknowns] as in LaneStep
-    const double *end           = nullptr;           ///< [unknowns] last state
-    const unsigned char *starts = nullptr;           ///< [n_steps] true if the body starts anew
-    const double *gradient      = nullptr; ///< [unknowns] derivative of the quantity of interest by the last state
-    bool has_sources            = false;   ///< true if the quantity of interest depends on the steps, too
-  };
-
-  /// Derivatives of the quantity of interest by the states of a step themselves. The arrays are 0 before.
-  struct LaneSources
-  {
-    double *by_end;             ///< [unknowns] the state at the end of the step
-    double *by_u, *by_velocity; ///< [stages][unknowns] displacements and velocities in the stages
-  };
-
-  /// Host of a run that is traversed backwards.
-  class LaneAdjointHost
-  {
-  public:
-    virtual ~LaneAdjointHost() = default;
-
-    /// Takes the adjoint of a step. @p mu: [stages][unknowns] derivative of the quantity of interest by the residuals,
-    /// with the sign of dF. @p zeta: [unknowns] M^-1 times the derivative of the quantity of interest by the state at
-    /// the end of the step: minus the effect of an impulse there; null unless the body starts anew with the next step,
-    /// or there is none.
-    virtual void
-    step(unsigned int step, const double *mu, const double *zeta) = 0;
-    /// Called before each step of a run that has sources.
-    virtual void
-    sources(unsigned int step, const LaneSources &sources) = 0;
-  };
+  class LaneAdjointHost;
+  struct LanePast;
 
   /// Engine compiled for one instruction set and one number of lanes.
   struct LaneEngine

@@ -3,7 +3,7 @@
 
 #include <crawler/equation/stretch_loops.h>
 #include <crawler/lanes/lane_engine.h>
-#include <crawler/lanes/lane_kernels.h>
+#include <crawler/lanes/lane_friction.h>
 #include <crawler/lanes/lane_memory.h>
 #include <crawler/lanes/lane_tridiagonal.h>
 
@@ -126,28 +126,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       find_stretch(q);
       for (int j = 0; j < n_points; ++j)
-      {
-        const Pack place = broadcast<Pack>(j);
-        result.min_at    = w_[j] < result.least ? place : result.min_at;
-        result.least     = smaller(w_[j], result.least);
-        result.max_at    = w_[j] > result.most ? place : result.max_at;
-        result.most      = w_[j] > result.most ? w_[j] : result.most;
-      }
-    }
-
-    /// Integral of u over the body.
-    Pack
-    integral(const Pack *q)
-    {
-      find_stretch(q);
-      Pack u = q[n_points], sum = Pack{};
-      for (int j = 0; j < n_points; ++j)
-      {
-        const Pack change = setup_.sizes[j] * (w_[j] - 1.);
-        sum += setup_.sizes[j] * (u + 0.5 * change);
-        u += change;
-      }
-      return sum;
+        result.stretch.see(w_[j], broadcast<Pack>(j));
     }
 
   private:

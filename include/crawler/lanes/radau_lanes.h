@@ -2,7 +2,6 @@
 #pragma once
 
 #include <crawler/lanes/lane_engine.h>
-#include <crawler/lanes/lane_kernels.h>
 #include <crawler/lanes/lane_memory.h>
 #include <crawler/lanes/lane_stretch.h>
 #include <crawler/lanes/lane_systems.h>
@@ -171,10 +170,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       step_.system.look(step_.times[i], u, step_.states.v, step_.m + i * step_.n_points, host_->look_inside, look);
       const LaneIntegrals<Pack> &sums = look.sums;
       for (int l = 0; l < lanes; ++l)
-        stages_[l][i] = {get_lane(look.least, l),
-                         get_lane(look.most, l),
-                         static_cast<unsigned int>(get_lane(look.min_at, l)),
-                         static_cast<unsigned int>(get_lane(look.max_at, l)),
+        stages_[l][i] = {get_lane(look.stretch.least, l),
+                         get_lane(look.stretch.most, l),
+                         static_cast<unsigned int>(get_lane(look.stretch.min_at, l)),
+                         static_cast<unsigned int>(get_lane(look.stretch.max_at, l)),
+                         get_lane(sums.elastic_energy, l),
                          get_lane(sums.stress_power, l),
                          get_lane(sums.positive_power, l),
                          get_lane(sums.absolute_power, l),
@@ -185,7 +185,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                          get_lane(step_.states.v[step_.n - 1], l),
                          {get_lane(look.end_stretch[0], l), get_lane(look.end_stretch[1], l)},
                          {get_lane(look.end_rate[0], l), get_lane(look.end_rate[1], l)}};
-      elastic_energy_ = sums.elastic_energy;
     }
 
     /// Handles a lane at the end of its step.
@@ -207,7 +206,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                                           reinterpret_cast<const double *>(step_.states.y) + l,
                                           reinterpret_cast<const double *>(step_.states.old_z) + l,
                                           stages_[l],
-                                          get_lane(elastic_energy_, l),
                                           get_lane(unsettled_, l) <= 1e3,
                                           &lane});
       if (lane.output_time == lane.job.n_output_times)
@@ -224,8 +222,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     end(const int l, const LaneOutcome::Status status)
     {
-      const Lane &lane = step_.bodies[l];
-      host_->done(l, {status, &lane, get_lane(step_.system.integral(step_.states.y), l)});
+      host_->done(l, {status, &step_.bodies[l]});
       step_.bodies[l].busy = false;
     }
 
@@ -247,8 +244,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     RadauStep<Pack, s, Equations> step_;
     LaneMemory memory_;
     LaneStage stages_[lanes][s]; ///< stages as the host sees them
-    Pack elastic_energy_{};
-    Pack unsettled_{}; ///< error of the velocity at the end of the step, relative to the requested one
-    double *scratch_;  ///< active stress of one lane
+    Pack unsettled_{};           ///< error of the velocity at the end of the step, relative to the requested one
+    double *scratch_;            ///< active stress of one lane
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET
