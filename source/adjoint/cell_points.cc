@@ -77,11 +77,11 @@ namespace crawler
   }
 
   BackwardStages::BackwardStages(const LaneRecord &steps, const RadauTableau &tableau)
-    : u(steps.end())
-    , v(steps.end().size())
+    : u(steps.end)
+    , v(steps.end.size())
     , steps_(steps)
     , tableau_(tableau)
-    , y_(steps.end())
+    , y_(steps.end)
   {
   }
 
@@ -103,10 +103,10 @@ namespace crawler
     radau::stage_rate(static_cast<int>(tableau_.n),
                       tableau_.inverse.data(),
                       static_cast<int>(stage),
-                      1. / steps_.size(step_),
+                      1. / steps_.sizes[step_],
                       z,
                       static_cast<int>(y_.size()),
                       v.data());
-    time = steps_.time(step_) - (1. - tableau_.c[stage]) * steps_.size(step_);
+    time = steps_.times[step_] - (1. - tableau_.c[stage]) * steps_.sizes[step_];
   }
 } // namespace crawler

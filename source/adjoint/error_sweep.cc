@@ -60,7 +60,7 @@ namespace crawler
       std::optional<SweptErrors>
       compute(const double length)
       {
-        result_.of_steps.resize(steps_.n_steps());
+        result_.of_steps.resize(steps_.times.size());
         result_.of_cells.resize(setup_.n_cells);
         const bool is_solved = adjoint_.solve(
           steps_,
@@ -102,7 +102,7 @@ namespace crawler
           stages_.go_to_stage(i);
           cells_.evaluate(stages_, at);
           cells_.evaluate(mu.data() + i * n, mu_at, mu_s);
-          forces_.evaluate(steps_.time(step), at);
+          forces_.evaluate(steps_.times[step], at);
           for (std::size_t p = 0; p < cells_.size(); ++p)
           {
             const double part = cells_.weight(p) * (forces_.body_force(p) * mu_s[p] + forces_.friction(p) * mu_at[p]);
@@ -175,7 +175,7 @@ namespace crawler
         std::vector<double> c(tableau_.n * n_bubbles(), 0.), mu_at(fine_.size()), mu_s(fine_.size());
         for (unsigned int round = 0; round <= rounds; ++round)
         {
-          const auto states            = with_bubbles(c, steps_.size(step));
+          const auto states            = with_bubbles(c, steps_.sizes[step]);
           std::vector<double> of_cells = without;
           for (unsigned int i = 0; i < tableau_.n; ++i)
           {
@@ -184,7 +184,7 @@ namespace crawler
               lost_ = true;
               return;
             }
-            fine_forces_.evaluate(steps_.time(step), states[i]);
+            fine_forces_.evaluate(steps_.times[step], states[i]);
             if (round + 1 >= rounds) // the last two rounds
             {
               fine_.evaluate(mu + i * n, mu_at, mu_s);

@@ -33,10 +33,10 @@ namespace crawler
       throw std::runtime_error("the run did not finish: " + result.time.message);
     displacement = result.displacement;
     double from  = 0.;
-    for (std::size_t i = 0; i < steps.n_steps(); ++i)
+    for (std::size_t i = 0; i < steps.times.size(); ++i)
     {
-      const bool follows = std::abs(steps.time(i) - steps.size(i) - from) <= 1e-9 * steps.size(i) + 1e-14;
-      from               = follows ? steps.time(i) : HUGE_VAL;
+      const bool follows = std::abs(steps.times[i] - steps.sizes[i] - from) <= 1e-9 * steps.sizes[i] + 1e-14;
+      from               = follows ? steps.times[i] : HUGE_VAL;
     }
     if (!(std::abs(from - 1.) <= 1e-12))
       throw std::runtime_error("the fused engine did not make all steps");

@@ -137,7 +137,7 @@ namespace crawler
           solve(adjoint);
         look_at_end();
         BackwardStages stages(run_.steps, tableau_);
-        for (std::size_t step = run_.steps.n_steps(); step-- > 0;)
+        for (std::size_t step = run_.steps.times.size(); step-- > 0;)
           look(step, stages);
         for (double &s : local_.s)
           s *= run_.units.length;
@@ -233,16 +233,16 @@ namespace crawler
       add_adjoint(const std::size_t slot, const Quantity quantity, std::optional<StretchInRun> stretch)
       {
         adjoints_.push_back(
-          {slot, quantity, std::move(stretch), {}, std::vector<std::vector<double>>(run_.steps.n_steps())});
+          {slot, quantity, std::move(stretch), {}, std::vector<std::vector<double>>(run_.steps.times.size())});
       }
 
       StretchInRun
       in_step(const StretchPlace &place) const
       {
         std::size_t step = 0;
-        while (step + 1 < run_.steps.n_steps() && run_.steps.time(step) < place.t)
+        while (step + 1 < run_.steps.times.size() && run_.steps.times[step] < place.t)
           ++step;
-        const double part = 1. + (place.t - run_.steps.time(step)) / run_.steps.size(step);
+        const double part = 1. + (place.t - run_.steps.times[step]) / run_.steps.sizes[step];
         StretchInRun stretch{place, step, std::vector<double>(tableau_.n)};
         radau::collocation_weights(
           static_cast<int>(tableau_.n), tableau_.c.data(), std::clamp(part, 0., 1.), stretch.weights.data());
@@ -284,7 +284,7 @@ namespace crawler
       add_stretch(Adjoint &adjoint, const std::size_t step, BackwardStages &stages, const LaneSources &sources)
       {
         StretchInRun &stretch = *adjoint.stretch;
-        const std::size_t n   = run_.steps.end().size();
+        const std::size_t n   = run_.steps.end.size();
         if (step + 1 == stretch.step)
         {
           const double rest = 1. - std::accumulate(stretch.weights.begin(), stretch.weights.end(), 0.);
@@ -329,7 +329,7 @@ namespace crawler
         else
           adjoint.value = run_.displacement / run_.units.length;
         const std::size_t n = gradient.size(), n_mu = tableau_.n * n;
-        adjoint.mu.resize(run_.steps.n_steps() * n_mu);
+        adjoint.mu.resize(run_.steps.times.size() * n_mu);
         const LaneRecord steps = // steps after a stretch have no effect on it
           adjoint.stretch ? run_.steps.first_steps(adjoint.stretch->step + 1) : run_.steps;
         BackwardStages stages(steps, tableau_);
@@ -359,9 +359,9 @@ namespace crawler
           }
           for (unsigned int i = 0; i < tableau_.n; ++i)
           {
-            const double weight = run_.steps.size(step) * tableau_.b[i];
+            const double weight = run_.steps.sizes[step] * tableau_.b[i];
             go_to_stage(stages, i);
-            own_.evaluate(run_.steps.time(step), at_, at_ends_);
+            own_.evaluate(run_.steps.times[step], at_, at_ends_);
             adjoint.value += weight * work_rate(adjoint.quantity, cells_, own_, at_, at_ends_);
             add_slopes_of_work(
               adjoint.quantity, weight, cells_, own_, at_, n, sources.by_u + i * n, sources.by_velocity + i * n);
@@ -386,7 +386,7 @@ namespace crawler
       void
       look_at_end()
       {
-        cells_.evaluate(run_.steps.end().data(), at_.u, at_.e);
+        cells_.evaluate(run_.steps.end.data(), at_.u, at_.e);
         for (const Quantity quantity : {Quantity::displacement, Quantity::stride})
           add_lengths(quantity, 1.);
       }
@@ -411,18 +411,18 @@ namespace crawler
         const auto stride = last_stride_of(run_.scene);
         if (!stride)
           return;
-        before_stride_ = run_.steps.n_steps();
-        for (std::size_t step = 0; step < run_.steps.n_steps(); ++step)
-          if (std::abs(run_.steps.time(step) - (1. - *stride)) <= 1e-9)
+        before_stride_ = run_.steps.times.size();
+        for (std::size_t step = 0; step < run_.steps.times.size(); ++step)
+          if (std::abs(run_.steps.times[step] - (1. - *stride)) <= 1e-9)
             before_stride_ = step;
-        if (std::abs(*stride - 1.) <= 1e-9 || before_stride_ < run_.steps.n_steps())
+        if (std::abs(*stride - 1.) <= 1e-9 || before_stride_ < run_.steps.times.size())
           stride_ = stride;
       }
 
       void
       look(const std::size_t step, BackwardStages &stages)
       {
-        const double end = run_.steps.time(step), h = run_.steps.size(step);
+        const double end = run_.steps.times[step], h = run_.steps.sizes[step];
         stages.go_back(step);
         for (unsigned int i = tableau_.n; i-- > 0;)
         {
@@ -438,7 +438,7 @@ namespace crawler
           {
             if (adjoint.stretch && step > adjoint.stretch->step)
               continue;
-            const std::size_t n = adjoint.mu.size() / (run_.steps.n_steps() * tableau_.n);
+            const std::size_t n = adjoint.mu.size() / (run_.steps.times.size() * tableau_.n);
             cells_.evaluate(adjoint.mu.data() + (step * tableau_.n + i) * n, mu_.values, mu_.slopes);
             if (is_last && !adjoint.zeta[step].empty())
               cells_.evaluate(adjoint.zeta[step].data(), zeta_.values, zeta_.slopes);
@@ -479,7 +479,7 @@ namespace crawler
           local_.elastic_modulus[p] += own_.inside.elastic(p, at_.e[p]) * mu_.slopes[p];
           local_.friction[p] += own_.inside.friction(p) * mu_.values[p];
         }
-        if (run_.steps.n_steps() * tableau_.n * cells_.size() > max_samples)
+        if (run_.steps.times.size() * tableau_.n * cells_.size() > max_samples)
           return;
         local_.times.push_back(at_.t * run_.units.time);
         for (std::size_t p = cells_.size(); p-- > 0;)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/equation/cell_kernels.h>
 #include <crawler/equation/cell_laws.h>
+#include <crawler/equation/cell_loops.h>
 #include <crawler/scene/friction_law.h>
 
 namespace crawler

@@ -27,7 +27,7 @@ namespace crawler
   }
 
   LaneBody
-  lane_body(const Scene &scene, const HostLaws *const laws)
+  lane_body(const Scene &scene, HostLaws *const laws)
   {
     LaneBody body{.k = scene.body.elastic_modulus, .a = scene.body.friction_exponent()};
     if (laws != nullptr)
@@ -35,6 +35,7 @@ namespace crawler
       body.k_profile        = laws->k.data();
       body.friction_profile = laws->b.data();
       body.direction        = scene.ground.direction;
+      body.host             = laws;
     }
     return body;
   }
@@ -67,5 +68,25 @@ namespace crawler
       feedback_->values(
         at.t, {span(at.w), span(at.rate), {}, {}}, {span(at.m), span(at.m_w), span(at.m_rate), std::span<double>()});
     return good;
+  }
+
+  HostCellLaws::HostCellLaws(const Scene &scene, const std::vector<double> &middles)
+    : scene_(scene)
+    , laws_(scene, middles)
+  {
+  }
+
+  double
+  HostCellLaws::evaluate_cells(
+    const double t, const double *m, const double *w, const double *rate, CellLaws<double> &at_cells)
+  {
+    const std::size_t n = laws_.friction.size();
+    const long bad      = laws_.evaluate(t, {w, n}, {rate, n}, m);
+    // Power laws fail only where the stretch is lost.
+    if (bad >= 0 && w[bad] > 0. && !scene_.friction->is_power_law)
+      bad_friction = {w[bad], laws_.friction[static_cast<std::size_t>(bad)]};
+    at_cells                = laws_.at_cells();
+    const bool may_be_empty = scene_.friction_exponent() < 0.;
+    return bad >= 0 ? -1. : may_be_empty ? 1. : *std::min_element(w, w + n);
   }
 } // namespace crawler

@@ -8,32 +8,32 @@ namespace crawler
   LaneRecord::add(const LaneStep &step, const unsigned int n_stages, const std::size_t n_unknowns, const bool starts)
   {
     n_per_step_ = n_stages * n_unknowns;
-    while (!times_.empty() && times_.back() > step.time - 0.5 * step.size)
+    while (!times.empty() && times.back() > step.time - 0.5 * step.size)
     {
-      times_.pop_back();
-      sizes_.pop_back();
+      times.pop_back();
+      sizes.pop_back();
       starts_.pop_back();
       z_.resize(z_.size() - n_per_step_);
     }
-    times_.push_back(step.time);
-    sizes_.push_back(step.size);
+    times.push_back(step.time);
+    sizes.push_back(step.size);
     starts_.push_back(starts ? 1 : 0);
     for (std::size_t i = 0; i < n_per_step_; ++i)
       z_.push_back(step.z[i * step.stride]);
-    end_.resize(n_unknowns);
+    end.resize(n_unknowns);
     for (std::size_t i = 0; i < n_unknowns; ++i)
-      end_[i] = step.y[i * step.stride];
+      end[i] = step.y[i * step.stride];
   }
 
   LaneRecord
   LaneRecord::first_steps(const std::size_t n) const
   {
     LaneRecord first = *this;
-    for (std::size_t step = n; step < n_steps(); ++step)
-      for (std::size_t d = 0; d < end_.size(); ++d)
-        first.end_[d] -= z_[(step + 1) * n_per_step_ - end_.size() + d];
-    first.times_.resize(n);
-    first.sizes_.resize(n);
+    for (std::size_t step = n; step < times.size(); ++step)
+      for (std::size_t d = 0; d < end.size(); ++d)
+        first.end[d] -= z_[(step + 1) * n_per_step_ - end.size() + d];
+    first.times.resize(n);
+    first.sizes.resize(n);
     first.starts_.resize(n);
     first.z_.resize(n * n_per_step_);
     return first;
@@ -42,11 +42,11 @@ namespace crawler
   LanePast
   LaneRecord::past(const double *gradient, const bool has_sources) const
   {
-    return {static_cast<unsigned int>(times_.size()),
-            times_.data(),
-            sizes_.data(),
+    return {static_cast<unsigned int>(times.size()),
+            times.data(),
+            sizes.data(),
             z_.data(),
-            end_.data(),
+            end.data(),
             starts_.data(),
             gradient,
             has_sources};
@@ -55,15 +55,15 @@ namespace crawler
   LaneRecord
   LaneRecord::at_places(const std::vector<double> &c, const std::vector<double> &places) const
   {
-    const std::size_t n = end_.size();
+    const std::size_t n = end.size();
     LaneRecord other    = *this;
     other.n_per_step_   = places.size() * n;
-    other.z_.assign(times_.size() * other.n_per_step_, 0.);
+    other.z_.assign(times.size() * other.n_per_step_, 0.);
     for (std::size_t i = 0; i < places.size(); ++i)
     {
       double weights[radau::max_stages] = {};
       radau::collocation_weights(static_cast<int>(c.size()), c.data(), places[i], weights);
-      for (std::size_t step = 0; step < times_.size(); ++step)
+      for (std::size_t step = 0; step < times.size(); ++step)
         radau::combine(static_cast<int>(c.size()),
                        weights,
                        z(step),
@@ -119,11 +119,5 @@ namespace crawler
   LaneAdjoint::sources(const unsigned int step, const LaneSources &sources)
   {
     (*source_)(step, sources);
-  }
-
-  bool
-  LaneAdjoint::laws(unsigned int, const LanePoints &points)
-  {
-    return laws_->evaluate(points);
   }
 } // namespace crawler

@@ -66,13 +66,13 @@ namespace crawler
   } // namespace
 
   bool
-  LawHost::laws(unsigned int, const LanePoints &)
+  LawHost::evaluate(const LanePoints &)
   {
     return false;
   }
 
   double
-  LawHost::cell_laws(double, const double *, const double *, const double *, CellLaws<double> &)
+  LawHost::evaluate_cells(double, const double *, const double *, const double *, CellLaws<double> &)
   {
     return 0.;
   }

@@ -51,27 +51,12 @@ namespace crawler
   {
     course_ = course;
     y_.assign(y.begin(), y.end());
-    if (goes_on_ && (old_z_.size() != setup_.n_stages * y_.size() || progress_.output_time >= course_.ends.size()))
-      throw FileError("a saved state does not match the program: its last step is from another run");
-    job_ = LaneJob{.body         = lane_body(scene_, laws_ ? &*laws_ : nullptr),
-                   .tolerance    = course_.tolerance,
-                   .initial_step = course_.initial_step,
-                   .limits       = course_.limits.data(),
-                   .n_limits     = static_cast<unsigned int>(course_.limits.size()),
-                   .max_steps    = std::numeric_limits<unsigned int>::max(), // the caller of the next step decides
-                   // Empty cells are admitted where friction then holds them.
-                   .least_stretch  = setup_.is_stretch && scene_.friction_exponent() < 0. ? -HUGE_VAL : 0.,
-                   .start_time     = course_.start,
-                   .start          = y_.data(),
-                   .output_times   = course_.ends.data(),
-                   .n_output_times = static_cast<unsigned int>(course_.ends.size()),
-                   .restarts       = nullptr, // each piece has a course of its own
-                   .progress       = goes_on_ ? &progress_ : nullptr,
-                   .old_z          = goes_on_ ? old_z_.data() : nullptr};
-    if (!goes_on_)
+    if (old_z_.empty())
       progress_ = {.t = course_.start, .next = course_.initial_step};
-    goes_on_ = false;
-    bad_friction_.reset();
+    else if (old_z_.size() != setup_.n_stages * y_.size() || progress_.output_time >= course_.ends.size())
+      throw FileError("a saved state does not match the program: its last step is from another run");
+    if (cell_laws_)
+      cell_laws_->bad_friction.reset();
     lane_step_ = {};
     end_.reset();
     single_engine().start(setup_, *this, memory_.data());
@@ -95,10 +80,24 @@ namespace crawler
   bool
   LaneStepper::take(unsigned int, LaneJob &job)
   {
-    if (!job_)
+    if (end_)
       return false;
-    job = *job_;
-    job_.reset();
+    job = {.body         = lane_body(scene_, laws_ ? &*laws_ : nullptr),
+           .tolerance    = course_.tolerance,
+           .initial_step = course_.initial_step,
+           .limits       = course_.limits.data(),
+           .n_limits     = static_cast<unsigned int>(course_.limits.size()),
+           .max_steps    = std::numeric_limits<unsigned int>::max(), // the caller of the next step decides
+           // Empty cells are admitted where friction then holds them.
+           .least_stretch  = setup_.is_stretch && scene_.friction_exponent() < 0. ? -HUGE_VAL : 0.,
+           .progress       = progress_,
+           .start          = y_.data(),
+           .old_z          = old_z_.empty() ? nullptr : old_z_.data(),
+           .output_times   = course_.ends.data(),
+           .n_output_times = static_cast<unsigned int>(course_.ends.size()),
+           .restarts       = nullptr}; // each piece has a course of its own
+    if (cell_laws_)
+      job.body.host = &*cell_laws_;
     return true;
   }
 
@@ -109,31 +108,12 @@ namespace crawler
   }
 
   bool
-  LaneStepper::laws(unsigned int, const LanePoints &points)
-  {
-    return laws_->evaluate(points);
-  }
-
-  double
-  LaneStepper::cell_laws(
-    const double t, const double *m, const double *w, const double *rate, CellLaws<double> &at_cells)
-  {
-    const std::size_t n = tables_->points.size();
-    const long bad      = cell_laws_->evaluate(t, {w, n}, {rate, n}, m);
-    // Power laws fail only where the stretch is lost.
-    if (bad >= 0 && w[bad] > 0. && !scene_.friction->is_power_law)
-      bad_friction_ = {w[bad], cell_laws_->friction[static_cast<std::size_t>(bad)]};
-    at_cells                = cell_laws_->at_cells();
-    const bool may_be_empty = scene_.friction_exponent() < 0.;
-    return bad >= 0 ? -1. : may_be_empty ? 1. : *std::min_element(w, w + n);
-  }
-
-  bool
   LaneStepper::accepted(unsigned int, const LaneStep &step)
   {
     lane_step_ = step;
     progress_  = *step.progress;
-    step_      = Step{step.time, step.size, progress_.steps, step.is_output_time, progress_.rejected, progress_.newton};
+    old_z_.clear();
+    step_ = Step{step.time, step.size, progress_.steps, step.is_output_time, progress_.rejected, progress_.newton};
     std::copy_n(step.y, y_.size(), y_.begin());
     if (stage_rates)
       show_rates();
@@ -143,6 +123,7 @@ namespace crawler
   void
   LaneStepper::done(unsigned int, const LaneOutcome &outcome)
   {
+    old_z_.clear();
     end_         = outcome_at(*outcome.progress);
     end_->status = outcome.status == LaneOutcome::finished ? Status::finished : Status::failed;
     end_->reason = outcome.status == LaneOutcome::gave_up ? gave_up : "";
@@ -151,10 +132,12 @@ namespace crawler
   bool
   LaneStepper::exchange(Archive &archive)
   {
+    std::vector<double> z;
     if (!archive.reads())
-      old_z_.assign(lane_step_.z, lane_step_.z + setup_.n_stages * y_.size());
-    archive(progress_, old_z_);
-    goes_on_ = archive.reads();
+      z.assign(lane_step_.z, lane_step_.z + setup_.n_stages * y_.size());
+    archive(progress_, z);
+    if (archive.reads())
+      old_z_ = z;
     return true;
   }
 

@@ -23,6 +23,84 @@ namespace crawler
 
   namespace
   {
+    /// Watch over the ends of a body in a lane, where the end conditions prescribe the stretch 1 - m/k: there a coarse
+    /// mesh may not follow an inversion (Simulation::end_inverts).
+    class EndWatch
+    {
+    public:
+      /// Stress m at both ends.
+      using Stress = std::array<double, 2>;
+
+      EndWatch(const Scene &scene, const double min_event, const unsigned int n_stages)
+        : moduli_(scene.end_moduli())
+        , watch_(*scene.active_stress, 1., min_event > 0. ? min_event : HUGE_VAL)
+        , in_stages_(n_stages)
+      {
+        if (const StretchFeedback *feedback = scene.active_stress->feedback())
+          feedback_ = feedback->at({0., 1.});
+      }
+
+      /// Restarts after a jump of the active stress.
+      void
+      restart()
+      {
+        watch_.restart();
+        n_seen_ = 0;
+      }
+
+      /// Observes the stress at the start of a run or segment, and then in all stages of each step that is tried.
+      void
+      see_stress(const Stress &m)
+      {
+        if (n_seen_ == 0)
+          stretch_at_start_ = stretch(m);
+        else
+          in_stages_[(n_seen_ - 1) % in_stages_.size()] = m;
+        ++n_seen_;
+      }
+
+      /// True if the step was calm, and no end inverted in its stages or at the times between them.
+      bool
+      is_good(const LaneStep &step)
+      {
+        if (!watch_.is_calm(step.time - step.size, step.time))
+          return false;
+        if (feedback_) // see Assembler::has_known_ends()
+          return true;
+        double smallest = stretch_at_start_;
+        for (const Stress &m : in_stages_)
+          smallest = std::min(smallest, stretch(m));
+        return smallest > 0. && std::ranges::all_of(watch_.inside(), [this](const StressWatch::Values &m) {
+                 return stretch({{m[0], m[1]}}) > 0.;
+               });
+      }
+
+      /// Power that leaves through the ends in stage @p i, at the time @p t.
+      double
+      power(const unsigned int i, const double t, const LaneStage &stage) const
+      {
+        Stress m = in_stages_[i];
+        if (feedback_)
+          feedback_->values(t, {stage.end_stretch, stage.end_rate, {}, {}}, {m, {}, {}, {}});
+        return m[1] * stage.right_velocity - m[0] * stage.left_velocity;
+      }
+
+    private:
+      /// Smaller of the stretches at the ends.
+      double
+      stretch(const Stress &m) const
+      {
+        return 1. - std::max(m[0] / moduli_.first, m[1] / moduli_.second);
+      }
+
+      const std::pair<double, double> moduli_;
+      StressWatch watch_;
+      std::unique_ptr<FeedbackAtPoints> feedback_; ///< feedback at the ends, if there is one
+      double stretch_at_start_ = 1.;
+      std::vector<Stress> in_stages_; ///< of the step that is tried
+      std::size_t n_seen_ = 0;
+    };
+
     /// Hands the runs of one method out to the lanes and makes results of their data.
     class Batch : private LaneHost
     {
@@ -52,6 +130,7 @@ namespace crawler
       compute(const LaneEngine &engine)
       {
         lanes_.resize(engine.lanes);
+        m_.resize(tables_->points.size() + 2);
         LaneStorage memory(engine.memory(tables_->setup));
         engine.start(tables_->setup, *this, memory.data());
         while (engine.advance(tables_->setup, memory.data()))
@@ -62,25 +141,18 @@ namespace crawler
     private:
       struct Lane
       {
-        std::size_t run         = 0;
-        bool given_up           = false;
-        double stretch_at_start = 1.; ///< smallest stretch of the ends
-        Units units;
+        std::size_t run = 0;
+        bool given_up   = false;
         TimeSegments segments;
         std::optional<Scene> scene; ///< in natural units, as all that follows
-        std::pair<double, double> end_moduli;
+        std::vector<double> breaks; ///< breaks in space
         std::optional<HostLaws> laws;
-        std::unique_ptr<FeedbackAtPoints> end_feedback; ///< feedback at the ends of the body, if there is one
-        std::vector<double> output_times;               ///< ends of the segments, and those that the record needs
-        std::vector<unsigned char> restarts;            ///< flags of those at which a new segment starts
+        std::vector<double> output_times;    ///< ends of the segments, and those that the record needs
+        std::vector<unsigned char> restarts; ///< flags of those at which a new segment starts
         std::vector<StepLimit> limits;
         std::optional<Recorder> recorder;
         std::unique_ptr<ActiveStressAtPoints> stress; ///< stress at the quadrature points and the ends of the body
-        std::optional<StressWatch> watch;
-        std::vector<double> breaks; ///< breaks in space
-        std::vector<double> m;
-        std::vector<std::array<double, 2>> end_stress; ///< m at the ends, in the stages of the step that is tried
-        std::size_t n_stress_calls = 0;
+        std::optional<EndWatch> ends;
       };
 
       bool
@@ -97,26 +169,20 @@ namespace crawler
       void
       start(Lane &lane, LaneJob &job) const
       {
-        const BatchRun &run = runs_[lane.run];
-        lane.units          = natural_units(*run.scene);
-        lane.segments       = TimeSegments(*run.scene->active_stress, run.scene->end_time);
-        lane.scene.emplace(in_units(*run.scene, lane.units, &lane.segments));
-        const Scene &scene      = *lane.scene;
-        const Numerics numerics = in_units(*run.numerics, lane.units);
+        const BatchRun &run     = runs_[lane.run];
+        const Units units       = natural_units(*run.scene);
+        lane.segments           = TimeSegments(*run.scene->active_stress, run.scene->end_time);
+        const Scene &scene      = lane.scene.emplace(in_units(*run.scene, units, &lane.segments));
+        const Numerics numerics = in_units(*run.numerics, units);
         lane.limits             = numerics.step_limits;
-        start_record(lane, numerics.tolerance);
+        start_record(lane, units, numerics.tolerance);
         std::vector<double> points = tables_->points;
         points.insert(points.end(), {0., 1.});
         lane.stress = scene.active_stress->at(points);
-        lane.watch.emplace(*scene.active_stress, 1., numerics.min_event > 0. ? numerics.min_event : HUGE_VAL);
+        lane.ends.emplace(scene, numerics.min_event, tableau_.n);
         lane.breaks = scene.breaks_in_space();
-        lane.m.resize(points.size());
-        lane.end_stress.resize(tableau_.n);
-        lane.end_moduli = scene.end_moduli();
         if (!scene.is_plain())
           lane.laws.emplace(scene, tables_->points);
-        if (const StretchFeedback *feedback = scene.active_stress->feedback())
-          lane.end_feedback = feedback->at({0., 1.});
         job = {.body           = lane_body(scene, lane.laws ? &*lane.laws : nullptr),
                .tolerance      = numerics.tolerance,
                .initial_step   = numerics.initial_step,
@@ -124,28 +190,21 @@ namespace crawler
                .n_limits       = static_cast<unsigned int>(lane.limits.size()),
                .max_steps      = run.time->max_steps,
                .least_stretch  = small_stretch,
-               .start_time     = 0.,
-               .start          = nullptr,
+               .progress       = {.next = numerics.initial_step},
                .output_times   = lane.output_times.data(),
                .n_output_times = static_cast<unsigned int>(lane.output_times.size()),
                .restarts       = lane.restarts.data()};
       }
 
-      bool
-      laws(const unsigned int l, const LanePoints &points) override
-      {
-        return lanes_[l]->laws->evaluate(points);
-      }
-
       /// Starts the record of a run from rest.
       void
-      start_record(Lane &lane, const double tolerance) const
+      start_record(Lane &lane, const Units &units, const double tolerance) const
       {
         RecordOptions options = options_;
         const BatchRun &run   = runs_[lane.run];
         if (run.cycles)
           options.cycles = run.cycles;
-        lane.recorder.emplace(*run.scene, lane.units, options, tolerance, /*may_search=*/false);
+        lane.recorder.emplace(*run.scene, units, options, tolerance, /*may_search=*/false);
         lane.recorder->set_smallest_cell(tables_->smallest_size());
         lane.output_times = lane.segments.breaks();
         lane.output_times.push_back(1.);
@@ -170,39 +229,10 @@ namespace crawler
       stress(const unsigned int l, const double t, double *m) override
       {
         Lane &lane          = *lanes_[l];
-        const std::size_t n = tables_->points.size(), stages = tableau_.n;
-        lane.stress->values(t, lane.m);
-        std::copy_n(lane.m.begin(), n, m);
-        const std::array<double, 2> ends{{lane.m[n], lane.m[n + 1]}};
-        if (lane.n_stress_calls == 0)
-          lane.stretch_at_start = end_stretch(lane, ends);
-        else
-          lane.end_stress[(lane.n_stress_calls - 1) % stages] = ends;
-        ++lane.n_stress_calls;
-      }
-
-      /// Smaller of the stretches that the end conditions prescribe, 1 - m/k.
-      static double
-      end_stretch(const Lane &lane, const std::array<double, 2> &m)
-      {
-        return 1. - std::max(m[0] / lane.end_moduli.first, m[1] / lane.end_moduli.second);
-      }
-
-      /// True if an end inverts (Simulation::end_inverts): a coarse mesh may not have followed it. The ends are
-      /// examined in the stages and between them, by the watch.
-      static bool
-      end_inverts(const Lane &lane)
-      {
-        if (lane.scene->active_stress->feedback() != nullptr) // see Assembler::has_known_ends()
-          return false;
-        double smallest = lane.stretch_at_start;
-        for (const auto &m : lane.end_stress)
-          smallest = std::min(smallest, end_stretch(lane, m));
-        if (!(smallest > 0.))
-          return true;
-        return std::ranges::any_of(lane.watch->inside(), [&](const StressWatch::Values &m) {
-          return !(end_stretch(lane, {{m[0], m[1]}}) > 0.);
-        });
+        const std::size_t n = tables_->points.size();
+        lane.stress->values(t, m_);
+        std::copy_n(m_.begin(), n, m);
+        lane.ends->see_stress({{m_[n], m_[n + 1]}});
       }
 
       bool
@@ -220,9 +250,10 @@ namespace crawler
       bool
       look_at_step(Lane &lane, const LaneStep &step)
       {
-        if (!step.is_settled || !lane.watch->is_calm(step.time - step.size, step.time) || end_inverts(lane))
+        if (!step.is_settled || !lane.ends->is_good(step))
           return false;
         const unsigned int n = tableau_.n;
+        const LaneStage &end = step.stages[n - 1];
         for (unsigned int i = options_.energy_balance ? 0 : n - 1; i < n; ++i)
         {
           if (!(step.stages[i].min_stretch > small_stretch))
@@ -238,16 +269,16 @@ namespace crawler
             add_rates(lane, step, i);
         }
         if (options_.energy_balance)
-          lane.recorder->result.energy_balance->elastic_energy = step.elastic_energy;
-        const auto sample    = [&](const double time) { return sampler_.sample(step, time); };
-        const LaneStage &end = step.stages[n - 1];
-        lane.recorder->see_step(step.time, step.is_output_time, end.min_stretch, end.max_stretch, sample);
+          lane.recorder->result.energy_balance->elastic_energy = end.elastic_energy;
+        const auto sample = [&](const double time) { return sampler_.sample(step, time); };
+        if (lane.recorder->see_step(step.time, step.is_output_time, end.min_stretch, end.max_stretch, sample) ||
+            step.time == lane.output_times.back())
+          lane.recorder->result.displacement = sample(step.time).displacement;
         if (step.is_output_time && !lane.segments.is_last() && step.time == lane.segments.end())
         {
           lane.segments.go_on();
-          lane.watch->restart();
+          lane.ends->restart();
           lane.recorder->interrupt();
-          lane.n_stress_calls = 0;
         }
         return true;
       }
@@ -255,12 +286,9 @@ namespace crawler
       void
       add_rates(Lane &lane, const LaneStep &step, const unsigned int i) const
       {
-        const LaneStage &stage  = step.stages[i];
-        std::array<double, 2> m = lane.end_stress[i];
-        if (lane.end_feedback)
-          lane.end_feedback->values(
-            step.time - (1. - tableau_.c[i]) * step.size, {stage.end_stretch, stage.end_rate, {}, {}}, {m, {}, {}, {}});
-        Rates works = rates_of(stage, m[1] * stage.right_velocity - m[0] * stage.left_velocity);
+        const LaneStage &stage = step.stages[i];
+        const double t         = step.time - (1. - tableau_.c[i]) * step.size;
+        Rates works            = rates_of(stage, lane.ends->power(i, t, stage));
         for (double &work : works)
           work *= step.size * tableau_.b[i];
         lane.recorder->result.energy_balance->add_works(works);
@@ -285,7 +313,6 @@ namespace crawler
         result.time.steps             = outcome.progress->steps;
         result.time.rejected_steps    = outcome.progress->rejected;
         result.time.newton_iterations = outcome.progress->newton;
-        result.displacement           = outcome.displacement;
         const unsigned int n_cells = tables_->setup.n_cells, degree = tables_->setup.degree;
         result.mesh = {.n_cells = n_cells, .degree = degree, .n_unknowns = n_cells * degree + 1, .most_cells = n_cells};
         result.integrator = runs_[lane.run].time->integrator == "automatic" ? runs_[lane.run].numerics->integrator
@@ -303,6 +330,7 @@ namespace crawler
       Results &results_;
       LaneSampler sampler_;
       std::vector<std::unique_ptr<Lane>> lanes_;
+      std::vector<double> m_; ///< stress at the points and the ends of one body
       std::size_t next_ = 0;
       bool interrupted_ = false;
     };

@@ -75,7 +75,7 @@ namespace crawler
       take_stage_of_lanes(step, i);
     EnergyBalance &energies = *result().energy_balance;
     energies.add_works(run_->quadrature.until(1.));
-    energies.elastic_energy = seen.elastic_energy;
+    energies.elastic_energy = seen.stages[last].elastic_energy;
     run_->recorder.see_friction(step.size, seen.stages[last].abs_friction, std::abs(seen.stages[last].net_friction));
   }
 } // namespace crawler

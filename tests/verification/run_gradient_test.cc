@@ -318,7 +318,7 @@ TEST(RunGradient, OfStretches)
   const RecordedRun run(scene, time, numerics, {});
   std::vector<StretchPlace> places;
   std::vector<double> points, times;
-  for (const double t : {run.steps.time(5) + 1e-3 * run.steps.size(6), run.steps.time(9), 0.5123, 0.77, 1.})
+  for (const double t : {run.steps.times[5] + 1e-3 * run.steps.sizes[6], run.steps.times[9], 0.5123, 0.77, 1.})
   {
     places.push_back({0.31, t, 1.});
     times.push_back(t);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/equation/cell_loops.h>
+#include <crawler/base/instruction_set.h>
+#include <crawler/equation/crawler_equation.h>
 #include <crawler/equation/point_laws.h>
 
 #include <cstddef>

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <crawler/base/instruction_set.h>
-#include <crawler/equation/crawler_equation.h>
+#include <crawler/equation/point_laws.h>
 #include <crawler/mesh/element_tables.h>
 
 /**
  * Integrals over one cell in the position form, for one body (Number is double) or for several side by side (Number is
- * a pack of them). Included by the files that compile them; users want cell_kernels.h.
+ * a pack of them), with any laws (point_laws.h). Included by the files that compile them; users want cell_kernels.h.
  */
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
@@ -24,31 +24,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       at_points[p] = offset + factor * sum;
     }
   }
-
-  /**
-   * Equation in a cell: the loops below are the only ones in the program, for any number type and any laws. Laws give,
-   * at the n points of a cell, for strains e, stretches w and velocities v and their gradients v_s:
-   *
-   *   forces(e, w, v, N, f)        force in the body N and, unless v is null, friction per reference length f
-   *   derivatives(e, w, v, D)      derivatives of both: PointDerivatives; without by_state those by v and v_s only
-   *   densities(e, w, v, v_s, at)  PointDensities
-   *
-   * A new term of the equation is a line in each of these, and nowhere else.
-   */
-  template <int n, typename Number>
-  struct PointDerivatives
-  {
-    Number f_v[n], f_w[n]; ///< derivatives of the friction by velocity and stretch
-    Number N_w[n];         ///< derivative of the force in the body by the stretch; not set if laws have one k
-    Number f_u[n];         ///< derivative of the friction by the place; not set unless the laws have_place()
-    Number N_rate[n];      ///< derivative of the force in the body by the stretch rate; not set unless they have_rate()
-  };
-
-  template <typename Number>
-  struct PointDensities
-  {
-    Number elastic_energy, power, force; ///< power of the active stress, friction force
-  };
 
   /// Strain, stretch and velocity at the points of a cell.
   template <int n, typename Number>

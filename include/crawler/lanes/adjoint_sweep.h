@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/lanes/adjoint_host.h>
 #include <crawler/lanes/adjoint_stages.h>
 #include <crawler/lanes/lane_engine.h>
 #include <crawler/lanes/lane_memory.h>
@@ -32,7 +33,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     AdjointSweep(const LaneSetup &setup, LaneAdjointHost *host, double *memory)
       : setup_(setup)
       , host_(host)
-      , system_(setup, host)
+      , system_(setup)
       , n_(system_.n_unknowns)
       , stages_(setup, system_)
       , memory_(memory)
@@ -58,7 +59,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     bool
     run(const LaneBody &body, const LanePast &past)
     {
-      system_.set_body(0, body, true);
+      system_.set_body(0, body);
       for (int d = 0; d < n_; ++d)
       {
         lambda_[d]   = past.gradient[d];

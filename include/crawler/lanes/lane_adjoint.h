@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/lanes/adjoint_host.h>
 #include <crawler/lanes/host_laws.h>
 #include <crawler/lanes/lane_tables.h>
 
@@ -20,32 +21,11 @@ namespace crawler
     void
     add(const LaneStep &step, unsigned int n_stages, std::size_t n_unknowns, bool starts);
 
-    std::size_t
-    n_steps() const
-    {
-      return times_.size();
-    }
-    double
-    time(const std::size_t step) const
-    {
-      return times_[step];
-    }
-    double
-    size(const std::size_t step) const
-    {
-      return sizes_[step];
-    }
     /// Displacements [stages][unknowns] in the stages relative to the start of the step.
     const double *
     z(const std::size_t step) const
     {
       return z_.data() + step * n_per_step_;
-    }
-    /// Last state.
-    const std::vector<double> &
-    end() const
-    {
-      return end_;
     }
 
     /// Returns the first @p n of the steps.
@@ -59,9 +39,12 @@ namespace crawler
     LaneRecord
     at_places(const std::vector<double> &c, const std::vector<double> &places) const;
 
+    std::vector<double> times, sizes; ///< ends and lengths of the steps
+    std::vector<double> end;          ///< last state
+
   private:
     std::size_t n_per_step_ = 0;
-    std::vector<double> times_, sizes_, z_, end_;
+    std::vector<double> z_;
     std::vector<unsigned char> starts_;
   };
 
@@ -99,8 +82,6 @@ namespace crawler
     step(unsigned int step, const double *mu, const double *zeta) override;
     void
     sources(unsigned int step, const LaneSources &sources) override;
-    bool
-    laws(unsigned int lane, const LanePoints &points) override;
 
     const Scene &scene_;
     const std::shared_ptr<const LaneTables> tables_;

@@ -29,9 +29,27 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   struct Lane : LaneProgress
   {
     LaneJob job;
-    bool busy = false, is_idle = false; ///< has a body; no body is left for it
+    bool busy = false, is_idle = false;     ///< has a body; no body is left for it
+    bool has_old = false, is_retry = false; ///< the guess has a step before; this is the failed try of a step
     bool iterating = false, failed = false, accepted = false;
-    double error = 0.; ///< error of the step, relative to the tolerance
+    bool just_rejected        = false;
+    unsigned int failures_now = 0;          ///< failures since the last accepted step
+    double h                  = 1.;         ///< size of the step
+    double rate = 0., last_correction = 0.; ///< convergence of Newton's method in the step
+    double error = 0.;                      ///< error of the step, relative to the tolerance
+
+    /// Takes the next body of a host, or one at rest that needs nothing.
+    void
+    take(LaneHost &host, const unsigned int lane)
+    {
+      *this   = Lane();
+      busy    = host.take(lane, job);
+      is_idle = !busy;
+      if (is_idle)
+        job = LaneJob();
+      static_cast<LaneProgress &>(*this) = job.progress;
+      has_old                            = job.old_z != nullptr;
+    }
 
     /// Chooses the size of the step: the wanted one, but steps end at output times.
     void
@@ -127,8 +145,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         has_old = is_retry = keeps_try && rate > 0. && rate < 1.; // the earlier guess was not good
         if (is_retry)
           old_h = h;
+        ++failures_now;
         ++failures;
-        ++all_failures;
         ++rejected;
         return;
       }
@@ -142,7 +160,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       next          = factor * h;
       just_rejected = !accepted;
       if (accepted)
-        failures = 0;
+        failures_now = 0;
       else
         ++rejected;
     }
@@ -151,8 +169,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     bool
     cannot_converge(const bool is_last_resort) const
     {
-      return failures > max_failures || next < min_step ||
-             (!is_last_resort && all_failures > many_failures && all_failures > large_part * steps);
+      return failures_now > max_failures || next < min_step ||
+             (!is_last_resort && failures > many_failures && failures > large_part * steps);
     }
 
     /// Starts anew: from here on the past is no guide.

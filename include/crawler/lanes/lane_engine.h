@@ -65,24 +65,50 @@ namespace crawler
     Direction direction{}; ///< of the ground, for an engine with one lane
   };
 
-  /// Progress of a body from step to step, besides its state.
+  /// Progress of a body at an accepted state, besides the state.
   struct LaneProgress
   {
-    bool has_old = false, just_rejected = false;
-    bool is_retry = false;                ///< the guess is a step's failed try
-    double t      = 0.;                   ///< time of the last accepted state
-    double h = 1., next = 1., old_h = 1.; ///< sizes of the present step, the next and the last one
-    double rate = 0., known_rate = 1., last_correction = 0.;
-    unsigned int steps = 0, rejected = 0, failures = 0, all_failures = 0, output_time = 0, limit = 0;
-    unsigned int first_step = 0; ///< steps before the last start
-    unsigned long newton    = 0;
+    double t    = 0.;             ///< time of the state
+    double next = 1., old_h = 1.; ///< sizes of the next step, and of the last one
+    double known_rate  = 1.;      ///< convergence rate of Newton's method
+    unsigned int steps = 0, rejected = 0, failures = 0;
+    unsigned int output_time = 0, limit = 0; ///< numbers of the next output time, and of the present limit
+    unsigned int first_step = 0;             ///< steps before the last start
+    unsigned long newton    = 0;             ///< iterations
 
     void
     exchange(auto &archive)
     {
-      archive(has_old, just_rejected, is_retry, t, h, next, old_h, rate, known_rate, last_correction);
-      archive(steps, rejected, failures, all_failures, output_time, limit, first_step, newton);
+      archive(t, next, old_h, known_rate, steps, rejected, failures, output_time, limit, first_step, newton);
     }
+  };
+
+  /// State of a body at all quadrature points, and the arrays into which the host writes the values of the laws there.
+  /// Arrays that LaneLaws does not need are null, as are unwanted derivatives.
+  struct LanePoints
+  {
+    double t;
+    const double *u, *v, *w, *rate; ///< displacement, velocity, stretch and its rate
+    double *g, *w_dg;               ///< friction law and its derivative by log w
+    double *c, *c_x;                ///< profile of the ground at s + u, and its slope
+    double *m, *m_w, *m_rate;       ///< active stress with feedback, and its derivatives by the stretch and its rate
+  };
+
+  /// Host that evaluates the laws of a body that the engine leaves to it.
+  class LawHost
+  {
+  public:
+    virtual ~LawHost() = default;
+
+    /// Evaluates the laws in the position form; false if one of them has no meaning for this state.
+    virtual bool
+    evaluate(const LanePoints &points);
+
+    /// Evaluates the laws of a general body in the stretch form, with the active stress @p m, for the stretch @p w and
+    /// its rate at each cell, for an engine with one lane; the arrays belong to the host and are valid until its next
+    /// call. Returns a number that is not positive if a law has no meaning there.
+    virtual double
+    evaluate_cells(double t, const double *m, const double *w, const double *rate, CellLaws<double> &laws);
   };
 
   /// Laws of a body, and of its ground.
@@ -92,6 +118,7 @@ namespace crawler
     // Profiles and ground of a general body in the position form.
     const double *k_profile = nullptr, *friction_profile = nullptr; ///< [points] k(s)/k and b(s)
     Direction direction{};                                          ///< of the ground
+    LawHost *host = nullptr;                                        ///< evaluates the laws of a general body
   };
 
   /// Run of a body; by default it stays at rest.
@@ -103,29 +130,15 @@ namespace crawler
     const StepLimit *limits = nullptr; ///< limits of its steps
     unsigned int n_limits   = 0;
     unsigned int max_steps  = 0;
-    double least_stretch    = 0.; ///< smaller stretches are given up; the full path must tell what they mean
-    double start_time       = 0.;
-    const double *start     = nullptr; ///< [unknowns] displacement at start_time; null: rest
-    /// Ascending times after start_time where steps must end; the run ends at the last.
+    double least_stretch    = 0.;      ///< smaller stretches are given up; the full path must tell what they mean
+    LaneProgress progress   = {};      ///< where it starts, or continues
+    const double *start     = nullptr; ///< [unknowns] displacement there; null: rest
+    const double *old_z     = nullptr; ///< [stages][unknowns] of the step before, as in LaneStep; null: there is none
+    /// Ascending times after the start where steps must end; the run ends at the last.
     const double *output_times  = nullptr;
     unsigned int n_output_times = 0;
     /// Flags [n_output_times] of times when the active stress jumps, so the body starts anew there; null: none are.
     const unsigned char *restarts = nullptr;
-
-    // State between two steps, for a body that continues from `start`; null: it starts.
-    const LaneProgress *progress = nullptr;
-    const double *old_z          = nullptr; ///< [stages][unknowns] of the step before, as in LaneStep
-  };
-
-  /// State of a lane at all quadrature points, and the arrays into which the host writes the values of the laws there.
-  /// Arrays that LaneLaws does not need are null, as are unwanted derivatives.
-  struct LanePoints
-  {
-    double t;
-    const double *u, *v, *w, *rate; ///< displacement, velocity, stretch and its rate
-    double *g, *w_dg;               ///< friction law and its derivative by log w
-    double *c, *c_x;                ///< profile of the ground at s + u, and its slope
-    double *m, *m_w, *m_rate;       ///< active stress with feedback, and its derivatives by the stretch and its rate
   };
 
   /// Stage of an accepted step (the last one is its end).
@@ -133,8 +146,8 @@ namespace crawler
   {
     double min_stretch, max_stretch;     ///< extremes among the samples
     unsigned int min_sample, max_sample; ///< cell*n_samples + sample
-    // Rates, if they are requested (CellIntegrals).
-    double stress_power, positive_power, absolute_power, dissipation, net_friction, abs_friction;
+    // Energy and rates, if they are requested (CellIntegrals).
+    double elastic_energy, stress_power, positive_power, absolute_power, dissipation, net_friction, abs_friction;
     double left_velocity, right_velocity; ///< velocities of the ends of the body
     // Stretch at both ends and its rate, if the active stress depends on them, too.
     double end_stretch[2], end_rate[2];
@@ -149,7 +162,6 @@ namespace crawler
     const double *y;         ///< [unknowns] displacement
     const double *z;         ///< [stages][unknowns] displacements in the stages relative to the start of the step
     const LaneStage *stages; ///< [n_stages]; the last one alone is filled unless `look_inside` is set
-    double elastic_energy;   ///< elastic energy at the end, if rates are requested
     bool is_settled;         ///< the velocity at the end was found, if rates are requested
     const LaneProgress *progress;
   };
@@ -163,31 +175,14 @@ namespace crawler
       gave_up  ///< given up for a reason that only the full path can tell
     } status;
     const LaneProgress *progress;
-    double displacement; ///< int u ds in the last accepted state
-  };
-
-  /// Host that evaluates the laws that the engine leaves to it: those that its bodies need. Lanes are numbered 0 to
-  /// lanes - 1.
-  class LawHost
-  {
-  public:
-    virtual ~LawHost() = default;
-
-    /// Evaluates the laws in the position form; false if one of them has no meaning for this state.
-    virtual bool
-    laws(unsigned int lane, const LanePoints &points);
-
-    /// Evaluates the laws of a general body in the stretch form, for the stretch @p w and its rate at each cell, for an
-    /// engine with one lane; the arrays belong to the host and are valid until its next call. Returns a number that is
-    /// not positive if a law has no meaning there.
-    virtual double
-    cell_laws(double t, const double *m, const double *w, const double *rate, CellLaws<double> &laws);
   };
 
   /// Host that supplies the bodies and takes the answers.
-  class LaneHost : public LawHost
+  class LaneHost
   {
   public:
+    virtual ~LaneHost() = default;
+
     bool look_inside = false; ///< request for stretch and rates in all stages, of the position form
 
     /// Supplies the next body for a lane; false if there is none.
@@ -204,39 +199,8 @@ namespace crawler
     done(unsigned int lane, const LaneOutcome &outcome) = 0;
   };
 
-  /// Run to traverse backwards. All arrays belong to the caller.
-  struct LanePast
-  {
-    unsigned int n_steps = 0;
-    const double *times = nullptr, *sizes = nullptr; ///< [n_steps] ends and lengths of the steps
-    const double *z             = nullptr;           ///< [n_steps][stages][unknowns] as in LaneStep
-    const double *end           = nullptr;           ///< [unknowns] last state
-    const unsigned char *starts = nullptr;           ///< [n_steps] true if the body starts anew
-    const double *gradient      = nullptr; ///< [unknowns] derivative of the quantity of interest by the last state
-    bool has_sources            = false;   ///< true if the quantity of interest depends on the steps, too
-  };
-
-  /// Derivatives of the quantity of interest by the states of a step themselves. The arrays are 0 before.
-  struct LaneSources
-  {
-    double *by_end;             ///< [unknowns] the state at the end of the step
-    double *by_u, *by_velocity; ///< [stages][unknowns] displacements and velocities in the stages
-  };
-
-  /// Host of a run that is traversed backwards.
-  class LaneAdjointHost : public LawHost
-  {
-  public:
-    /// Takes the adjoint of a step. @p mu: [stages][unknowns] derivative of the quantity of interest by the residuals,
-    /// with the sign of dF. @p zeta: [unknowns] M^-1 times the derivative of the quantity of interest by the state at
-    /// the end of the step: minus the effect of an impulse there; null unless the body starts anew with the next step,
-    /// or there is none.
-    virtual void
-    step(unsigned int step, const double *mu, const double *zeta) = 0;
-    /// Called before each step of a run that has sources.
-    virtual void
-    sources(unsigned int step, const LaneSources &sources) = 0;
-  };
+  class LaneAdjointHost;
+  struct LanePast;
 
   /// Engine compiled for one instruction set and one number of lanes.
   struct LaneEngine

@@ -2,30 +2,37 @@
 #pragma once
 
 #include <crawler/equation/cell_laws.h>
+#include <crawler/equation/cell_loops.h>
 #include <crawler/lanes/lane_mesh.h>
-#include <crawler/mesh/block_tridiagonal_loops.h>
+#include <crawler/lanes/one_cell.h>
 
-/// Loops over all cells, for a pack of bodies and one degree q (included by radau_lanes.h).
+/// Loops over all cells of one degree q (included by lane_blocks.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  template <typename Pack, int q>
+  /// @p Group: the cells that are computed together, OneCell or CellGroup. Sums have the order of one cell after the
+  /// other, so that results are the same but for round-off of fused products.
+  template <typename Group, int q>
   struct LaneKernels
   {
-    static constexpr int n = q + 1;
+    static constexpr int n = q + 1, width = Group::width;
+    using Number = typename Group::Number;
+    using Value  = typename Group::Value;
+    /// Elements of an array that belong to a group.
+    using Elements = typename Group::template Elements<n>;
 
     /// Friction at the points of a cell.
     struct CellFriction
     {
-      const LaneFriction<Pack> &law;
+      const LaneFriction<Value> &law;
 
       void
-      operator()(const Pack *w, Pack *g) const
+      operator()(const Value *w, Value *g) const
       {
         law(w, g, n);
       }
 
       void
-      operator()(const Pack *w, Pack *g, Pack *w_dg) const
+      operator()(const Value *w, Value *g, Value *w_dg) const
       {
         law(w, g, n);
         for (int p = 0; p < n; ++p)
@@ -33,253 +40,202 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
     };
 
-    using Laws = PlainLaws<n, Pack, CellFriction>;
+    using Laws = PlainLaws<n, Value, CellFriction>;
 
-    /// Calls @p use(laws, c) for each cell.
-    template <typename Use>
+    /// Calls @p use(laws, sizes, group) for each group; the laws of general bodies have what is @p wanted.
+    template <unsigned int wanted, typename Use>
     [[gnu::always_inline]] static inline void
-    for_cells(const LaneMesh<Pack> &mesh, const Pack *m, const Use &use)
+    for_cells(const LaneMesh<Number> &mesh, const Number *m, const Use &use)
     {
       if (mesh.laws != nullptr)
-        for (int c = 0; c < mesh.n_cells; ++c)
-          use(KnownLaws<n, Pack>{*mesh.laws, static_cast<std::size_t>(c) * n}, c);
+        for (int c = 0; c < mesh.n_cells; c += width)
+        {
+          const Group group(c, mesh.n_cells);
+          const typename Group::template Laws<n, wanted> own(*mesh.laws, group);
+          use(KnownLaws<n, Value>{own.laws, own.first}, group.load(mesh.sizes, 1, 0), group);
+        }
       else
-        for (int c = 0; c < mesh.n_cells; ++c)
-          use(Laws{mesh.k, m != nullptr ? m + c * n : nullptr, {mesh.friction}}, c);
+      {
+        const auto &friction = Group::in_all_lanes(mesh.friction);
+        for (int c = 0; c < mesh.n_cells; c += width)
+        {
+          const Group group(c, mesh.n_cells);
+          const Elements stress(group, m, n);
+          use(Laws{Group::in_all_lanes(mesh.k), stress.begin, {friction}}, group.load(mesh.sizes, 1, 0), group);
+        }
+      }
     }
 
     /// States for the laws of general bodies, at all points.
     [[gnu::flatten]] static void
-    states(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const LaneStateAtPoints<Pack> &at)
+    states(const LaneMesh<Number> &mesh, const Number *u, const Number *v, const LaneStateAtPoints<Number> &at)
     {
-      for (int c = 0; c < mesh.n_cells; ++c)
-        cell_states<n, Pack>(
-          mesh.tables, mesh.sizes[c], u + c * q, v + c * q, at.u + c * n, at.v + c * n, at.e + c * n, at.rate + c * n);
+      for (int c = 0; c < mesh.n_cells; c += width)
+      {
+        const Group group(c, mesh.n_cells);
+        const Elements own_u(group, u, q), own_v(group, v, q);
+        const auto inverse_size = 1. / group.load(mesh.sizes, 1, 0);
+        const auto write        = [&](const double *table, const Elements &nodal, const auto &factor, Number *values) {
+          typename Group::template Nodes<Number, n> here(group, values);
+          evaluate<n>(table, nodal.begin, factor, 0., here.values);
+          here.store(0, n);
+        };
+        write(mesh.tables.values, own_u, 1., at.u);
+        write(mesh.tables.derivatives, own_u, inverse_size, at.e);
+        write(mesh.tables.values, own_v, 1., at.v);
+        write(mesh.tables.derivatives, own_v, inverse_size, at.rate);
+      }
     }
 
-    /// Sets the nodes of cell @p c that no cell before it has to zero.
-    static void
-    set_to_zero(const int c, Pack *F)
+    /// Sums of int N phi_i,s and int f phi_i at the nodes of a group, after those of the cells before it; @p f may be
+    /// null.
+    template <typename Size>
+    [[gnu::always_inline]] static inline void
+    sum_forces(
+      const LaneMesh<Number> &mesh, const Size &h, const Group &group, const Value *N, const Value *f, Number *F)
     {
-      if (c == 0)
-        F[0] = Pack{};
-      for (int i = 1; i < n; ++i)
-        F[c * q + i] = Pack{};
+      if constexpr (width == 1)
+      {
+        Number *const sums = F + group.first * q;
+        if (group.first == 0)
+          sums[0] = Number{};
+        for (int i = 1; i < n; ++i)
+          sums[i] = Number{};
+        add_forces<n, Value>(mesh.tables, h, N, f, sums);
+      }
+      else
+      {
+        Value sums[n] = {};
+        add_forces<n, Value>(mesh.tables, h, N, f, sums, 1, n);
+        sums[0] = group.sums_of_left(F, q, sums[q]);
+        add_forces<n, Value>(mesh.tables, h, N, f, sums, 0, 1);
+        for (int i = q; i >= 0; --i) // the last node of a cell is the first one of the next
+          group.store(sums[i], F, q, i);
+      }
     }
 
-    /// Computes the residual: overwrites @p F; returns the smallest stretch at a quadrature point.
-    [[gnu::flatten]] static Pack
-    residual(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const Pack *m, Pack *F)
+    /// Residual @p F of the nodes of a group; returns the smallest stretch of each cell.
+    template <typename Laws, typename Size>
+    [[gnu::always_inline]] static inline Value
+    residual_of_group(const LaneMesh<Number> &mesh,
+                      const Laws &laws,
+                      const Size &h,
+                      const Group &group,
+                      const Elements &u,
+                      const Elements &v,
+                      Number *F)
     {
-      Pack least = broadcast<Pack>(HUGE_VAL);
-      for_cells(mesh, m, [&](const auto &laws, const int c) {
-        set_to_zero(c, F);
-        const auto at = cell_residual<n, Pack>(mesh.tables, mesh.sizes[c], laws, u + c * q, v + c * q, F + c * q);
-        for (int p = 0; p < n; ++p)
-          least = smaller(at.w[p], least); // a stretch that is not a number makes F the same
-      });
+      Value N[n], f[n];
+      const auto at = cell_forces<n, Value>(mesh.tables, h, laws, u.begin, v.begin, N, f);
+      sum_forces(mesh, h, group, N, v.begin != nullptr ? f : nullptr, F);
+      Value least = at.w[0];
+      for (int p = 1; p < n; ++p)
+        least = smaller(at.w[p], least);
       return least;
     }
 
-    /// Right-hand side of M x = F for the correction x of the velocity @p v to that in which all forces balance, and
-    /// the factors of M. Without @p v, for plain bodies, x is the velocity.
-    [[gnu::flatten]] static void
-    balance(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const Pack *m, Pack *F, Pack *blocks, Pack *schur)
+    /// Computes the residual: overwrites @p F; returns the smallest stretch at a quadrature point.
+    [[gnu::flatten]] static Number
+    residual(const LaneMesh<Number> &mesh, const Number *u, const Number *v, const Number *m, Number *F)
     {
-      for_cells(mesh, m, [&](const auto &laws, const int c) {
-        set_to_zero(c, F);
-        const Pack *const own = v != nullptr ? v + c * q : nullptr;
-        cell_residual<n, Pack>(mesh.tables, mesh.sizes[c], laws, u + c * q, own, F + c * q);
-        cell_blocks<n, false, Pack>(mesh.tables, mesh.sizes[c], laws, u + c * q, own, nullptr, blocks + c * n * n);
-        condense_cell<q>(blocks + c * n * n, schur + 4 * c, [](const auto &) {});
+      auto least = broadcast<Value>(HUGE_VAL);
+      for_cells<Wanted::forces>(mesh, m, [&](const auto &laws, const auto &h, const Group &group) {
+        // A stretch that is not a number makes F the same.
+        least =
+          smaller(residual_of_group(mesh, laws, h, group, Elements(group, u, q), Elements(group, v, q), F), least);
       });
-      for (int i = 0; i <= mesh.n_cells * q; ++i)
-        F[i] = -F[i];
+      return Group::over_lanes(least);
     }
 
     [[gnu::flatten]] static void
-    slopes(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const LaneSlopes<Pack> &at)
+    slopes(const LaneMesh<Number> &mesh, const Number *u, const Number *v, const LaneSlopes<Number> &at)
     {
-      for_cells(mesh, nullptr, [&](const auto &laws, const int c) {
-        const auto D = cell_derivatives<n, true, Pack>(mesh.tables, mesh.sizes[c], laws, u + c * q, v + c * q);
+      for_cells<Wanted::slopes>(mesh, nullptr, [&](const auto &laws, const auto &h, const Group &group) {
+        const Elements own_u(group, u, q), own_v(group, v, q);
+        const auto D = cell_derivatives<n, true, Value>(mesh.tables, h, laws, own_u.begin, own_v.begin);
         for (int p = 0; p < n; ++p)
         {
-          const int i = c * n + p;
-          at.f_v[i]   = D.f_v[p];
-          at.f_w[i]   = D.f_w[p];
+          group.store(D.f_v[p], at.f_v, n, p);
+          group.store(D.f_w[p], at.f_w, n, p);
           if constexpr (std::decay_t<decltype(laws)>::has_one_modulus)
-            at.N_w[i] = laws.k;
+            group.store(laws.k, at.N_w, n, p);
           else
-            at.N_w[i] = D.N_w[p];
+            group.store(D.N_w[p], at.N_w, n, p);
           if (at.f_u != nullptr)
-            at.f_u[i] = D.f_u[p];
+            group.store(D.f_u[p], at.f_u, n, p);
           if (at.N_rate != nullptr)
-            at.N_rate[i] = D.N_rate[p];
+            group.store(D.N_rate[p], at.N_rate, n, p);
         }
       });
     }
 
     /// Products of the transposed dF/du and of dF/dv, which is symmetric, with @p x.
     [[gnu::flatten]] static void
-    transposed(const LaneMesh<Pack> &mesh, const LaneSlopes<Pack> &at, const Pack *x, Pack *K_x, Pack *M_x)
+    transposed(const LaneMesh<Number> &mesh, const LaneSlopes<Number> &at, const Number *x, Number *K_x, Number *M_x)
     {
-      for (int c = 0; c < mesh.n_cells; ++c)
+      for (int c = 0; c < mesh.n_cells; c += width)
       {
-        set_to_zero(c, K_x);
-        set_to_zero(c, M_x);
-        Pack here[n], slope[n], N[n], f[n];
-        evaluate<n>(mesh.tables.values, x + c * q, 1., 0., here);
-        evaluate<n>(mesh.tables.derivatives, x + c * q, 1. / mesh.sizes[c], 0., slope);
+        const Group group(c, mesh.n_cells);
+        const auto h = group.load(mesh.sizes, 1, 0);
+        const Elements own(group, x, q), f_v(group, at.f_v, n), f_w(group, at.f_w, n), N_w(group, at.N_w, n),
+          f_u(group, at.f_u, n), N_rate(group, at.N_rate, n);
+        Value here[n], slope[n], N[n], f[n];
+        evaluate<n>(mesh.tables.values, own.begin, 1., 0., here);
+        evaluate<n>(mesh.tables.derivatives, own.begin, 1. / h, 0., slope);
         for (int p = 0; p < n; ++p)
         {
-          const int i = c * n + p;
-          N[p]        = at.f_w[i] * here[p] + at.N_w[i] * slope[p];
-          f[p]        = at.f_u != nullptr ? at.f_u[i] * here[p] : Pack{};
+          N[p] = f_w.begin[p] * here[p] + N_w.begin[p] * slope[p];
+          f[p] = f_u.begin != nullptr ? f_u.begin[p] * here[p] : Value{};
         }
-        add_forces<n, Pack>(mesh.tables, mesh.sizes[c], N, at.f_u != nullptr ? f : nullptr, K_x + c * q);
+        sum_forces(mesh, h, group, N, f_u.begin != nullptr ? f : nullptr, K_x);
         for (int p = 0; p < n; ++p)
         {
-          const int i = c * n + p;
-          f[p]        = at.f_v[i] * here[p];
-          N[p]        = at.N_rate != nullptr ? at.N_rate[i] * slope[p] : Pack{};
+          f[p] = f_v.begin[p] * here[p];
+          N[p] = N_rate.begin != nullptr ? N_rate.begin[p] * slope[p] : Value{};
         }
-        add_forces<n, Pack>(mesh.tables, mesh.sizes[c], N, f, M_x + c * q);
+        sum_forces(mesh, h, group, N, f, M_x);
       }
-    }
-
-    static void
-    transpose(Pack *K)
-    {
-      for (int i = 0; i < n; ++i)
-        for (int j = 0; j < i; ++j)
-        {
-          const Pack lower = K[i * n + j];
-          K[i * n + j]     = K[j * n + i];
-          K[j * n + i]     = lower;
-        }
-    }
-
-    /// The factors of K + real M, and of K + (re + i im) M for each pair; with the transposed K if so wished.
-    template <bool is_transposed>
-    [[gnu::flatten]] static void
-    factorize(const LaneMesh<Pack> &mesh,
-              const Pack *u,
-              const Pack *v,
-              const Pack &real,
-              const int n_pairs,
-              const Complex<Pack> *shifts,
-              Pack *blocks,
-              Pack *schur,
-              Complex<Pack> *complex_blocks,
-              Complex<Pack> *complex_schur)
-    {
-      const auto any_pivot = [](const auto &) {}; // non-finite factors show in the solution
-      for_cells(mesh, nullptr, [&](const auto &laws, const int c) {
-        Pack K[n * n], M[n * n];
-        cell_blocks<n, true>(mesh.tables, mesh.sizes[c], laws, u + c * q, v + c * q, K, M);
-        if constexpr (is_transposed)
-          transpose(K);
-        Pack *A = blocks + c * n * n;
-        for (int i = 0; i < n * n; ++i)
-          A[i] = K[i] + real * M[i];
-        condense_cell<q>(A, schur + 4 * c, any_pivot);
-        for (int j = 0; j < n_pairs; ++j)
-        {
-          Complex<Pack> *B = complex_blocks + (j * mesh.n_cells + c) * n * n;
-          for (int i = 0; i < n * n; ++i)
-            B[i] = {K[i] + shifts[j].re * M[i], shifts[j].im * M[i]};
-          condense_cell<q>(B, complex_schur + 4 * (j * mesh.n_cells + c), any_pivot);
-        }
-      });
-    }
-
-    static int
-    n_blocks(const int n_cells)
-    {
-      return n_cells;
-    }
-
-    template <typename Number>
-    static void
-    forward(const int n_cells, const Number *blocks, Number *x)
-    {
-      for (int c = 0; c < n_cells; ++c)
-        forward_cell<q>(blocks + c * n * n, x + c * q);
-    }
-
-    template <typename Number>
-    static void
-    backward(const int n_cells, const Number *blocks, Number *x)
-    {
-      for (int c = 0; c < n_cells; ++c)
-        backward_cell<q>(blocks + c * n * n, x + c * q);
     }
 
     [[gnu::flatten]] static void
-    integrals(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const Pack *m, LaneIntegrals<Pack> &sum)
+    integrals(
+      const LaneMesh<Number> &mesh, const Number *u, const Number *v, const Number *m, LaneIntegrals<Number> &sum)
     {
-      for_cells(mesh, m, [&](const auto &laws, const int c) {
-        cell_integrals<n>(mesh.tables, mesh.sizes[c], laws, u + c * q, v + c * q, sum);
+      for_cells<Wanted::forces | Wanted::energies>(mesh, m, [&](const auto &laws, const auto &h, const Group &group) {
+        const CellDensities<n, Value> all(
+          mesh.tables, h, laws, Elements(group, u, q).begin, Elements(group, v, q).begin);
+        for (int l = 0; l < group.n; ++l)
+          for (int p = 0; p < n; ++p)
+          {
+            const double ds = Group::of_lane(h, l) * mesh.tables.weights[p];
+            const PointDensities<Number> at{Group::of_lane(all.at[p].elastic_energy, l),
+                                            Group::of_lane(all.at[p].power, l),
+                                            Group::of_lane(all.at[p].force, l)};
+            add_densities(ds, at, Group::of_lane(all.v[p], l), sum);
+          }
       });
-    }
-
-    /// Integral of u over the body.
-    static Pack
-    integral(const LaneMesh<Pack> &mesh, const Pack *u)
-    {
-      Pack sum = Pack{};
-      for (int c = 0; c < mesh.n_cells; ++c)
-      {
-        Pack at[n];
-        evaluate<n>(mesh.tables.values, u + c * q, 1., 0., at);
-        for (int p = 0; p < n; ++p)
-          sum += mesh.sizes[c] * mesh.tables.weights[p] * at[p];
-      }
-      return sum;
-    }
-
-    /// Derivatives by s at both ends, from a table of derivatives at @p n_samples places that begin and end there.
-    static void
-    end_derivatives(
-      const LaneMesh<Pack> &mesh, const int n_samples, const double *sample_derivatives, const Pack *u, Pack *ends)
-    {
-      const int last = mesh.n_cells - 1;
-      ends[0] = ends[1] = Pack{};
-      for (int j = 0; j < n; ++j)
-      {
-        ends[0] += sample_derivatives[j] / mesh.sizes[0] * u[j];
-        ends[1] += sample_derivatives[(n_samples - 1) * n + j] / mesh.sizes[last] * u[last * q + j];
-      }
-    }
-
-    /// Compares the stretch at the sample @p place of a cell with the extremes so far.
-    template <typename Size>
-    [[gnu::always_inline]] static inline void
-    look_at_sample(
-      const double *derivatives, const Size &inverse_size, const Pack *u, const Pack &place, LaneLook<Pack> &look)
-    {
-      Pack w{};
-      for (int j = 0; j < n; ++j)
-        w += derivatives[j] * u[j];
-      w           = 1. + inverse_size * w;
-      look.min_at = w < look.least ? place : look.min_at;
-      look.least  = smaller(w, look.least);
-      look.max_at = w > look.most ? place : look.max_at;
-      look.most   = w > look.most ? w : look.most;
     }
 
     /// Smallest and largest stretch among the samples of all cells.
-    static void
-    extremes(const LaneMesh<Pack> &mesh,
-             const int n_samples,
-             const double *sample_derivatives,
-             const Pack *u,
-             LaneLook<Pack> &look)
+    [[gnu::flatten]] static LaneExtremes<Number>
+    extremes(const LaneMesh<Number> &mesh, const int n_samples, const double *sample_derivatives, const Number *u)
     {
-      for (int c = 0; c < mesh.n_cells; ++c)
+      LaneExtremes<Value> result;
+      for (int c = 0; c < mesh.n_cells; c += width)
+      {
+        const Group group(c, mesh.n_cells);
+        const Elements own(group, u, q);
+        const auto inverse_size = 1. / group.load(mesh.sizes, 1, 0);
+        const Value first       = group.numbers() * n_samples;
         for (int i = 0; i < n_samples; ++i)
-          look_at_sample(
-            sample_derivatives + i * n, 1. / mesh.sizes[c], u + c * q, broadcast<Pack>(c * n_samples + i), look);
+        {
+          Value e{};
+          for (int j = 0; j < n; ++j)
+            e += sample_derivatives[i * n + j] * own.begin[j];
+          result.see(1. + inverse_size * e, first + i);
+        }
+      }
+      return Group::over_lanes(result);
     }
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

@@ -21,9 +21,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   public:
     static constexpr int lanes = PackTraits<Pack>::size;
 
-    GeneralLaws(const LaneSetup &setup, LawHost *host)
+    explicit GeneralLaws(const LaneSetup &setup)
       : bits_(setup.laws)
-      , host_(host)
       , n_(static_cast<int>(setup.n_cells * (setup.degree + 1)))
     {
     }
@@ -49,11 +48,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     void
-    set_body(const int l, const LaneBody &body, const bool is_busy)
+    set_body(const int l, const LaneBody &body)
     {
       if (!has(LaneLaws::general))
         return;
-      is_busy_[l] = is_busy;
+      hosts_[l]          = body.host;
+      const bool is_busy = body.host != nullptr; // else the lane is at rest
       set_lane(direction_.ratio, l, body.direction.ratio);
       set_lane(direction_.switching_velocity, l, body.direction.switching_velocity);
       for (int p = 0; p < n_; ++p)
@@ -104,7 +104,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
       if (asks_host())
         for (int l = 0; l < lanes; ++l)
-          if (is_busy_[l] && get_lane(least, l) > 0. && !ask_host(l, t[l], slopes))
+          if (hosts_[l] != nullptr && get_lane(least, l) > 0. && !ask_host(l, t[l], slopes))
             set_lane(least, l, -1.);
       if (has(LaneLaws::direction))
         tanh_at_points(at.v, direction_.switching_velocity, direction_.tanh, n_);
@@ -179,8 +179,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         for (int i = 0; i < n_read; ++i)
           for (int p = 0; p < n_; ++p)
             own[i][p] = get_lane(read[i][p], l);
-      const bool good =
-        host_->laws(l, {t, own[0], own[1], own[2], own[3], own[4], own[5], own[6], own[7], own[8], own[9], own[10]});
+      const bool good = hosts_[l]->evaluate(
+        {t, own[0], own[1], own[2], own[3], own[4], own[5], own[6], own[7], own[8], own[9], own[10]});
       if constexpr (lanes > 1)
         for (int i = n_read; i < n_arrays; ++i)
           if (own[i] != nullptr)
@@ -195,9 +195,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static constexpr int n_read = 4, n_arrays = 11; ///< numbers of arrays of LanePoints
 
     const unsigned int bits_;
-    LawHost *const host_;
     const int n_; ///< points
-    bool is_busy_[lanes] = {};
+    LawHost *hosts_[lanes] = {};
     struct
     {
       Pack ratio, switching_velocity, *tanh;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/equation/cell_loops.h>
 #include <crawler/equation/point_laws.h>
 #include <crawler/lanes/lane_engine.h>
 #include <crawler/lanes/lane_friction.h>
@@ -40,15 +39,32 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   template <typename Pack>
   struct LaneIntegrals
   {
-    Pack displacement{}, elastic_energy{}, stress_power{}, positive_power{}, absolute_power{}, dissipation{},
-      net_friction{}, abs_friction{}, velocity{};
+    Pack elastic_energy{}, stress_power{}, positive_power{}, absolute_power{}, dissipation{}, net_friction{},
+      abs_friction{}, velocity{};
   };
 
-  /// Observation of a state: the extreme stretches, the numbers of their samples, and the integrals.
+  /// Extreme stretches, and the numbers of their samples.
+  template <typename Pack>
+  struct LaneExtremes
+  {
+    Pack least = broadcast<Pack>(HUGE_VAL), most = broadcast<Pack>(-HUGE_VAL), min_at{}, max_at{};
+
+    /// Compares the stretch at a sample with the extremes so far.
+    void
+    see(const Pack &w, const Pack &sample)
+    {
+      min_at = w < least ? sample : min_at;
+      least  = smaller(w, least);
+      max_at = w > most ? sample : max_at;
+      most   = w > most ? w : most;
+    }
+  };
+
+  /// Observation of a state: extremes and integrals.
   template <typename Pack>
   struct LaneLook
   {
-    Pack least = broadcast<Pack>(HUGE_VAL), most = broadcast<Pack>(-HUGE_VAL), min_at{}, max_at{};
+    LaneExtremes<Pack> stretch;
     LaneIntegrals<Pack> sums;
     Pack end_stretch[2] = {}, end_rate[2] = {}; ///< stretch at both ends, and its rate
   };

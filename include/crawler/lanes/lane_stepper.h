@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/equation/stretch_form.h>
 #include <crawler/lanes/host_laws.h>
 #include <crawler/lanes/lane_tables.h>
 #include <crawler/time/stepper.h>
@@ -51,10 +50,10 @@ namespace crawler
     }
 
     /// Stretch and friction where a friction law was not positive, since begin(); nothing if all were.
-    const std::optional<std::pair<double, double>> &
+    std::optional<std::pair<double, double>>
     bad_friction() const
     {
-      return bad_friction_;
+      return cell_laws_ ? cell_laws_->bad_friction : std::nullopt;
     }
 
   private:
@@ -66,28 +65,21 @@ namespace crawler
     accepted(unsigned int lane, const LaneStep &step) override;
     void
     done(unsigned int lane, const LaneOutcome &outcome) override;
-    bool
-    laws(unsigned int lane, const LanePoints &points) override;
-    double
-    cell_laws(double t, const double *m, const double *w, const double *rate, CellLaws<double> &at_cells) override;
     void
     show_rates();
 
     const Scene &scene_;
     const std::shared_ptr<const LaneTables> tables_;
     LaneSetup setup_;
-    std::optional<HostLaws> laws_;         ///< laws of a general body in the position form
-    std::optional<StretchLaws> cell_laws_; ///< laws in the stretch form
+    std::optional<HostLaws> laws_;          ///< laws of a general body in the position form
+    std::optional<HostCellLaws> cell_laws_; ///< laws in the stretch form
     const std::unique_ptr<ActiveStressAtPoints> stress_;
     LaneStorage memory_;
 
     // State since begin().
-    std::optional<std::pair<double, double>> bad_friction_;
     Course course_;
-    std::optional<LaneJob> job_; ///< until the engine takes it
-    bool goes_on_ = false;
     LaneProgress progress_;     ///< progress at the last accepted state
-    std::vector<double> old_z_; ///< stages of the last step of a run that continues
+    std::vector<double> old_z_; ///< stages of the step before, until the first one of a run that continues
     std::vector<double> y_;
     LaneStep lane_step_;
     std::optional<Step> step_;       ///< step that next() makes

@@ -3,7 +3,7 @@
 
 #include <crawler/equation/stretch_loops.h>
 #include <crawler/lanes/lane_engine.h>
-#include <crawler/lanes/lane_kernels.h>
+#include <crawler/lanes/lane_friction.h>
 #include <crawler/lanes/lane_memory.h>
 #include <crawler/lanes/lane_tridiagonal.h>
 
@@ -29,10 +29,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static constexpr bool gives_rates = false; ///< for LaneHost::look_inside
     static constexpr bool keeps_tries = false;
 
-    StretchSystem(const LaneSetup &setup, LawHost *host)
+    explicit StretchSystem(const LaneSetup &setup)
       : n_points(static_cast<int>(setup.n_cells))
       , setup_(setup)
-      , host_(host)
       , nodes_{setup.stretch.node_rule, n_points, setup.sizes, setup.direction}
       , cells_(n_points)
     {
@@ -50,8 +49,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     void
-    set_body(const int l, const LaneBody &body, const bool)
+    set_body(const int l, const LaneBody &body)
     {
+      host_ = body.host;
       set_lane(k_, l, body.k);
       set_lane(a_, l, body.a);
       friction_.set(l, -body.a);
@@ -126,28 +126,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       find_stretch(q);
       for (int j = 0; j < n_points; ++j)
-      {
-        const Pack place = broadcast<Pack>(j);
-        result.min_at    = w_[j] < result.least ? place : result.min_at;
-        result.least     = smaller(w_[j], result.least);
-        result.max_at    = w_[j] > result.most ? place : result.max_at;
-        result.most      = w_[j] > result.most ? w_[j] : result.most;
-      }
-    }
-
-    /// Integral of u over the body.
-    Pack
-    integral(const Pack *q)
-    {
-      find_stretch(q);
-      Pack u = q[n_points], sum = Pack{};
-      for (int j = 0; j < n_points; ++j)
-      {
-        const Pack change = setup_.sizes[j] * (w_[j] - 1.);
-        sum += setup_.sizes[j] * (u + 0.5 * change);
-        u += change;
-      }
-      return sum;
+        result.stretch.see(w_[j], broadcast<Pack>(j));
     }
 
   private:
@@ -172,7 +151,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       constexpr double nothing = 1e-300;
       if constexpr (lanes == 1)
         if ((setup_.laws & LaneLaws::general) != 0) // the unknowns are no powers
-          return host_->cell_laws(*t, m, q, q_dot, nodes_.laws);
+          return host_->evaluate_cells(*t, m, q, q_dot, nodes_.laws);
       find_stretch(q);
       Pack least = broadcast<Pack>(1.);
       for (int j = 0; j < n_points; ++j)
@@ -195,7 +174,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     const LaneSetup &setup_;
-    LawHost *const host_;
+    LawHost *host_ = nullptr; ///< of a general body
     StretchNodes<Pack> nodes_;
     LaneFriction<Pack> friction_; ///< friction that gives the mobility, w^-a
     Pack k_, a_;

@@ -24,13 +24,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static constexpr bool gives_rates = true;  ///< for LaneHost::look_inside
     static constexpr bool keeps_tries = true;  ///< a failed try is a guess, see Lane::control_step
 
-    PositionSystem(const LaneSetup &setup, LawHost *host)
+    explicit PositionSystem(const LaneSetup &setup)
       : n_unknowns(static_cast<int>(setup.n_cells * setup.degree + 1))
       , n_points(static_cast<int>(setup.n_cells * (setup.degree + 1)))
       , setup_(setup)
       , is_general_((setup.laws & LaneLaws::general) != 0)
-      , general_(setup, host)
+      , general_(setup)
       , kernels_(lane_kernels<Pack>(setup.degree, setup.n_cells))
+      , corners_(static_cast<int>(setup.n_cells), static_cast<int>(setup.degree))
     {
       mesh_.n_cells = static_cast<int>(setup.n_cells);
       mesh_.sizes   = setup.sizes;
@@ -44,11 +45,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     const int n_controlled = n_unknowns; ///< unknowns whose error is controlled
 
     void
-    set_body(const int l, const LaneBody &body, const bool is_busy)
+    set_body(const int l, const LaneBody &body)
     {
       set_lane(mesh_.k, l, body.k);
       mesh_.friction.set(l, body.a);
-      general_.set_body(l, body, is_busy);
+      general_.set_body(l, body);
     }
 
     Pack
@@ -65,7 +66,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     look(const double *t, const Pack *u, const Pack *v, const Pack *m, const bool rates, LaneLook<Pack> &result)
     {
-      kernels_.extremes(mesh_, static_cast<int>(setup_.n_samples), setup_.sample_derivatives, u, result);
+      result.stretch = kernels_.extremes(mesh_, static_cast<int>(setup_.n_samples), setup_.sample_derivatives, u);
       if (!rates)
         return;
       if (is_general_)
@@ -73,31 +74,20 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       kernels_.integrals(mesh_, u, v, m, result.sums);
       if ((setup_.laws & LaneLaws::feedback) == 0)
         return;
-      const int n_samples = static_cast<int>(setup_.n_samples);
-      kernels_.end_derivatives(mesh_, n_samples, setup_.sample_derivatives, u, result.end_stretch);
-      kernels_.end_derivatives(mesh_, n_samples, setup_.sample_derivatives, v, result.end_rate);
-      for (Pack &w : result.end_stretch)
-        w = 1. + w;
-    }
-
-    Pack
-    integral(const Pack *u) const
-    {
-      return kernels_.integral(mesh_, u);
+      for (int end = 0; end < 2; ++end)
+      {
+        result.end_stretch[end] = 1. + end_derivative(end, u);
+        result.end_rate[end]    = end_derivative(end, v);
+      }
     }
 
     void
     lay_out(LaneMemory &memory)
     {
       general_.lay_out(memory);
-      const std::size_t cells = setup_.n_cells, block = block_size(), corners = cells + 1;
-      memory.pieces(block, blocks_);
-      memory.pieces(4 * cells, schur_);
-      real_.lay_out(corners, memory);
-      memory.pieces(pairs * block, complex_blocks_);
-      memory.pieces(pairs * 4 * cells, complex_schur_);
-      for (LaneCorners<Number> &one : complex_)
-        one.lay_out(corners, memory);
+      memory.pieces(block_size(), blocks_);
+      memory.pieces(pairs * block_size(), complex_blocks_);
+      corners_.lay_out(memory);
     }
 
     /// Lays out the memory for slopes().
@@ -138,29 +128,28 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       LaneShifts<Pack, pairs> shifts;
       shifts.set(setup_, inverse_h);
       const auto factorize = is_transposed ? kernels_.factorize_transposed : kernels_.factorize;
-      factorize(mesh_, u, v, shifts.real, pairs, shifts.complex, blocks_, schur_, complex_blocks_, complex_schur_);
-      factorize_corners(pairs);
+      factorize(mesh_,
+                u,
+                v,
+                shifts.real,
+                pairs,
+                shifts.complex,
+                blocks_,
+                corners_.schur,
+                complex_blocks_,
+                corners_.complex_schur);
+      corners_.factorize(pairs);
     }
 
     /// Solves with the real system and, unless @p y is null, K + (l_j/h) M for all pairs, @p y [pair][unknown].
     void
     solve(Pack *x, Number *y = nullptr) const
     {
-      const int N = mesh_.n_cells, q = static_cast<int>(setup_.degree), n = n_unknowns;
-      const int n_pairs = y != nullptr ? pairs : 0;
-      const auto in_all = [&](const auto &use) {
-        use(real_, x);
-        for (int j = 0; j < n_pairs; ++j)
-          use(complex_[j], y + j * n);
-      };
+      const int N = mesh_.n_cells, n = n_unknowns, n_pairs = y != nullptr ? pairs : 0;
       kernels_.forward(N, blocks_, x);
       for (int j = 0; j < n_pairs; ++j)
         kernels_.complex_forward(N, complex_blocks_ + j * block_size(), y + j * n);
-      for (int c = 0; c < N; ++c)
-        in_all([c, q](const auto &corners, auto *right) { corners.eliminate(c, q, right); });
-      in_all([N, q](const auto &corners, auto *right) { right[N * q] *= corners.pivot[N]; });
-      for (int c = N - 1; c >= 0; --c)
-        in_all([c, q](const auto &corners, auto *right) { corners.substitute(c, q, right); });
+      corners_.solve(x, y, n_pairs, n);
       kernels_.backward(N, blocks_, x);
       for (int j = 0; j < n_pairs; ++j)
         kernels_.complex_backward(N, complex_blocks_ + j * block_size(), y + j * n);
@@ -175,8 +164,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       constexpr double settled = 1e-10, tiny = 1e-13;
       if (!is_general_)
       {
-        kernels_.balance(mesh_, u, nullptr, m, v, blocks_, schur_);
-        factorize_corners(0);
+        kernels_.balance(mesh_, u, nullptr, m, v, blocks_, corners_.schur);
+        corners_.factorize(0);
         solve(v);
         return Pack{};
       }
@@ -184,8 +173,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int i = 0; i < max_corrections; ++i)
       {
         evaluate(t, u, v, m, /*slopes=*/true);
-        kernels_.balance(mesh_, u, v, m, correction, blocks_, schur_);
-        factorize_corners(0);
+        kernels_.balance(mesh_, u, v, m, correction, blocks_, corners_.schur);
+        corners_.factorize(0);
         solve(correction);
         const auto is_done = left <= 1.; // a lane does not change because others do
         Pack change{}, size{};
@@ -208,6 +197,18 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
   private:
+    /// Derivative by s at the left or right @p end: the samples of a cell begin and end at its own.
+    Pack
+    end_derivative(const int end, const Pack *u) const
+    {
+      const int q = static_cast<int>(setup_.degree), cell = end * (mesh_.n_cells - 1);
+      const double *const by_node = setup_.sample_derivatives + end * (setup_.n_samples - 1) * (q + 1);
+      Pack sum{};
+      for (int j = 0; j <= q; ++j)
+        sum += by_node[j] / setup_.sizes[cell] * u[cell * q + j];
+      return sum;
+    }
+
     /// Evaluates the laws for a state.
     Pack
     evaluate(const double *t, const Pack *u, const Pack *v, const Pack *m, const bool slopes)
@@ -222,29 +223,13 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return std::size_t(setup_.degree + 1) * (setup_.degree + 1) * kernels_.n_blocks(mesh_.n_cells);
     }
 
-    /// Factorizes the tridiagonal matrices of the real system and of the first @p n_pairs complex ones.
-    void
-    factorize_corners(const int n_pairs) const
-    {
-      const int N = mesh_.n_cells;
-      Pack diagonal;
-      Number diagonals[pairs];
-      for (int c = 0; c < N; ++c)
-      {
-        real_.factorize(c, N, schur_, diagonal);
-        for (int j = 0; j < n_pairs; ++j)
-          complex_[j].factorize(c, N, complex_schur_ + 4 * j * N, diagonals[j]);
-      }
-    }
-
     const LaneSetup &setup_;
     const bool is_general_;
     GeneralLaws<Pack> general_;
     LaneMesh<Pack> mesh_;
     const LaneKernelTable<Pack> &kernels_;
-    Pack *blocks_, *schur_;
-    Number *complex_blocks_, *complex_schur_; ///< [pair][...]
-    LaneCorners<Pack> real_;
-    LaneCorners<Number> complex_[pairs];
+    Pack *blocks_;
+    Number *complex_blocks_; ///< [pair][...]
+    LaneCorners<Pack, pairs> corners_;
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

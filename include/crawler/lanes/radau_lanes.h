@@ -2,7 +2,6 @@
 #pragma once
 
 #include <crawler/lanes/lane_engine.h>
-#include <crawler/lanes/lane_kernels.h>
 #include <crawler/lanes/lane_memory.h>
 #include <crawler/lanes/lane_stretch.h>
 #include <crawler/lanes/lane_systems.h>
@@ -29,7 +28,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     RadauLanes(const LaneSetup &setup, LaneHost *host, double *memory)
       : setup_(setup)
       , host_(host)
-      , step_(setup, host)
+      , step_(setup)
       , memory_(memory)
     {
       step_.lay_out(memory_);
@@ -67,21 +66,13 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
   private:
-    /// Takes the next body for a lane, or one at rest that needs nothing.
+    /// Takes the next body for a lane.
     void
     take_next(const int l)
     {
-      Lane &lane   = step_.bodies[l];
-      lane         = Lane();
-      lane.busy    = host_->take(l, lane.job);
-      lane.is_idle = !lane.busy;
-      if (lane.is_idle)
-        lane.job = LaneJob();
-      lane.t    = lane.job.start_time;
-      lane.next = lane.job.initial_step;
-      if (lane.job.progress != nullptr)
-        static_cast<LaneProgress &>(lane) = *lane.job.progress;
-      step_.system.set_body(l, lane.job.body, lane.busy);
+      Lane &lane = step_.bodies[l];
+      lane.take(*host_, l);
+      step_.system.set_body(l, lane.job.body);
       set_lane(step_.tolerance, l, lane.job.tolerance);
       step_.states.start(l, lane.job.start, lane.job.old_z);
       for (int i = 0; i < s * step_.n_points; ++i)
@@ -179,10 +170,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       step_.system.look(step_.times[i], u, step_.states.v, step_.m + i * step_.n_points, host_->look_inside, look);
       const LaneIntegrals<Pack> &sums = look.sums;
       for (int l = 0; l < lanes; ++l)
-        stages_[l][i] = {get_lane(look.least, l),
-                         get_lane(look.most, l),
-                         static_cast<unsigned int>(get_lane(look.min_at, l)),
-                         static_cast<unsigned int>(get_lane(look.max_at, l)),
+        stages_[l][i] = {get_lane(look.stretch.least, l),
+                         get_lane(look.stretch.most, l),
+                         static_cast<unsigned int>(get_lane(look.stretch.min_at, l)),
+                         static_cast<unsigned int>(get_lane(look.stretch.max_at, l)),
+                         get_lane(sums.elastic_energy, l),
                          get_lane(sums.stress_power, l),
                          get_lane(sums.positive_power, l),
                          get_lane(sums.absolute_power, l),
@@ -193,7 +185,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                          get_lane(step_.states.v[step_.n - 1], l),
                          {get_lane(look.end_stretch[0], l), get_lane(look.end_stretch[1], l)},
                          {get_lane(look.end_rate[0], l), get_lane(look.end_rate[1], l)}};
-      elastic_energy_ = sums.elastic_energy;
     }
 
     /// Handles a lane at the end of its step.
@@ -215,7 +206,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                                           reinterpret_cast<const double *>(step_.states.y) + l,
                                           reinterpret_cast<const double *>(step_.states.old_z) + l,
                                           stages_[l],
-                                          get_lane(elastic_energy_, l),
                                           get_lane(unsettled_, l) <= 1e3,
                                           &lane});
       if (lane.output_time == lane.job.n_output_times)
@@ -232,8 +222,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     end(const int l, const LaneOutcome::Status status)
     {
-      const Lane &lane = step_.bodies[l];
-      host_->done(l, {status, &lane, get_lane(step_.system.integral(step_.states.y), l)});
+      host_->done(l, {status, &step_.bodies[l]});
       step_.bodies[l].busy = false;
     }
 
@@ -255,8 +244,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     RadauStep<Pack, s, Equations> step_;
     LaneMemory memory_;
     LaneStage stages_[lanes][s]; ///< stages as the host sees them
-    Pack elastic_energy_{};
-    Pack unsettled_{}; ///< error of the velocity at the end of the step, relative to the requested one
-    double *scratch_;  ///< active stress of one lane
+    Pack unsettled_{};           ///< error of the velocity at the end of the step, relative to the requested one
+    double *scratch_;            ///< active stress of one lane
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

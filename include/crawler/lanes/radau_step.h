@@ -30,9 +30,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Pack *real;                           ///< [unknown] right-hand side of the real system, and its solution
     Complex<Pack> *complex;               ///< [pair][unknown] right-hand sides of the complex systems
 
-    RadauStep(const LaneSetup &all, LawHost *host)
+    explicit RadauStep(const LaneSetup &all)
       : setup(all)
-      , system(all, host)
+      , system(all)
       , n(system.n_unknowns)
       , n_points(system.n_points)
       , states{all, n}
