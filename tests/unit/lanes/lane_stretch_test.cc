@@ -79,8 +79,11 @@ namespace
     Case(const Case &) = delete;
 
     double
-    cell_laws(const double time, const double *known_m, const double *w, const double *rate, CellLaws<double> &at_cells)
-      override
+    evaluate_cells(const double time,
+                   const double *known_m,
+                   const double *w,
+                   const double *rate,
+                   CellLaws<double> &at_cells) override
     {
       const auto n_cells = static_cast<std::size_t>(n);
       EXPECT_LT(stretch_laws.evaluate(time, {w, n_cells}, {rate, n_cells}, known_m), 0);
@@ -102,7 +105,8 @@ namespace
   struct InMemory
   {
     explicit InMemory(const LaneSetup &setup, LawHost *host)
-      : system(setup, host)
+      : system(setup)
+      , host(host)
     {
       generic::LaneMemory sizes(nullptr);
       system.lay_out(sizes);
@@ -114,10 +118,11 @@ namespace
     void
     set_body(const int lane, const double k, const double a)
     {
-      system.set_body(lane, {.k = k, .a = a}, true);
+      system.set_body(lane, {.k = k, .a = a, .host = host});
     }
 
     System<Pack> system;
+    LawHost *const host;
     LaneStorage memory;
   };
 
