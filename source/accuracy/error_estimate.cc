@@ -98,12 +98,11 @@ namespace crawler
     RecordOptions
     options_of_finer_run(const Problem &problem, const SimulationResult &result)
     {
-      using Wish = GaitWish;
       return {.energy_balance = result.energy_balance.has_value(),
               .cycles         = cycle_wish(problem.parameters, problem.scene, /*has_pictures=*/false),
-              .gait           = !result.gait               ? Wish::none
-                                : result.gait->is_declared ? Wish::declared
-                                                           : Wish::any};
+              .gait           = !result.gait               ? GaitWish::none
+                                : result.gait->is_declared ? GaitWish::declared
+                                                           : GaitWish::any};
     }
 
     /// Runs with more cells and its own steps: where no rule predicts the error this separates the two parts of the

@@ -14,7 +14,7 @@ namespace crawler
 {
   namespace
   {
-    // Constants measured by build/tests/ladder_study; doc/numerics.md, "Levels without a mesh".
+    // Constants checked by ModelError.RandomWaves; doc/numerics.md, "Levels without a mesh".
     /// Errors below this part of the length count as zero.
     constexpr double floor = 1e-12;
     /// Share of the model in the error of the kinematic level; the rest is for its quadrature.

@@ -205,8 +205,9 @@ namespace crawler
                                    ? least
                                    : std::clamp(std::cbrt(total / wanted()), least, max_refined_cells);
             // The error of a rough stress is that of its kinks in the cells, unless more cells do not reduce it.
-            const bool is_of_cells = first_.is_rough && first_.numerics.mesh.tolerance == 0. && total < error_before_;
-            error_before_          = total;
+            const bool is_of_cells =
+              first_.is_rough && first_.numerics.mesh.tolerance == 0. && total > wanted() && total < error_before_;
+            error_before_ = total;
             make_finer(cells, is_of_cells ? 1. : refined_tolerance);
             return true;
           }

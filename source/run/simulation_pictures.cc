@@ -107,9 +107,11 @@ namespace crawler
       return;
     const double before = now();
     const PictureTimes::Time row{picture->value, {.is_snapshot = false, .is_row = true}};
-    StateNumbers numbers = simulation_parts::numbers_of(
-      run_->state.step, mesh_.assembler->integrals(t, y_, v_), run_->state.stretch, run_->state.energy_balance);
-    numbers.step.size = 0.;
+    StateNumbers numbers = simulation_parts::numbers_of(run_->state.step,
+                                                        mesh_.assembler->integrals(t, y_, v_),
+                                                        run_->state.stretch,
+                                                        result().energy_balance.value_or(EnergyBalance()));
+    numbers.step.size    = 0.;
     show(numbers, y_, v_, /*is_step_end=*/false, &row);
     result().seconds.output += now() - before;
   }

@@ -118,7 +118,7 @@ namespace crawler
     // Profiles and ground of a general body in the position form.
     const double *k_profile = nullptr, *friction_profile = nullptr; ///< [points] k(s)/k and b(s)
     Direction direction{};                                          ///< of the ground
-    LawHost *host = nullptr;                                        ///< evaluates the laws of a general body
+    LawHost *host = nullptr; ///< evaluates the laws of a general body; null: the lane is at rest
   };
 
   /// Run of a body; by default it stays at rest.
