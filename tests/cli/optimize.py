@@ -123,18 +123,20 @@ def test_pulling_limits(place):
 
 
 def test_many_crests(place):
-    """A wave whose strains reach their limits in many places: 600 random steps found 0.0168, half of the optimum."""
-    low, high = -0.21, 0.17
+    """A wave whose strains reach their limits in many places: 600 random steps found 0.0168, half of the optimum. Limits
+    may be exceeded by the tolerance."""
+    low, high, tolerance = -0.21, 0.17, 1e-3
     done = run("optimize_harmonics", place / "crests", "Model=nonlinear", "Accuracy=1e-3", "Body/Anchoring exponent=2.4", "Body/Elastic modulus=1.3",
                "Active stress/Generator=modes", MODES + "Harmonics=3", MODES + "Coefficients=0, 0.2, 0.01, 0.02, 0.03, 0.01, 0.02",
                f"Optimize/Variables={MODES}Coefficients[2-7] : -2 to 2", "Optimize/Objective=displacement",
-               f"Optimize/Smallest strain={low}", f"Optimize/Largest strain={high}", "Optimize/Starts=1", "Optimize/Tolerance=1e-2")
+               f"Optimize/Smallest strain={low}", f"Optimize/Largest strain={high}", "Optimize/Starts=1", f"Optimize/Tolerance={tolerance}")
     optimum = optima(place / "crests")[0] if done.returncode == 0 else {"has_converged": False, "objective": 0, "violation": 1}
     best = summary(place / "crests")
     expect(optimum["has_converged"] and 0.99 * 0.0222 < optimum["objective"] < 0.023, f"crests: {optimum} {done.stderr}")
     strains = best["min_stretch"]["value"] - 1, best["max_stretch"]["value"] - 1
-    expect(low * (1 + 1e-5) <= strains[0] <= 0.97 * low and 0.97 * high <= strains[1] <= high * (1 + 1e-5), f"crests: strains {strains}")
-    expect(optimum["violation"] <= 1e-5, f"crests: {optimum['violation']} is over the limits")
+    expect(low * (1 + tolerance) <= strains[0] <= 0.97 * low and 0.97 * high <= strains[1] <= high * (1 + tolerance),
+           f"crests: strains {strains}")
+    expect(optimum["violation"] <= tolerance, f"crests: {optimum['violation']} is over the limits")
 
 
 def test_far_start(place):
