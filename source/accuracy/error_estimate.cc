@@ -35,6 +35,8 @@ namespace crawler
     constexpr const char *best_integrator = "radau 9";
     /// Exponent of the tolerance to which its steps are proportional; its smallest first step over the duration.
     constexpr double steps_over_tolerances = 1. / 6., first_step = 1e-3;
+    /// Number of steps that hardly depends on the tolerance: the finer run has so many times as many at least.
+    constexpr double few_steps = 16., more_than_few = 1.5;
     /// Layers at the ends of bodies softer than soft, in natural units, about as thick as the softness; the finer run
     /// has cells as small as the softness times layer_cells there, graded by layer_ratio.
     constexpr double soft = 1e-3, layer_cells = 3., layer_ratio = 0.25, max_layer_levels = 8.;
@@ -59,6 +61,16 @@ namespace crawler
       numerics.tolerance *= factor;
       for (StepLimit &limit : numerics.step_limits)
         limit.longest *= std::min(1., std::pow(factor, steps_over_tolerances));
+    }
+
+    /// Limits all steps.
+    void
+    limit_steps(std::vector<StepLimit> &limits, const double longest)
+    {
+      if (limits.empty() || limits.front().from > 0.)
+        limits.insert(limits.begin(), {0., longest});
+      for (StepLimit &limit : limits)
+        limit.longest = std::min(limit.longest, longest);
     }
 
     /// Numerics with more cells, by this factor and number, or a smaller tolerance of an adaptive mesh, and smaller
@@ -112,7 +124,7 @@ namespace crawler
     {
       const auto &[parameters, scene, keep_going, ranks] = problem;
       Numerics numerics                                  = choice.numerics;
-      const Numerics finer_mesh = numerics_of_finer_run(choice, parameters.time, scene, /*cycles_repeat=*/false);
+      const Numerics finer_mesh = numerics_of_finer_run(choice, parameters.time, scene, result);
       numerics.n_cells          = finer_mesh.n_cells;
       numerics.parts            = finer_mesh.parts;
       numerics.mesh.tolerance   = finer_mesh.mesh.tolerance;
@@ -129,7 +141,7 @@ namespace crawler
     {
       const auto &[parameters, scene, keep_going, ranks] = problem;
       const TimeParameters time                          = time_of_finer_run(parameters.time);
-      const Numerics numerics = numerics_of_finer_run(choice, parameters.time, scene, result.cycles.has_value());
+      const Numerics numerics = numerics_of_finer_run(choice, parameters.time, scene, result);
       const auto options      = options_of_finer_run(problem, result);
       // Fused engine for most runs, so that nothing else has to be built. A long one is left to a simulation, which can
       // be stopped and continued.
@@ -171,7 +183,7 @@ namespace crawler
   numerics_of_finer_run(const NumericsChoice &choice,
                         const TimeParameters &time,
                         const Scene &scene,
-                        const bool cycles_repeat)
+                        const SimulationResult &result)
   {
     const bool predicted = is_predicted(choice, scene), is_adaptive = choice.numerics.mesh.tolerance > 0.;
     const bool is_by_best =
@@ -203,8 +215,10 @@ namespace crawler
       const double levels = std::log(layer_cells * k * n.n_cells) / std::log(layer_ratio);
       n.grading = {static_cast<unsigned int>(std::clamp(std::ceil(levels), 1., max_layer_levels)), layer_ratio};
     }
-    if (cycles_repeat)
+    if (result.cycles)
       change_steps(n, finer_tolerance_of_cycles);
+    if (result.time.steps <= few_steps)
+      limit_steps(n.step_limits, scene.end_time / (more_than_few * result.time.steps));
     return n;
   }
 

@@ -41,7 +41,7 @@ namespace crawler
       std::string found;
       for (unsigned int i = 0; i < max_runs; ++i)
       {
-        finer.numerics = numerics_of_finer_run(finer, time, problem.scene, /*cycles_repeat=*/false);
+        finer.numerics = numerics_of_finer_run(finer, time, problem.scene, result);
         const SimulationResult check =
           Simulation(problem.ranks, problem.scene, time, finer.numerics).run({}, {}, {}, problem.keep_going);
         if (check.time.status == Status::stopped)

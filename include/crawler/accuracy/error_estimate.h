@@ -31,14 +31,14 @@ namespace crawler
   NumericsChoice
   refined(const NumericsChoice &choice, const Scene &scene, double cells, double tolerance);
 
-  /// Entries of section Time for the finer run that measures the errors of a run; then its numerics.
+  /// Entries of section Time for the finer run that measures the errors of a run with this @p result; then its numerics.
   TimeParameters
   time_of_finer_run(const TimeParameters &run);
   Numerics
   numerics_of_finer_run(const NumericsChoice &choice,
                         const TimeParameters &time,
                         const Scene &scene,
-                        bool cycles_repeat);
+                        const SimulationResult &result);
 
   /// Sets the errors of a finished @p result from the finer run; null if there was none since the choice knows.
   void

@@ -161,8 +161,7 @@ namespace crawler
           continue;
         Member &member        = members[i];
         const Task &task      = *member.task;
-        const bool repeats    = results[i]->cycles.has_value();
-        member.finer          = numerics_of_finer_run(member.choice, task.parameters.time, *task.scene, repeats);
+        member.finer          = numerics_of_finer_run(member.choice, task.parameters.time, *task.scene, *results[i]);
         member.task->computed = {*results[i], member.choice};
         if (results[i]->time.status != Status::finished)
           continue;
