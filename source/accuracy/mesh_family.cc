@@ -243,17 +243,18 @@ namespace crawler
         Numerics half               = numerics();
         half.parts /= 2;
         Numerics other = is_on_last ? numerics() : half;
-        // Change from looser steps, which cost less, bounds the error amply.
-        if (latest_.min_stretch.value >= empty && time_error_ / finer_tolerance <= 2. * time_part * wanted())
+        // Change from looser steps, which cost less, bounds the error amply. Either error may be small by chance.
+        const auto accept = [&](const double error) {
+          time_error_ = std::max(error, std::min(time_error_, time_part * wanted()));
+          return true;
+        };
+        if (latest_.min_stretch.value >= empty)
         {
           other.tolerance               = numerics().tolerance / finer_tolerance;
           const SimulationResult looser = run(other);
           const double error            = are_alike(looser, own) ? std::abs(*value(looser) - *value(own)) : HUGE_VAL;
           if (error <= time_part * wanted())
-          {
-            time_error_ = std::max(error, time_error_); // either may be small by chance
-            return true;
-          }
+            return accept(error);
         }
         other.tolerance = half.tolerance = checking(numerics().tolerance);
         const SimulationResult result    = run(other);
@@ -261,10 +262,7 @@ namespace crawler
           return true;
         const double error = 2. * std::abs(*value(result) - *value(own));
         if (error <= time_part * wanted() || ++n_corrections_ > max_tolerances)
-        {
-          time_error_ = std::max(error, std::min(time_error_, time_part * wanted()));
-          return true;
-        }
+          return accept(error);
         numerics().tolerance = other.tolerance;
         before               = is_on_last ? run(half) : result;
         levels_.pop_back();
