@@ -31,7 +31,8 @@ namespace crawler
   NumericsChoice
   refined(const NumericsChoice &choice, const Scene &scene, double cells, double tolerance);
 
-  /// Entries of section Time for the finer run that measures the errors of a run with this @p result; then its numerics.
+  /// Entries of section Time for the finer run that measures the errors of a run with this @p result; then its
+  /// numerics.
   TimeParameters
   time_of_finer_run(const TimeParameters &run);
   Numerics
