@@ -175,7 +175,7 @@ namespace crawler
     auto attributes = provenance(plan.effective, folder.options.command_line);
     attributes["not known"] =
       fmt::format("NaN in numbers, an empty text in texts; an empty {}: not computed yet", table.done);
-    attributes.merge(plan.inputs.attributes());
+    attributes.insert(plan.inputs.begin(), plan.inputs.end());
     attributes.insert(plan.more.begin(), plan.more.end());
     RowFile::create(folder.path / table.file, table.group, table.columns, plan.n, attributes, plan.known);
   }
@@ -199,12 +199,13 @@ namespace crawler
       std::vector<std::string> changes;
       if (has_columns)
       {
-        std::map<std::string, std::string> attributes;
-        for (const auto &[name, text] : plan.inputs.attributes())
-          attributes.emplace(name, attribute(name));
-        changes = differences(SweepInputs::from_attributes(attributes), plan.inputs, free);
+        SweepInputs before;
+        for (const auto &[name, text] : plan.inputs)
+          before.emplace(name, attribute(name));
+        changes = differences(before, plan.inputs, free);
       }
-      else if (changes = differences(attribute("parameters.prm"), plan.inputs.effective, free); changes.empty())
+      else if (changes = differences(attribute("parameters.prm"), plan.inputs.at("parameters.prm"), free);
+               changes.empty())
         changes.emplace_back("its table has the columns of another version of the program");
       if (changes.empty() && !table.grows && rows->n_rows() != plan.n)
         changes.push_back(fmt::format("the number of points was {} and is {}", rows->n_rows(), plan.n));

@@ -412,7 +412,7 @@ namespace crawler
       const Input &input = study.input;
       PlannedRows plan{study.settings.size(),
                        {study.table.n_known, known},
-                       {without_comments(input.effective), {}, {}},
+                       {{"parameters.prm", without_comments(input.effective)}},
                        input.effective,
                        {{"reference", ""}}};
       std::string text;
