@@ -282,17 +282,17 @@ namespace crawler
     constexpr unsigned long max_samples = 32;
     constexpr double long_enough        = 0.5; // [s]
     SweepWork work(points, size_of(communicator));
-    const unsigned long n_parts = work.n_parts(), stride = golden_stride(n_parts);
+    const auto parts = spread_out(work.n_parts());
     const std::vector<bool> none_done(design.n_points(), false);
     const auto write_nothing = [](unsigned long, std::span<const RowFile::Row>) {};
     const auto never_stopped = []() { return false; };
     unsigned long n_computed = 0;
     const auto count         = [&](const unsigned long n, unsigned long) { n_computed += n; };
     const double before      = now();
-    for (unsigned long i = 0; i < n_parts && n_computed < design.n_points() && (i < max_samples || n_computed == 0) &&
-                              now() - before < long_enough;
+    for (unsigned long i = 0; i < parts.size() && n_computed < design.n_points() &&
+                              (i < max_samples || n_computed == 0) && now() - before < long_enough;
          ++i)
-      work.compute((i + 1) * stride % n_parts, none_done, write_nothing, never_stopped, count);
+      work.compute(parts[(i + 1) % parts.size()], none_done, write_nothing, never_stopped, count);
     const double each = (now() - before) / static_cast<double>(n_computed);
     log.line(fmt::format("Sweep: {}.", in_words(design, points.sweep().design)));
     for (const std::string &note : points.notes())

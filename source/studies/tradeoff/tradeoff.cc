@@ -321,9 +321,8 @@ namespace crawler
         if (!is_done)
           all.emplace_back(first, end);
       }
-      const unsigned long n = all.size(), stride = golden_stride(std::max(1ul, n));
-      for (unsigned long i = 0; i < n; ++i)
-        spread.push_back(all[i * stride % n]);
+      for (const unsigned long i : spread_out(all.size()))
+        spread.push_back(all[i]);
       return spread;
     }
 
