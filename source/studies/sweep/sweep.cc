@@ -40,21 +40,6 @@ namespace crawler
       return fmt::format("{}, {} over {}", counted(design.n_points(), "point"), design_name, fmt::join(axes, ", "));
     }
 
-    /// Removes the folders of points, but not files that are not the program's.
-    void
-    remove_kept_fields(const fs::path &points)
-    {
-      std::error_code error;
-      if (!fs::is_directory(points, error))
-        return;
-      std::vector<fs::path> folders;
-      for (const auto &entry : fs::directory_iterator(points))
-        if (entry.is_directory() && to_number(entry.path().filename().string()))
-          folders.push_back(entry.path());
-      std::ranges::for_each(folders, remove_run);
-      fs::remove(points, error);
-    }
-
     /// Writes the folders points/NUMBER of the points whose fields are kept, by `crawler run` with their values. Points
     /// that were given up have none.
     bool
@@ -74,17 +59,14 @@ namespace crawler
         if (fs::exists(place / "summary.json") ||
             std::get<std::vector<std::string>>(row.values).front() == time_limit_reason)
           continue;
-        CommandOptions one = folder.options;
-        if (one.file == "-")
-          one.file = (folder.path / "original.prm").string();
-        one.output    = place.string();
-        one.overwrite = one.quiet = true;
-        one.resume                = false;
-        one.overrides             = points.overrides(kept[i]);
+        const fs::path &file = folder.options.file;
         try
         {
-          fs::create_directories(place);
-          all = run(MPI_COMM_SELF, one, read_file(MPI_COMM_SELF, one.file, one.overrides)) != ExitCode::stopped && all;
+          all = run_for_study(folder.options,
+                              file == "-" ? folder.path / "original.prm" : file,
+                              points.overrides(kept[i]),
+                              place) != ExitCode::stopped &&
+                all;
         }
         catch (const InputError &) // inconsistent values: the row says so, and there are no fields
         {
@@ -237,7 +219,7 @@ namespace crawler
         design.n_points(), known_columns(table.columns, design), sweep_inputs(points), points.effective()};
       auto list = begin_or_resume(folder, table, file, plan);
       if (std::count(list.begin(), list.end(), true) == 0)
-        remove_kept_fields(folder.path / "points"); // fields of an earlier sweep
+        remove_numbered(folder.path / "points", ""); // fields of an earlier sweep
       return list;
     });
     const auto n_done            = static_cast<unsigned long>(std::count(done.begin(), done.end(), true));
