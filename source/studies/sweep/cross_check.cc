@@ -293,7 +293,7 @@ namespace crawler
     {
       const PointStatus status = status_of(main);
       if (verdict.kind == Verdict::silent_wrong_answer)
-        return verdict.in_words();
+        return word_of(verdict.kind);
       if (status.status == "inverted")
         return status.reason == "inverted_at_end" ? "inverted at end" : "inverted inside";
       if (status.reason == "refused")
@@ -322,7 +322,7 @@ namespace crawler
         verdict = cross_check(
           {claim, its_claim(Checked::position), its_claim(Checked::stretch)}, finer, inversion_facts(*main.scene));
       RowFile::Row row = {outcome_of(main, verdict),
-                          verdict.in_words(),
+                          word_of(verdict.kind),
                           shortened(verdict.explanation, explanation_width),
                           claim.promised_error,
                           is_own_check ? NAN : ratio(claim)};

@@ -138,7 +138,7 @@ namespace crawler
   unsigned long
   SweepCounts::number_of(const Verdict::Kind kind) const
   {
-    const auto found = verdicts.find(Verdict{kind, ""}.in_words());
+    const auto found = verdicts.find(word_of(kind));
     return found == verdicts.end() ? 0 : found->second;
   }
 
