@@ -162,7 +162,7 @@ namespace crawler
         static_cast<std::size_t>(std::ranges::count_if(starts, [](const StartName &one) { return one.neighbour > 0; }));
       for (const auto &[file, group] : {std::pair(OptimizeMemory::evaluations_file, OptimizeMemory::evaluations_group),
                                         std::pair(OptimizeMemory::file, OptimizeMemory::group)})
-        write_table_csv(MPI_COMM_SELF, path / file, group, (path / file).replace_extension("csv"));
+        write_table_csv(MPI_COMM_SELF, path / file, group);
       bool runs_are_good = true;
       for (const std::size_t best : results.best)
       {

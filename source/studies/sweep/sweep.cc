@@ -85,13 +85,10 @@ namespace crawler
     PointTable
     table_of(const SweepPoints &points)
     {
-      PointTable table         = {sweep_file,
-                                  sweep_group,
-                                  sweep_columns(points),
-                                  1 + points.design().axes().size(),
-                                  "status",
-                                  {},
-                                  points.sweep().point_time_limit.value_or(HUGE_VAL)};
+      PointTable table = {
+        sweep_file, sweep_group, sweep_columns(points), points.effective(), points.design().n_points()};
+      table.known              = known_columns(table.columns, points.design());
+      table.time_limit         = points.sweep().point_time_limit.value_or(HUGE_VAL);
       const std::string reason = "reason"; // column of the point, and of each run of a cross-check
       for (const RowFile::Column &column : table.columns)
         if (column.name.ends_with(reason))
@@ -211,13 +208,12 @@ namespace crawler
     const SweepDesign &design  = points.design();
     const SweepParameters &own = points.sweep();
     const auto kept            = points.kept_points();
-    const PointTable table     = table_of(points);
+    PointTable table           = table_of(points);
     StudyFolder folder(
       {"sweep", sweep_file, {"Sweep/Time limit", "Sweep/Time limit per point", "Sweep/Keep fields"}}, options, log);
     const std::vector<bool> done = points_done(communicator, [&]() {
-      const PlannedRows plan{
-        design.n_points(), known_columns(table.columns, design), sweep_inputs(points), points.effective()};
-      auto list = begin_or_resume(folder, table, file, plan);
+      table.inputs = sweep_inputs(points);
+      auto list    = begin_or_resume(folder, table, file);
       if (std::count(list.begin(), list.end(), true) == 0)
         remove_numbered(folder.path / "points", ""); // fields of an earlier sweep
       return list;
