@@ -192,17 +192,13 @@ namespace crawler
              a.computed.result.time.steps == b.computed.result.time.steps;
     }
 
-    /// Parameters of the refined run, with mesh and time steps chosen by the program.
+    /// Parameters of the refined run.
     Parameters
     refined_parameters(const Parameters &parameters)
     {
-      Parameters finer                 = parameters;
+      Parameters finer                 = parameters.with_free_numerics();
       finer.accuracy                   = std::max(1e-12, parameters.accuracy / parameters.sweep.refinement);
-      finer.discretization             = {};
       finer.discretization.formulation = parameters.discretization.formulation;
-      finer.time                       = {};
-      finer.time.end_time              = parameters.time.end_time;
-      finer.time.max_steps             = parameters.time.max_steps;
       return finer;
     }
 
