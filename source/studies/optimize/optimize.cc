@@ -160,9 +160,6 @@ namespace crawler
       OptimizeResults results(cases.names(), memory.starts());
       const auto n_neighbours =
         static_cast<std::size_t>(std::ranges::count_if(starts, [](const StartName &one) { return one.neighbour > 0; }));
-      for (const auto &[file, group] : {std::pair(OptimizeMemory::evaluations_file, OptimizeMemory::evaluations_group),
-                                        std::pair(OptimizeMemory::file, OptimizeMemory::group)})
-        write_table_csv(MPI_COMM_SELF, path / file, group);
       bool runs_are_good = true;
       for (const std::size_t best : results.best)
       {

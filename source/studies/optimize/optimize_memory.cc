@@ -286,8 +286,11 @@ namespace crawler
         arranged.push_back(*start);
     starts_ = std::move(arranged);
     write_all(/*with_room=*/false);
-    start_rows_.rows.reset();
-    evaluation_rows_.rows.reset();
+    for (Rows *const rows : {&evaluation_rows_, &start_rows_})
+    {
+      rows->rows.reset();
+      write_table_csv(MPI_COMM_SELF, folder_.path / rows->table.file, rows->table.group);
+    }
   }
 
   void

@@ -35,7 +35,7 @@ namespace crawler
     void
     keep(StartResult start);
 
-    /// Keeps only @p starts, in this order, and closes the files.
+    /// Keeps only @p starts, in this order, closes the files, and writes them as comma-separated values, too.
     void
     arrange(const std::vector<StartName> &starts);
 
