@@ -15,10 +15,10 @@ namespace crawler
 {
   namespace
   {
-    /// Command line with its purpose.
+    /// Command line with its purpose, or exit code with its meaning.
     struct Example
     {
-      std::string command, meaning;
+      std::string text, meaning;
     };
 
     /// Examples for all commands: the command to which an example belongs is its second word or, behind mpirun -n N,
@@ -50,8 +50,8 @@ namespace crawler
     std::string
     command_of(const Example &example)
     {
-      const std::size_t start = example.command.find("crawler ") + 8;
-      return example.command.substr(start, example.command.find(' ', start) - start);
+      const std::size_t start = example.text.find("crawler ") + 8;
+      return example.text.substr(start, example.text.find(' ', start) - start);
     }
 
     std::string
@@ -59,10 +59,10 @@ namespace crawler
     {
       std::size_t width = 0;
       for (const Example &example : examples)
-        width = std::max(width, example.command.size());
-      std::string text = "Examples:\n";
+        width = std::max(width, example.text.size());
+      std::string text;
       for (const Example &example : examples)
-        text += fmt::format("  {:{}}  {}\n", example.command, width, example.meaning);
+        text += fmt::format("  {:{}}  {}\n", example.text, width, example.meaning);
       return text;
     }
 
@@ -83,16 +83,11 @@ namespace crawler
       return list;
     }
 
-    struct ExitCodeMeaning
-    {
-      std::string code, meaning;
-    };
-
     /// Exit codes as in the table of the user guide.
-    std::vector<ExitCodeMeaning>
-    exit_code_meanings()
+    std::vector<Example>
+    exit_codes()
     {
-      std::vector<ExitCodeMeaning> list;
+      std::vector<Example> list;
       std::istringstream lines{std::string(exit_codes_section)};
       for (std::string line; std::getline(lines, line);)
         if (line.size() > 6 && line.starts_with("| ") && std::isdigit(static_cast<unsigned char>(line[2])))
@@ -132,18 +127,16 @@ namespace crawler
   std::string
   help_footer()
   {
-    std::string text = in_columns(examples_of()) + "\nExit codes:\n";
-    for (const ExitCodeMeaning &one : exit_code_meanings())
-      text += fmt::format("  {}  {}\n", one.code, one.meaning);
-    return text + "\nOptions for PETSc go after a lone \"--\", e.g. crawler run FILE.prm -- -ts_monitor\n"
-                  "crawler COMMAND --help lists the options of a command; crawler man has it all.";
+    return "Examples:\n" + in_columns(examples_of()) + "\nExit codes:\n" + in_columns(exit_codes()) +
+           "\nOptions for PETSc go after a lone \"--\", e.g. crawler run FILE.prm -- -ts_monitor\n"
+           "crawler COMMAND --help lists the options of a command; crawler man has it all.";
   }
 
   std::string
   help_footer(const std::string &command)
   {
     const auto examples = examples_of(command);
-    return examples.empty() ? "" : in_columns(examples);
+    return examples.empty() ? "" : "Examples:\n" + in_columns(examples);
   }
 
   namespace
@@ -186,9 +179,7 @@ namespace crawler
         if (typed_names(*option) != std::vector<std::string>{"--help", "-h"})
           print_option(*option);
       for (const Example &example : examples_of(command.get_name()))
-        std::cout << ".PP\n"
-                  << roff(example.meaning) << ":\n.PP\n.RS 4\n.nf\n"
-                  << roff(example.command) << "\n.fi\n.RE\n";
+        std::cout << ".PP\n" << roff(example.meaning) << ":\n.PP\n.RS 4\n.nf\n" << roff(example.text) << "\n.fi\n.RE\n";
     }
   } // namespace
 
@@ -211,7 +202,7 @@ namespace crawler
     for (const CLI::App *command : all_commands(app))
       print_command(*command);
     std::cout << ".SH EXIT STATUS\n";
-    for (const ExitCodeMeaning &one : exit_code_meanings())
-      print_item(one.code, one.meaning);
+    for (const Example &one : exit_codes())
+      print_item(one.text, one.meaning);
   }
 } // namespace crawler

@@ -6,7 +6,6 @@
 
 #include <array>
 #include <iterator>
-#include <utility>
 #include <vector>
 
 namespace crawler

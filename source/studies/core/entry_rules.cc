@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <tuple>
 
 namespace crawler
 {
@@ -71,6 +72,55 @@ namespace crawler
       return [name](const std::string &formula) { return uses_name(formula, name); };
     }
 
+    /// Rule in words: entries, separated by commas, and choosers, by semicolons: "ENTRY = WORD, WORD", "ENTRY != WORD",
+    /// "ENTRY is set" or "ENTRY has NAME", all of them in the section @p root.
+    EntryRule
+    rule_in_words(const std::string &root, const std::string &entries, const std::string &choosers)
+    {
+      EntryRule rule;
+      for (const std::string &entry : split_parts(entries, ','))
+        rule.entries.push_back(root + entry);
+      for (const std::string &words : split_parts(choosers, ';'))
+      {
+        const auto sign          = words.find_first_of("!=");
+        const std::string values = sign == words.npos ? "" : trimmed(words.substr(words.find('=') + 1));
+        if (const auto verb = words.find(" has "); sign == words.npos && verb != words.npos)
+          rule.choosers.push_back({root + words.substr(0, verb), has(words.substr(verb + 5))});
+        else if (sign == words.npos)
+          rule.choosers.push_back({root + words.substr(0, words.find(" is set")), is_set});
+        else if (words[sign] == '!')
+          rule.choosers.push_back({root + trimmed(words.substr(0, sign)), is_not(values)});
+        else
+          rule.choosers.push_back({root + trimmed(words.substr(0, sign)), any_of(split_parts(values, ','))});
+      }
+      return rule;
+    }
+
+    /// Rules within the section of generators in words: sections, entries, and choosers.
+    constexpr std::tuple<const char *, const char *, const char *> rules_of_generators[] = {
+      {"Optimal wave/", "Sine coefficients, Cosine coefficients", "Shape = Fourier"},
+      {"Optimal wave/", "Shape formula, Shape constants", "Shape = expression"},
+      {"Optimal wave/", "Shape file", "Shape = table"},
+      {"Optimal wave/", "Wave speed", "Choose wave by = wave speed"},
+      {"Optimal wave/", "Energy, Root, Root index", "Choose wave by = energy"},
+      {"Optimal wave/", "Root index", "Root = index"},
+      {"Travelling wave/, Two-level wave/", "Frequency", "Given by = frequency"},
+      {"Travelling wave/, Two-level wave/", "Wave speed", "Given by = wave speed"},
+      {"Two-level wave/", "Work", "Given by = work"},
+      {"Travelling wave/, Standing wave/", "Duty cycle", "Profile = square, smoothed square"},
+      {"Travelling wave/, Standing wave/", "Front width", "Profile = smoothed square"},
+      {"Travelling wave/, Standing wave/, Pulse/", "Window edge", "Window start is set; Window end is set"},
+      {"Segments/", "Front width", "Switching = smooth"},
+      {"Segments/", "Phase lag, Direction, Gap", "Number of segments != 1"},
+      {"Prescribed strain/", "Strain, Constants", "Given by = expression"},
+      {"Prescribed strain/", "File", "Given by = table"},
+      {"Prescribed strain/", "Mean strain, Amplitude, Wave number, Wave speed, Phase", "Given by = wave"},
+      {"Strain feedback/", "Distance, Sensor length", "Active stress has w_near"},
+      {"Strain feedback/", "Delay", "Active stress has w_delayed"},
+      {"Modes/", "Wave speed", "In time = travelling"},
+      {"Modes/", "Period, Time harmonics", "In time = harmonics"},
+      {"Modes/", "Time cells", "In time = splines"}};
+
     /// Adds the rules within the section @p root of generators.
     void
     add_rules_of_generators(const std::string &root, const bool has_sum, std::vector<EntryRule> &rules)
@@ -90,51 +140,13 @@ namespace crawler
           rules.push_back(
             {{section}, {{root + "Generator", any_of({name})}, {root + strain + "Given by", any_of({name})}}});
       }
-      /// Adds a rule for entries of one section that depend on another entry of it.
-      const auto add = [&](const std::string &section,
-                           const std::vector<std::string> &entries,
-                           const std::vector<std::string> &choosers,
-                           const std::function<bool(const std::string &)> &fits) {
-        EntryRule &rule = rules.emplace_back();
-        for (const std::string &entry : entries)
-          rule.entries.push_back(root + section + entry);
-        for (const std::string &chooser : choosers)
-          rule.choosers.push_back({root + section + chooser, fits});
-      };
-      const std::string optimal = "Optimal wave/", travelling = "Travelling wave/", standing = "Standing wave/",
-                        two_level = "Two-level wave/", feedback = "Strain feedback/", modes = "Modes/";
-      add(optimal, {"Sine coefficients", "Cosine coefficients"}, {"Shape"}, any_of({"Fourier"}));
-      add(optimal, {"Shape formula", "Shape constants"}, {"Shape"}, any_of({"expression"}));
-      add(optimal, {"Shape file"}, {"Shape"}, any_of({"table"}));
-      add(optimal, {"Wave speed"}, {"Choose wave by"}, any_of({"wave speed"}));
-      add(optimal, {"Energy", "Root", "Root index"}, {"Choose wave by"}, any_of({"energy"}));
-      add(optimal, {"Root index"}, {"Root"}, any_of({"index"}));
-      for (const std::string &wave : {travelling, two_level})
-      {
-        add(wave, {"Frequency"}, {"Given by"}, any_of({"frequency"}));
-        add(wave, {"Wave speed"}, {"Given by"}, any_of({"wave speed"}));
-      }
-      add(two_level, {"Work"}, {"Given by"}, any_of({"work"}));
-      for (const std::string &wave : {travelling, standing})
-      {
-        add(wave, {"Duty cycle"}, {"Profile"}, any_of({"square", "smoothed square"}));
-        add(wave, {"Front width"}, {"Profile"}, any_of({"smoothed square"}));
-        add(wave, {"Window edge"}, {"Window start", "Window end"}, is_set);
-      }
-      add("Pulse/", {"Window edge"}, {"Window start", "Window end"}, is_set);
-      add("Segments/", {"Front width"}, {"Switching"}, any_of({"smooth"}));
-      add("Segments/", {"Phase lag", "Direction", "Gap"}, {"Number of segments"}, is_not("1"));
-      add(strain, {"Strain", "Constants"}, {"Given by"}, any_of({"expression"}));
-      add(strain, {"File"}, {"Given by"}, any_of({"table"}));
-      add(strain, {"Mean strain", "Amplitude", "Wave number", "Wave speed", "Phase"}, {"Given by"}, any_of({"wave"}));
-      add(feedback, {"Distance", "Sensor length"}, {"Active stress"}, has("w_near"));
-      add(feedback, {"Delay"}, {"Active stress"}, has("w_delayed"));
-      add(modes, {"Wave speed"}, {"In time"}, any_of({"travelling"}));
-      add(modes, {"Period", "Time harmonics"}, {"In time"}, any_of({"harmonics"}));
-      add(modes, {"Time cells"}, {"In time"}, any_of({"splines"}));
+      for (const auto &[sections, entries, choosers] : rules_of_generators)
+        for (const std::string &section : split_parts(sections, ','))
+          rules.push_back(rule_in_words(root + section, entries, choosers));
       for (const char *x : {"s", "t"})
         if (!has_sum)
-          add("", {fmt::format("Edge width in {}", x)}, {fmt::format("Window in {}", x)}, is_set);
+          rules.push_back(
+            rule_in_words(root, fmt::format("Edge width in {}", x), fmt::format("Window in {} is set", x)));
     }
 
     /// Adds rules for constants none of which is in their formula, unless an axis varies it.
@@ -202,19 +214,6 @@ namespace crawler
       {"Fit/", "Fit/Variables is set; crawler = fit"},
       {"Fit/Seed", "Fit/Starts != 1"},
     };
-
-    /// Chooser in words: "ENTRY = WORD, WORD", "ENTRY != WORD" or "ENTRY is set".
-    Chooser
-    read_chooser(const std::string &words)
-    {
-      const auto sign = words.find_first_of("!=");
-      if (sign == std::string::npos)
-        return {words.substr(0, words.find(" is set")), is_set};
-      const std::string entry = trimmed(words.substr(0, sign)), values = trimmed(words.substr(words.find('=') + 1));
-      if (words[sign] == '!')
-        return {entry, is_not(values)};
-      return {entry, any_of(split_parts(values, ','))};
-    }
   } // namespace
 
   std::vector<std::string>
@@ -265,11 +264,7 @@ namespace crawler
                        uses_one_of(listed_numbers(declarations.info(constants), declarations.value(constants)))}}});
     add_rules_of_constants(declarations, rules);
     for (const auto &[entries, choosers] : rules_in_words)
-    {
-      EntryRule &rule = rules.emplace_back(EntryRule{split_parts(entries, ','), {}});
-      for (const std::string &chooser : split_parts(choosers, ';'))
-        rule.choosers.push_back(read_chooser(chooser));
-    }
+      rules.push_back(rule_in_words("", entries, choosers));
     return rules;
   }
 } // namespace crawler

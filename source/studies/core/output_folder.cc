@@ -2,6 +2,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/parameters/axis.h>
+#include <crawler/parameters/plain_text.h>
 #include <crawler/parameters/slips.h>
 #include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/core/output_folder.h>
@@ -230,12 +231,21 @@ namespace crawler
   }
 
   void
-  remove_run(const fs::path &folder)
+  remove_numbered(const fs::path &folder, const std::string &word, const std::string &ending)
   {
     std::error_code error;
-    prepare(folder);
-    fs::remove(folder / "active_stress.csv", error);
-    fs::remove(folder / "solution", error); // removed only if they are empty
+    std::vector<fs::path> own;
+    for (const auto &entry : fs::directory_iterator(folder, error))
+      if (const std::string name = entry.path().stem().string();
+          entry.is_directory(error) == ending.empty() && entry.path().extension() == ending &&
+          (name == word || (name.starts_with(word) && to_number(name.substr(word.size())))))
+        own.push_back(entry.path());
+    for (const fs::path &path : own)
+    {
+      prepare(path);
+      for (const fs::path &rest : {path / "active_stress.csv", path / "solution", path}) // folders only if empty
+        fs::remove(rest, error);
+    }
     fs::remove(folder, error);
   }
 

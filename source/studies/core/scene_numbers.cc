@@ -116,22 +116,9 @@ namespace crawler
       std::vector<std::string> all_, effective_;
     };
 
-    /// Throws InputError in the name of the entry that lists the variables.
-    struct Refusal
-    {
-      const std::string entry;
-
-      template <typename... Arguments>
-      [[noreturn]] void
-      operator()(fmt::format_string<Arguments...> sentence, Arguments &&...arguments) const
-      {
-        refuse_entry(entry, "{}", fmt::format(sentence, std::forward<Arguments>(arguments)...));
-      }
-    };
-
     /// Expands "List[2-4]" and "List[*]" to several numbers of a list, "Constants[*]" to all constants.
     std::vector<std::string>
-    expanded(const std::string &name, const Declarations &declarations, const Refusal &refuse)
+    expanded(const std::string &name, const Declarations &declarations, const std::string &own)
     {
       const auto bracket = name.find('[');
       if (bracket == std::string::npos || !name.ends_with(']'))
@@ -151,29 +138,32 @@ namespace crawler
         constexpr double most = 10000.;
         if (!from || !to || !(1. <= *from && *from <= *to && *to <= most) || *from != std::floor(*from) ||
             *to != std::floor(*to))
-          refuse("found \"{}\", but two whole numbers from 1 to {} are expected in the brackets, as [1-5]", name, most);
+          refuse_entry(
+            own, "found \"{}\", but two whole numbers from 1 to {} are expected in the brackets, as [1-5]", name, most);
         for (double i = *from; i <= *to; ++i)
           names.push_back(fmt::format("{}[{:.0f}]", list, i));
       }
       if (names.empty())
-        refuse("\"{0}\" is \"{2}\", so \"{1}\" is not a number; a list with its numbers is expected there",
-               list,
-               name,
-               declarations.value(list));
+        refuse_entry(own,
+                     "\"{0}\" is \"{2}\", so \"{1}\" is not a number; a list with its numbers is expected there",
+                     list,
+                     name,
+                     declarations.value(list));
       return names;
     }
 
     /// Parses "FROM to TO".
     std::pair<double, double>
-    read_range(const std::string &text, const std::string &name, const Refusal &refuse)
+    read_range(const std::string &text, const std::string &name, const std::string &own)
     {
       const auto word = text.find(" to ");
       const auto from = word == std::string::npos ? std::nullopt : to_number(trimmed(text.substr(0, word)));
       const auto to   = word == std::string::npos ? std::nullopt : to_number(trimmed(text.substr(word + 4)));
       if (!from || !to || !(*from < *to))
-        refuse("found the range \"{}\" for \"{}\", but \"FROM to TO\" with increasing numbers is expected",
-               trimmed(text),
-               name);
+        refuse_entry(own,
+                     "found the range \"{}\" for \"{}\", but \"FROM to TO\" with increasing numbers is expected",
+                     trimmed(text),
+                     name);
       return {*from, *to};
     }
 
@@ -213,10 +203,9 @@ namespace crawler
   std::vector<Variable>
   read_variables(Form &form, const std::string &entry)
   {
-    const Refusal refuse{entry};
     std::string list = trimmed(form.declarations.value(entry));
     if (list.empty())
-      crawler::refuse(
+      refuse(
         entry, "\"{}\" is empty, but \"Section/Entry : FROM to TO\" is expected: the entries that may vary", entry);
     const SceneNumbers numbers(form);
     std::vector<Variable> variables;
@@ -226,30 +215,33 @@ namespace crawler
     {
       const auto colon = part.rfind(':');
       if (colon == std::string::npos)
-        refuse("found \"{}\", but \"Section/Entry : FROM to TO\" is expected", trimmed(part));
-      for (const std::string &name : expanded(normal_path(part.substr(0, colon)), form.declarations, refuse))
+        refuse_entry(entry, "found \"{}\", but \"Section/Entry : FROM to TO\" is expected", trimmed(part));
+      for (const std::string &name : expanded(normal_path(part.substr(0, colon)), form.declarations, entry))
       {
         const std::string path = numbers.find(name, entry);
-        const auto [from, to]  = read_range(part.substr(colon + 1), path, refuse);
+        const auto [from, to]  = read_range(part.substr(colon + 1), path, entry);
         const std::string text = form.declarations.value(path);
         const double start     = to_number(text).value_or(NAN);
         if (!(from <= start && start <= to))
-          refuse("\"{}\" is {} in this file, but the start is expected in its range, from {} to {}",
-                 path,
-                 text,
-                 to_text(from),
-                 to_text(to));
+          refuse_entry(entry,
+                       "\"{}\" is {} in this file, but the start is expected in its range, from {} to {}",
+                       path,
+                       text,
+                       to_text(from),
+                       to_text(to));
         constexpr double widest = 1e8;
         if (!(to - from <= widest * std::max(std::abs(start), 1.)))
-          refuse("the range of \"{}\", from {} to {}, is more than {:g} times the start, {}, or 1; a narrower one is "
-                 "expected",
-                 path,
-                 to_text(from),
-                 to_text(to),
-                 widest,
-                 text);
+          refuse_entry(
+            entry,
+            "the range of \"{}\", from {} to {}, is more than {:g} times the start, {}, or 1; a narrower one is "
+            "expected",
+            path,
+            to_text(from),
+            to_text(to),
+            widest,
+            text);
         if (std::ranges::find(variables, path, &Variable::path) != variables.end())
-          refuse("\"{}\" is given twice, but is expected only once", path);
+          refuse_entry(entry, "\"{}\" is given twice, but is expected only once", path);
         const EntryKind kind = form.declarations.info(path).values.kind;
         for (const double end : {from, to})
           try
@@ -260,7 +252,7 @@ namespace crawler
           }
           catch (const InputError &error)
           {
-            refuse("the range of \"{}\": {}", path, error.what());
+            refuse_entry(entry, "the range of \"{}\": {}", path, error.what());
           }
         variables.push_back({path, from, to, start});
       }

@@ -259,13 +259,13 @@ namespace crawler
       for (std::size_t p = 0; p < limit.size; ++p, ++next)
         (multipliers[next] > 0. ? of_upper : of_lower) += std::abs(multipliers[next]) * scale_ / limit.scale;
       if (limit.lower_name == limit.upper_name)
-        list.push_back({limit.upper_name, limit.upper, of_lower + of_upper});
+        list.push_back({limit.upper_name, limit.wanted_upper, of_lower + of_upper});
       else
       {
         if (!limit.lower_name.empty())
-          list.push_back({limit.lower_name, limit.lower, -of_lower});
+          list.push_back({limit.lower_name, limit.wanted_lower, -of_lower});
         if (!limit.upper_name.empty())
-          list.push_back({limit.upper_name, limit.upper, of_upper});
+          list.push_back({limit.upper_name, limit.wanted_upper, of_upper});
       }
     }
     return list;

@@ -26,29 +26,6 @@ namespace crawler
   {
     namespace fs = std::filesystem;
 
-    /// Removes the parameter files and runs of an earlier study, but not files that are not the program's.
-    void
-    remove_optima(const fs::path &folder)
-    {
-      std::vector<fs::path> files, runs;
-      for (const auto &entry : fs::directory_iterator(folder))
-      {
-        const std::string name = entry.path().filename().string();
-        const auto is_own      = [&](const std::string &word, const std::string &ending) {
-          return name.starts_with(word + "-") && name.ends_with(ending) &&
-                 to_number(name.substr(word.size() + 1, name.size() - word.size() - 1 - ending.size())).has_value();
-        };
-        if (is_own("optimum", ".prm"))
-          files.push_back(entry.path());
-        if ((name == "best" || is_own("best", "")) && entry.is_directory())
-          runs.push_back(entry.path());
-      }
-      std::error_code error;
-      for (const fs::path &file : files)
-        fs::remove(file, error);
-      std::ranges::for_each(runs, remove_run);
-    }
-
     std::string
     in_words(const OptimizeCases &cases, const GaitModel &model)
     {
@@ -79,17 +56,10 @@ namespace crawler
                  "# The best gait: what differs from the file that was optimised.\ninclude parameters.prm\n" +
                    changes(entries, ParameterFile::from_text(cases.points().effective(), "parameters.prm")));
       entries.set("Sweep/Axes", parameters.sweep.axes);
-      CommandOptions one = folder.options;
-      one.file           = file.string();
-      one.output         = place.string();
-      one.overrides      = {};
-      one.overwrite = one.quiet = true;
-      one.resume                = false;
+      std::vector<std::string> overrides;
       if (parameters.create_scene().active_stress->feedback() == nullptr)
-        one.overrides.emplace_back("Output/Active stress table=129, 513");
-      fs::create_directories(place);
-      const bool is_good =
-        run(MPI_COMM_SELF, one, read_file(MPI_COMM_SELF, one.file, one.overrides)) == ExitCode::finished;
+        overrides.emplace_back("Output/Active stress table=129, 513");
+      const bool is_good        = run_for_study(folder.options, file, overrides, place) == ExitCode::finished;
       const std::string summary = fs::exists(place / "summary.json") ? read_whole_file(place / "summary.json") : "{}";
       return {nlohmann::ordered_json::parse(summary), is_good};
     }
@@ -190,9 +160,6 @@ namespace crawler
       OptimizeResults results(cases.names(), memory.starts());
       const auto n_neighbours =
         static_cast<std::size_t>(std::ranges::count_if(starts, [](const StartName &one) { return one.neighbour > 0; }));
-      for (const auto &[file, group] : {std::pair(OptimizeMemory::evaluations_file, OptimizeMemory::evaluations_group),
-                                        std::pair(OptimizeMemory::file, OptimizeMemory::group)})
-        write_table_csv(MPI_COMM_SELF, path / file, group, (path / file).replace_extension("csv"));
       bool runs_are_good = true;
       for (const std::size_t best : results.best)
       {
@@ -421,7 +388,10 @@ namespace crawler
     on_first_rank(communicator, [&]() {
       memory = std::make_unique<OptimizeMemory>(cases, folder, file);
       if (memory->starts().empty())
-        remove_optima(folder.path);
+      {
+        remove_numbered(folder.path, "best");
+        remove_numbered(folder.path, "optimum", ".prm");
+      }
     });
     clock.set_limit(cases.parameters().optimize.time_limit, "Optimize/Time limit");
     const SearchesMade searches =

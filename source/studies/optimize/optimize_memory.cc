@@ -2,7 +2,6 @@
 #include <crawler/base/files.h>
 #include <crawler/base/plain_numbers.h>
 #include <crawler/parameters/declarations.h>
-#include <crawler/studies/core/study.h>
 #include <crawler/studies/optimize/optimize_memory.h>
 
 #include <fmt/format.h>
@@ -160,25 +159,28 @@ namespace crawler
       start.was_interrupted = status == stopped;
     }
 
-    const RowFile::Column index_column = {"index", "1", "number of the row"};
-
-    RowFile::Known
-    known_index()
+    /// Table of numbered rows with these columns.
+    PointTable
+    table_of(const std::string &file,
+             const std::string &group,
+             const std::vector<RowFile::Column> &own,
+             const OptimizeCases &cases)
     {
-      return {1, [](std::size_t, const unsigned long row) { return static_cast<double>(row); }};
+      PointTable table = {file, group, {{"index", "1", "number of the row"}}, cases.points().effective(), 0};
+      table.columns.insert(table.columns.end(), own.begin(), own.end());
+      table.known = {1, [](std::size_t, const unsigned long row) { return static_cast<double>(row); }};
+      table.grows = true;
+      return table;
     }
 
-    PointTable
-    table_of_starts(const OptimizeNames &names)
+    std::vector<RowFile::Column>
+    start_columns(const OptimizeNames &names)
     {
-      PointTable table = {
-        OptimizeMemory::file, OptimizeMemory::group, {index_column}, 1, "status", {}, HUGE_VAL, /*grows=*/true};
       RowFields fields;
       StartResult any;
       std::size_t none = 0;
       exchange(fields, names, any, none);
-      table.columns.insert(table.columns.end(), fields.columns.begin(), fields.columns.end());
-      return table;
+      return fields.columns;
     }
 
     std::vector<RowFile::Column>
@@ -221,12 +223,11 @@ namespace crawler
   OptimizeMemory::OptimizeMemory(const OptimizeCases &cases, StudyFolder &folder, const ParameterFile &parameter_file)
     : names_(cases.names())
     , folder_(folder)
-    , table_(table_of_starts(names_))
-    , plan_{0, known_index(), sweep_inputs(cases.points()), cases.points().effective()}
-    , start_rows_{file, group, table_.written_columns()}
-    , evaluation_rows_{evaluations_file, evaluations_group, evaluation_columns(names_)}
+    , start_rows_{table_of(file, group, start_columns(names_), cases)}
+    , evaluation_rows_{table_of(evaluations_file, evaluations_group, evaluation_columns(names_), cases)}
   {
-    const auto done = begin_or_resume(folder, table_, parameter_file, plan_);
+    start_rows_.table.inputs = sweep_inputs(cases.points());
+    const auto done          = begin_or_resume(folder, start_rows_.table, parameter_file);
     if (std::ranges::count(done, true) > 0)
     {
       const RowReader rows(MPI_COMM_SELF, folder_.path / file, group);
@@ -267,8 +268,8 @@ namespace crawler
   OptimizeMemory::keep(StartResult start)
   {
     const bool is_new = std::erase_if(starts_, [&](const StartName &one) { return one == start; }) == 0;
-    const bool fits =
-      start_rows_.n < start_rows_.max && evaluation_rows_.n + start.records.size() <= evaluation_rows_.max;
+    const bool fits   = start_rows_.n < start_rows_.table.n_rows &&
+                      evaluation_rows_.n + start.records.size() <= evaluation_rows_.table.n_rows;
     starts_.push_back(std::move(start));
     if (is_new && fits)
       write(starts_.back());
@@ -285,14 +286,19 @@ namespace crawler
         arranged.push_back(*start);
     starts_ = std::move(arranged);
     write_all(/*with_room=*/false);
-    start_rows_.rows.reset();
-    evaluation_rows_.rows.reset();
+    for (Rows *const rows : {&evaluation_rows_, &start_rows_})
+    {
+      rows->rows.reset();
+      write_table_csv(MPI_COMM_SELF, folder_.path / rows->table.file, rows->table.group);
+    }
   }
 
   void
   OptimizeMemory::open(Rows &rows, const std::string &ending) const
   {
-    rows.rows = std::make_unique<RowFile>(MPI_COMM_SELF, folder_.path / (rows.file + ending), rows.group, rows.columns);
+    const PointTable &table = rows.table;
+    rows.rows               = std::make_unique<RowFile>(
+      MPI_COMM_SELF, folder_.path / (table.file + ending), table.group, table.written_columns());
   }
 
   void
@@ -312,21 +318,13 @@ namespace crawler
     const auto with_more = [&](const unsigned long own, const unsigned long least) {
       return own + (with_room ? std::max(own, least) : 0);
     };
-    start_rows_.max = plan_.n            = with_more(starts_.size(), 16);
-    evaluation_rows_.max                 = with_more(n, 1024);
-    PointTable table                     = table_;
-    std::vector<RowFile::Column> columns = evaluation_rows_.columns;
-    columns.insert(columns.begin(), index_column);
-    table.file += fresh;
-    create_table(folder_, table, plan_);
-    RowFile::create(folder_.path / (evaluations_file + fresh),
-                    evaluations_group,
-                    columns,
-                    evaluation_rows_.max,
-                    provenance(plan_.effective, folder_.options.command_line),
-                    known_index());
+    start_rows_.table.n_rows      = with_more(starts_.size(), 16);
+    evaluation_rows_.table.n_rows = with_more(n, 1024);
     for (Rows *const rows : {&evaluation_rows_, &start_rows_})
     {
+      PointTable table = rows->table;
+      table.file += fresh;
+      create_table(folder_, table);
       rows->n = 0;
       open(*rows, fresh);
     }
@@ -335,7 +333,7 @@ namespace crawler
     for (Rows *const rows : {&evaluation_rows_, &start_rows_})
     {
       rows->rows.reset();
-      rename_whole(folder_.path / (rows->file + fresh), folder_.path / rows->file);
+      rename_whole(folder_.path / (rows->table.file + fresh), folder_.path / rows->table.file);
       open(*rows, "");
     }
   }

@@ -62,24 +62,15 @@ namespace crawler
         };
         table.push_back({column.name, column.unit, column.description, std::visit(picked, column.values)});
       }
-    const auto add = [&](const char *name, const char *unit, const char *description, const char *place) {
+    for (const auto &[name, place] : {std::pair("displacement_error", "/displacement_error/total"),
+                                      {"efficiency", "/gait/efficiency"},
+                                      {"stride_efficiency", "/gait/stride_efficiency"}})
+    {
       std::vector<double> values;
       for (const Json &run : results.runs)
         values.push_back(number_at(run, place));
-      table.push_back({name, unit, description, values});
-    };
-    add("displacement_error",
-        "length",
-        "bound of the error of the displacement, from the run of the optimum",
-        "/displacement_error/total");
-    add("efficiency",
-        "1",
-        "displacement over the largest that any gait with this work and these strains can reach",
-        "/gait/efficiency");
-    add("stride_efficiency",
-        "1",
-        "efficiency of the last stride, with its dissipation as the work",
-        "/gait/stride_efficiency");
+      table.push_back({name, "", "", values});
+    }
     return table;
   }
 

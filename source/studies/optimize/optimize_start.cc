@@ -300,9 +300,6 @@ namespace crawler
             limit.multiplier = NAN;
           if (objective_.is_inverse) // the multiplier is that of D/W
             limit.multiplier *= -result_.best.objective * result_.best.objective;
-          for (const LimitEntry &entry : limit_entries) // wanted value, not the tightened one
-            if (entry.name == limit.name)
-              limit.value = *(wanted_.*entry.value);
         }
       }
 

@@ -4,6 +4,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/grid_samples.h>
 #include <crawler/output/kymograph_writer.h>
+#include <crawler/run/result_table.h>
 #include <crawler/run/simulation.h>
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/sensitivities.h>
@@ -150,15 +151,9 @@ namespace crawler
         const Scene &scene             = *task.scene;
         ByGaitNumber<double> list;
         list.fill(NAN);
-        list[GaitNumber::displacement] = result.displacement;
-        if (result.energy_balance)
-        {
-          list[GaitNumber::work]          = result.energy_balance->stress_work;
-          list[GaitNumber::positive_work] = result.energy_balance->positive_work;
-          list[GaitNumber::dissipation]   = result.energy_balance->dissipation;
-        }
-        if (result.gait)
-          list[GaitNumber::speed] = result.gait->speed();
+        for (std::size_t i = 0; i < list.size(); ++i)
+          if (const auto &quantity = gait_numbers[i].quantity)
+            list[i] = entry_of(differentiated_numbers[static_cast<std::size_t>(*quantity)]).number_in(result);
         list[GaitNumber::efficiency]    = result.gait_efficiency.value_or(NAN);
         list[GaitNumber::friction_time] = scene.end_time / (scene.body.friction_coefficient * scene.body.length);
         return list;

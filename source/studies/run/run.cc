@@ -436,4 +436,19 @@ namespace crawler
   {
     return RunStudy(communicator, options, file).run();
   }
+
+  ExitCode
+  run_for_study(CommandOptions options,
+                const std::filesystem::path &file,
+                const std::vector<std::string> &overrides,
+                const std::filesystem::path &place)
+  {
+    options.file      = file.string();
+    options.output    = place.string();
+    options.overrides = overrides;
+    options.overwrite = options.quiet = true;
+    options.resume                    = false;
+    std::filesystem::create_directories(place);
+    return run(MPI_COMM_SELF, options, read_file(MPI_COMM_SELF, options.file, overrides));
+  }
 } // namespace crawler

@@ -156,18 +156,6 @@ namespace crawler
   {
   }
 
-  void
-  FieldRuns::take(const std::vector<double> &numbers)
-  {
-    for (std::size_t i = 0; i < paths_.size(); ++i)
-      form_.declarations.set(paths_[i], to_text(numbers.at(i)));
-    Parameters &parameters           = input_.parameters;
-    parameters                       = form_.parameters;
-    parameters.error_estimate        = false;
-    parameters.output.energy_balance = false;
-    input_.scene                     = parameters.create_scene();
-  }
-
   RunInMemory
   FieldRuns::run(const std::vector<double> &numbers,
                  const bool is_similar,
@@ -175,7 +163,15 @@ namespace crawler
                  const std::function<void()> &start,
                  const std::function<bool()> &interrupted)
   {
-    input_.file.placing_errors([&]() { take(numbers); });
+    input_.file.placing_errors([&]() {
+      for (std::size_t i = 0; i < paths_.size(); ++i)
+        form_.declarations.set(paths_[i], to_text(numbers.at(i)));
+      Parameters &parameters           = input_.parameters;
+      parameters                       = form_.parameters;
+      parameters.error_estimate        = false;
+      parameters.output.energy_balance = false;
+      input_.scene                     = parameters.create_scene();
+    });
     if (!is_similar || !model_)
     {
       model_    = choose_model(input_);

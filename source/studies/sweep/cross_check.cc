@@ -192,17 +192,13 @@ namespace crawler
              a.computed.result.time.steps == b.computed.result.time.steps;
     }
 
-    /// Parameters of the refined run, with mesh and time steps chosen by the program.
+    /// Parameters of the refined run.
     Parameters
     refined_parameters(const Parameters &parameters)
     {
-      Parameters finer                 = parameters;
+      Parameters finer                 = parameters.with_free_numerics();
       finer.accuracy                   = std::max(1e-12, parameters.accuracy / parameters.sweep.refinement);
-      finer.discretization             = {};
       finer.discretization.formulation = parameters.discretization.formulation;
-      finer.time                       = {};
-      finer.time.end_time              = parameters.time.end_time;
-      finer.time.max_steps             = parameters.time.max_steps;
       return finer;
     }
 
@@ -293,7 +289,7 @@ namespace crawler
     {
       const PointStatus status = status_of(main);
       if (verdict.kind == Verdict::silent_wrong_answer)
-        return verdict.in_words();
+        return word_of(verdict.kind);
       if (status.status == "inverted")
         return status.reason == "inverted_at_end" ? "inverted at end" : "inverted inside";
       if (status.reason == "refused")
@@ -322,7 +318,7 @@ namespace crawler
         verdict = cross_check(
           {claim, its_claim(Checked::position), its_claim(Checked::stretch)}, finer, inversion_facts(*main.scene));
       RowFile::Row row = {outcome_of(main, verdict),
-                          verdict.in_words(),
+                          word_of(verdict.kind),
                           shortened(verdict.explanation, explanation_width),
                           claim.promised_error,
                           is_own_check ? NAN : ratio(claim)};

@@ -20,6 +20,7 @@ namespace crawler
   namespace
   {
     constexpr unsigned long rows_together = 1 << 16;
+    const std::string status              = "status"; // column of texts that is written last
 
     std::string
     text_of(const Column &column, const unsigned long row)
@@ -67,7 +68,7 @@ namespace crawler
       {
         const unsigned long n = std::min(rows_together, rows.n_rows() - first);
         const auto column     = [&](const std::string &name) { return rows.read(rows.index_of(name), first, n); };
-        const Column is_done  = column(table.done);
+        const Column is_done  = column(status);
         for (unsigned long i = 0; i < n; ++i)
           done.push_back(!text_of(is_done, i).empty());
         if (const auto intact = rows.intact(table.written_columns(), first, n))
@@ -128,8 +129,9 @@ namespace crawler
   std::vector<RowFile::Column>
   PointTable::written_columns() const
   {
-    std::vector<RowFile::Column> list(columns.begin() + static_cast<std::ptrdiff_t>(n_known), columns.end());
-    std::stable_partition(list.begin(), list.end(), [&](const RowFile::Column &column) { return column.name != done; });
+    std::vector<RowFile::Column> list(columns.begin() + static_cast<std::ptrdiff_t>(known.n_columns), columns.end());
+    std::stable_partition(
+      list.begin(), list.end(), [&](const RowFile::Column &column) { return column.name != status; });
     return list;
   }
 
@@ -159,7 +161,8 @@ namespace crawler
   RowFile::Known
   known_columns(const std::vector<RowFile::Column> &columns, const SweepDesign &design)
   {
-    return {1 + design.axes().size(), [&](const std::size_t column, const unsigned long point) -> RowFile::Value {
+    return {1 + design.axes().size(),
+            [columns, &design](const std::size_t column, const unsigned long point) -> RowFile::Value {
               if (column == 0)
                 return static_cast<double>(point);
               const std::string text = design.value(column - 1, point);
@@ -170,24 +173,23 @@ namespace crawler
   }
 
   void
-  create_table(const StudyFolder &folder, const PointTable &table, const PlannedRows &plan)
+  create_table(const StudyFolder &folder, const PointTable &table)
   {
-    auto attributes = provenance(plan.effective, folder.options.command_line);
-    attributes["not known"] =
-      fmt::format("NaN in numbers, an empty text in texts; an empty {}: not computed yet", table.done);
-    attributes.merge(plan.inputs.attributes());
-    attributes.insert(plan.more.begin(), plan.more.end());
-    RowFile::create(folder.path / table.file, table.group, table.columns, plan.n, attributes, plan.known);
+    auto attributes         = provenance(table.effective, folder.options.command_line);
+    attributes["not known"] = "NaN in numbers, an empty text in texts; an empty status: not computed yet";
+    attributes.insert(table.inputs.begin(), table.inputs.end());
+    attributes.insert(table.others.begin(), table.others.end());
+    RowFile::create(folder.path / table.file, table.group, table.columns, table.n_rows, attributes, table.known);
   }
 
   std::vector<bool>
-  begin_or_resume(StudyFolder &folder, const PointTable &table, const ParameterFile &file, const PlannedRows &plan)
+  begin_or_resume(StudyFolder &folder, const PointTable &table, const ParameterFile &file)
   {
     const auto path = folder.path / table.file;
-    if (!folder.begin(file.text(), plan.effective))
+    if (!folder.begin(file.text(), table.effective))
     {
-      create_table(folder, table, plan);
-      return std::vector<bool>(plan.n, false);
+      create_table(folder, table);
+      return std::vector<bool>(table.n_rows, false);
     }
     std::optional<RowReader> rows;
     folder.resume([&]() {
@@ -199,17 +201,18 @@ namespace crawler
       std::vector<std::string> changes;
       if (has_columns)
       {
-        std::map<std::string, std::string> attributes;
-        for (const auto &[name, text] : plan.inputs.attributes())
-          attributes.emplace(name, attribute(name));
-        changes = differences(SweepInputs::from_attributes(attributes), plan.inputs, free);
+        SweepInputs before;
+        for (const auto &[name, text] : table.inputs)
+          before.emplace(name, attribute(name));
+        changes = differences(before, table.inputs, free);
       }
-      else if (changes = differences(attribute("parameters.prm"), plan.inputs.effective, free); changes.empty())
+      else if (changes = differences(attribute("parameters.prm"), table.inputs.at("parameters.prm"), free);
+               changes.empty())
         changes.emplace_back("its table has the columns of another version of the program");
-      if (changes.empty() && !table.grows && rows->n_rows() != plan.n)
-        changes.push_back(fmt::format("the number of points was {} and is {}", rows->n_rows(), plan.n));
+      if (changes.empty() && !table.grows && rows->n_rows() != table.n_rows)
+        changes.push_back(fmt::format("the number of points was {} and is {}", rows->n_rows(), table.n_rows));
       if (changes.empty())
-        if (const std::string changed = changed_value(*rows, table.columns, plan.known); !changed.empty())
+        if (const std::string changed = changed_value(*rows, table.columns, table.known); !changed.empty())
           changes.push_back(changed);
       return changes;
     });
@@ -228,11 +231,9 @@ namespace crawler
   }
 
   void
-  write_table_csv(MPI_Comm communicator,
-                  const std::filesystem::path &table_path,
-                  const std::string &group,
-                  const std::filesystem::path &csv)
+  write_table_csv(MPI_Comm communicator, const std::filesystem::path &table_path, const std::string &group)
   {
+    const auto csv                   = std::filesystem::path(table_path).replace_extension("csv");
     constexpr unsigned long together = 256; // rows of each rank, a quarter of a megabyte
     const RowReader table(communicator, table_path, group);
     const unsigned long n_ranks = size_of(communicator), rank = rank_of(communicator);

@@ -40,21 +40,6 @@ namespace crawler
       return fmt::format("{}, {} over {}", counted(design.n_points(), "point"), design_name, fmt::join(axes, ", "));
     }
 
-    /// Removes the folders of points, but not files that are not the program's.
-    void
-    remove_kept_fields(const fs::path &points)
-    {
-      std::error_code error;
-      if (!fs::is_directory(points, error))
-        return;
-      std::vector<fs::path> folders;
-      for (const auto &entry : fs::directory_iterator(points))
-        if (entry.is_directory() && to_number(entry.path().filename().string()))
-          folders.push_back(entry.path());
-      std::ranges::for_each(folders, remove_run);
-      fs::remove(points, error);
-    }
-
     /// Writes the folders points/NUMBER of the points whose fields are kept, by `crawler run` with their values. Points
     /// that were given up have none.
     bool
@@ -74,17 +59,14 @@ namespace crawler
         if (fs::exists(place / "summary.json") ||
             std::get<std::vector<std::string>>(row.values).front() == time_limit_reason)
           continue;
-        CommandOptions one = folder.options;
-        if (one.file == "-")
-          one.file = (folder.path / "original.prm").string();
-        one.output    = place.string();
-        one.overwrite = one.quiet = true;
-        one.resume                = false;
-        one.overrides             = points.overrides(kept[i]);
+        const fs::path &file = folder.options.file;
         try
         {
-          fs::create_directories(place);
-          all = run(MPI_COMM_SELF, one, read_file(MPI_COMM_SELF, one.file, one.overrides)) != ExitCode::stopped && all;
+          all = run_for_study(folder.options,
+                              file == "-" ? folder.path / "original.prm" : file,
+                              points.overrides(kept[i]),
+                              place) != ExitCode::stopped &&
+                all;
         }
         catch (const InputError &) // inconsistent values: the row says so, and there are no fields
         {
@@ -103,13 +85,10 @@ namespace crawler
     PointTable
     table_of(const SweepPoints &points)
     {
-      PointTable table         = {sweep_file,
-                                  sweep_group,
-                                  sweep_columns(points),
-                                  1 + points.design().axes().size(),
-                                  "status",
-                                  {},
-                                  points.sweep().point_time_limit.value_or(HUGE_VAL)};
+      PointTable table = {
+        sweep_file, sweep_group, sweep_columns(points), points.effective(), points.design().n_points()};
+      table.known              = known_columns(table.columns, points.design());
+      table.time_limit         = points.sweep().point_time_limit.value_or(HUGE_VAL);
       const std::string reason = "reason"; // column of the point, and of each run of a cross-check
       for (const RowFile::Column &column : table.columns)
         if (column.name.ends_with(reason))
@@ -229,15 +208,14 @@ namespace crawler
     const SweepDesign &design  = points.design();
     const SweepParameters &own = points.sweep();
     const auto kept            = points.kept_points();
-    const PointTable table     = table_of(points);
+    PointTable table           = table_of(points);
     StudyFolder folder(
       {"sweep", sweep_file, {"Sweep/Time limit", "Sweep/Time limit per point", "Sweep/Keep fields"}}, options, log);
     const std::vector<bool> done = points_done(communicator, [&]() {
-      const PlannedRows plan{
-        design.n_points(), known_columns(table.columns, design), sweep_inputs(points), points.effective()};
-      auto list = begin_or_resume(folder, table, file, plan);
+      table.inputs = sweep_inputs(points);
+      auto list    = begin_or_resume(folder, table, file);
       if (std::count(list.begin(), list.end(), true) == 0)
-        remove_kept_fields(folder.path / "points"); // fields of an earlier sweep
+        remove_numbered(folder.path / "points", ""); // fields of an earlier sweep
       return list;
     });
     const auto n_done            = static_cast<unsigned long>(std::count(done.begin(), done.end(), true));
@@ -282,17 +260,17 @@ namespace crawler
     constexpr unsigned long max_samples = 32;
     constexpr double long_enough        = 0.5; // [s]
     SweepWork work(points, size_of(communicator));
-    const unsigned long n_parts = work.n_parts(), stride = golden_stride(n_parts);
+    const auto parts = spread_out(work.n_parts());
     const std::vector<bool> none_done(design.n_points(), false);
     const auto write_nothing = [](unsigned long, std::span<const RowFile::Row>) {};
     const auto never_stopped = []() { return false; };
     unsigned long n_computed = 0;
     const auto count         = [&](const unsigned long n, unsigned long) { n_computed += n; };
     const double before      = now();
-    for (unsigned long i = 0; i < n_parts && n_computed < design.n_points() && (i < max_samples || n_computed == 0) &&
-                              now() - before < long_enough;
+    for (unsigned long i = 0; i < parts.size() && n_computed < design.n_points() &&
+                              (i < max_samples || n_computed == 0) && now() - before < long_enough;
          ++i)
-      work.compute((i + 1) * stride % n_parts, none_done, write_nothing, never_stopped, count);
+      work.compute(parts[(i + 1) % parts.size()], none_done, write_nothing, never_stopped, count);
     const double each = (now() - before) / static_cast<double>(n_computed);
     log.line(fmt::format("Sweep: {}.", in_words(design, points.sweep().design)));
     for (const std::string &note : points.notes())

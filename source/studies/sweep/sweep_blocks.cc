@@ -72,57 +72,59 @@ namespace crawler
     }
   } // namespace
 
-  unsigned long
-  golden_stride(const unsigned long n)
+  std::vector<unsigned long>
+  spread_out(const unsigned long n)
   {
-    auto stride = static_cast<unsigned long>(std::ceil(0.618034 * n));
-    while (std::gcd(stride, n) != 1)
+    auto stride = static_cast<unsigned long>(std::ceil(0.618034 * n)); // near the golden section, and coprime to n
+    while (std::gcd(stride, n) > 1)
       ++stride;
-    return stride;
+    std::vector<unsigned long> list;
+    for (unsigned long i = 0; i < n; ++i)
+      list.push_back(i * stride % n);
+    return list;
   }
 
-  SweepBlocks::SweepBlocks(const SweepDesign &design)
-    : rows_(design.run_length() > 1 ? design.run_length() : design.n_points())
+  std::vector<SweepBlock>
+  sweep_blocks(const SweepDesign &design)
   {
     const std::size_t n_axes = design.axes().size();
-    if (design.run_length() > 1 && rows_ <= most / 2 && n_axes > 1 && is_smooth(design.axes()[n_axes - 2]))
+    unsigned long row = 1, rows = design.run_length() > 1 ? design.run_length() : design.n_points(); // rows of a run
+    if (design.run_length() > 1 && rows <= largest_block / 2 && n_axes > 1 && is_smooth(design.axes()[n_axes - 2]))
     {
-      row_  = rows_;
-      rows_ = design.axes()[n_axes - 2].values.size();
+      row  = rows;
+      rows = design.axes()[n_axes - 2].values.size();
     }
-    // Runs are cut into equal parts.
-    n_runs_                           = design.n_points() / (row_ * rows_);
-    const unsigned long rows_of_block = most / row_;
-    parts_of_run_                     = (rows_ + rows_of_block - 1) / rows_of_block;
+    const unsigned long rows_of_block = largest_block / row, parts = (rows + rows_of_block - 1) / rows_of_block;
+    std::vector<SweepBlock> blocks;
+    for (unsigned long start = 0; start < design.n_points(); start += rows * row)
+      for (unsigned long part = 0; part < parts; ++part) // equal ones
+      {
+        const unsigned long from = rows * part / parts, to = rows * (part + 1) / parts;
+        blocks.push_back({start + from * row, (to - from) * row});
+      }
+    return blocks;
   }
 
-  SweepBlock
-  SweepBlocks::operator[](const unsigned long number) const
+  std::vector<SweepBlock>
+  sweep_blocks_in_order(SweepPoints &points)
   {
-    const unsigned long part = number % parts_of_run_, start = number / parts_of_run_ * rows_ * row_;
-    const unsigned long from = rows_ * part / parts_of_run_, to = rows_ * (part + 1) / parts_of_run_;
-    return {start + from * row_, (to - from) * row_};
-  }
-
-  std::vector<unsigned long>
-  order_of(const SweepBlocks &blocks, SweepPoints &points)
-  {
-    const unsigned long stride = golden_stride(blocks.size());
-    std::vector<unsigned long> order;
-    for (unsigned long i = 0; i < blocks.size(); ++i)
-      order.push_back(i * stride % blocks.size());
     const SweepDesign &design = points.design();
-    if (!design.varies("Time/End time") && !design.varies("Accuracy") && !design.varies(SweepAxis::file))
-      return order;
-    std::vector<double> expected;
-    for (unsigned long number = 0; number < blocks.size(); ++number)
+    const auto blocks         = sweep_blocks(design);
+    auto order                = spread_out(blocks.size());
+    if (design.varies("Time/End time") || design.varies("Accuracy") || design.varies(SweepAxis::file))
     {
-      const SweepBlock block = blocks[number];
-      const Parameters &p    = points.parameters(block.first);
-      expected.push_back(p.time.end_time * std::log10(1. / p.accuracy) * static_cast<double>(block.size));
+      std::vector<double> expected;
+      for (const SweepBlock &block : blocks)
+      {
+        const Parameters &p = points.parameters(block.first);
+        expected.push_back(p.time.end_time * std::log10(1. / p.accuracy) * static_cast<double>(block.size));
+      }
+      std::ranges::stable_sort(order, std::greater(), [&](const unsigned long number) { return expected[number]; });
     }
-    std::ranges::stable_sort(order, std::greater(), [&](const unsigned long number) { return expected[number]; });
-    return order;
+    std::vector<SweepBlock> list;
+    for (const unsigned long number : order)
+      list.push_back(blocks[number]);
+    return list;
   }
 
   struct SweepWork::Point
@@ -134,13 +136,13 @@ namespace crawler
 
   SweepWork::SweepWork(SweepPoints &points, const unsigned int n_ranks, CrashNote *const note)
     : points_(points)
-    , blocks_(points.design())
-    , order_(order_of(blocks_, points))
+    , blocks_(sweep_blocks_in_order(points))
     , parts_of_block_([&]() {
       // Each rank that takes a part must measure the numerics its block shares. Points of a cross-check take long.
       constexpr unsigned long most = 64, max_if_alone = 8;
       const unsigned long parts_per_rank = points.sweep().cross_check ? 8 : 4;
-      const unsigned long n = points.design().n_points(), largest = blocks_.largest();
+      const unsigned long n              = points.design().n_points(),
+                          largest        = std::ranges::max(blocks_, {}, &SweepBlock::size).size;
       const unsigned long together =
         std::clamp(n / (parts_per_rank * n_ranks), 1ul, SweepNumerics::are_shared(points) ? most : max_if_alone);
       return (largest + together - 1) / together;

@@ -23,34 +23,28 @@ namespace crawler
     {
       return json.dump(-1, ' ', /*ensure_ascii=*/false, nlohmann::json::error_handler_t::replace);
     }
-  } // namespace
 
-  Texts
-  SweepInputs::attributes() const
-  {
-    return {{effective_name, effective}, {scenes_name, as_json(scenes)}, {files_name, as_json(files)}};
-  }
-
-  SweepInputs
-  SweepInputs::from_attributes(const Texts &attributes)
-  {
-    const auto parsed = [&](const std::string &name) {
-      auto json = nlohmann::json::parse(attributes.at(name), nullptr, /*allow_exceptions=*/false);
-      if (!json.is_object() && !json.is_null())
+    nlohmann::json
+    parsed(const SweepInputs &inputs, const std::string &name)
+    {
+      const auto found = inputs.find(name);
+      auto json =
+        nlohmann::json::parse(found != inputs.end() ? found->second : "{}", nullptr, /*allow_exceptions=*/false);
+      if (!json.is_object())
         throw InputError("the attribute \"" + name + "\" of the table is damaged: JSON is expected");
       return json;
-    };
-    return {attributes.at(effective_name), parsed(scenes_name), parsed(files_name)};
-  }
+    }
+  } // namespace
 
   SweepInputs
   sweep_inputs(const SweepPoints &points)
   {
-    SweepInputs inputs{without_comments(points.effective()), {}, {}};
+    std::map<std::string, Texts> scenes;
+    Texts files;
     const auto add_file = [&](const std::string &name) {
       std::error_code ignored;
-      if (!name.empty() && !inputs.files.contains(name) && std::filesystem::is_regular_file(name, ignored))
-        inputs.files.emplace(name, fingerprint(name));
+      if (!name.empty() && !files.contains(name) && std::filesystem::is_regular_file(name, ignored))
+        files.emplace(name, fingerprint(name));
     };
     Texts base;
     std::set<std::string> naming_files;
@@ -77,12 +71,14 @@ namespace crawler
         const auto found = base.find(one.path);
         if (points.design().varies(one.path) || (found != base.end() && found->second == one.value))
           continue;
-        inputs.scenes[name].emplace(one.path, "\"" + one.value + "\"");
+        scenes[name].emplace(one.path, "\"" + one.value + "\"");
         if (found == base.end() || naming_files.contains(one.path))
           add_file(std::filesystem::absolute(one.folder / one.value).lexically_normal().string());
       }
     }
-    return inputs;
+    return {{effective_name, without_comments(points.effective())},
+            {scenes_name, as_json(scenes)},
+            {files_name, as_json(files)}};
   }
 
   std::vector<std::string>
@@ -91,22 +87,19 @@ namespace crawler
     std::vector<std::string> list;
     try
     {
-      list = differences(before.effective, now.effective, free_entries);
+      list = differences(before.at(effective_name), now.at(effective_name), free_entries);
     }
     catch (const InputError &) // the message may contain bytes that no terminal can show
     {
       throw InputError("the parameters that are kept in the table cannot be read: it is damaged, or from another "
                        "version of crawler; an intact one is expected");
     }
-    const auto scene_in = [](const SweepInputs &inputs, const std::string &name) {
-      const auto found = inputs.scenes.find(name);
-      return found == inputs.scenes.end() ? Texts() : found->second;
-    };
-    auto all = before.scenes;
-    all.insert(now.scenes.begin(), now.scenes.end());
-    for (const auto &[name, ignored] : all)
-      add_differences(scene_in(before, name), scene_in(now, name), "{} in " + name, "not set", list);
-    add_differences(before.files, now.files, "the file \"{}\"", "not there", list);
+    std::map<std::string, Texts> scenes = parsed(before, scenes_name), scenes_now = parsed(now, scenes_name);
+    for (const auto &[name, ignored] : scenes_now)
+      scenes.try_emplace(name);
+    for (const auto &[name, entries] : scenes)
+      add_differences(entries, scenes_now[name], "{} in " + name, "not set", list);
+    add_differences(parsed(before, files_name), parsed(now, files_name), "the file \"{}\"", "not there", list);
     return list;
   }
 } // namespace crawler

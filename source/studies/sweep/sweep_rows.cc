@@ -97,20 +97,16 @@ namespace crawler
       if (!entry.of_process)
         row.push_back(value_in_row(task, entry));
     const SimulationResult &result = task.computed.result;
-    const auto add                 = [&](const std::optional<double> &value) {
-      row.emplace_back(std::in_place_type<double>, value.value_or(NAN));
-    };
     for (const SensitivityEntry &entry : sensitivities)
       for (const std::string number : differentiated_numbers)
       {
         const auto one   = std::ranges::find(result.sensitivities, entry.path, &EntrySensitivity::entry);
         const auto known = one != result.sensitivities.end() ? one->of(number) : std::nullopt;
-        add(known ? std::optional(known->value) : std::nullopt);
-        add(known ? std::optional(known->error) : std::nullopt);
+        row.insert(row.end(), {known ? known->value : NAN, known ? known->error : NAN});
       }
     if (are_uncertain(sensitivities))
       for (const std::string number : differentiated_numbers)
-        add(result.standard_deviation(number));
+        row.emplace_back(result.standard_deviation(number).value_or(NAN));
     row.insert(row.end(), checked.begin(), checked.end());
     row.insert(row.end(), {task.seconds, status.reason, shortened(status.message, message_width), status.status});
     return row;
@@ -124,7 +120,7 @@ namespace crawler
   {
     constexpr unsigned long together = 4096; // rows in memory
     const auto path                  = folder / file;
-    write_table_csv(communicator, path, group, std::filesystem::path(path).replace_extension("csv"));
+    write_table_csv(communicator, path, group);
     SweepCounts counts;
     on_first_rank(communicator, [&]() {
       const RowReader table(MPI_COMM_SELF, path, group);
@@ -138,7 +134,7 @@ namespace crawler
   unsigned long
   SweepCounts::number_of(const Verdict::Kind kind) const
   {
-    const auto found = verdicts.find(Verdict{kind, ""}.in_words());
+    const auto found = verdicts.find(word_of(kind));
     return found == verdicts.end() ? 0 : found->second;
   }
 

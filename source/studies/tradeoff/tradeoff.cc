@@ -37,21 +37,34 @@ namespace crawler
 {
   namespace
   {
-    /// Table with a row for each setting, known from the beginning; the columns are a contract (doc/user_guide.md,
-    /// "Trading accuracy for speed").
-    PointTable
-    tradeoff_table(const double time_limit)
+    /// Value in a column: an empty text or not a number if unknown.
+    RowFile::Value
+    value_in(const TradeoffTexts &texts, const RowFile::Column &column)
     {
-      PointTable table = {"tradeoff.h5",
-                          "tradeoff",
-                          {{"index", "1", "number of the setting"}},
-                          0,
-                          "status",
-                          {{"reason", "time limit"}},
-                          time_limit};
+      const auto found       = texts.find(column.name);
+      const std::string text = found == texts.end() ? "" : found->second;
+      if (column.width > 0)
+        return shortened(text, column.width);
+      return to_number(text).value_or(NAN);
+    }
+
+    /// Table with a row for each setting; the columns are a contract (doc/user_guide.md, "Trading accuracy for speed").
+    PointTable
+    tradeoff_table(const Input &input, const std::vector<TradeoffSetting> &settings)
+    {
+      PointTable table = {
+        "tradeoff.h5", "tradeoff", {{"index", "1", "number of the setting"}}, input.effective, settings.size()};
       for (const SettingColumn &one : setting_columns())
         table.columns.push_back(one.column);
-      table.n_known                              = table.columns.size();
+      table.known  = {table.columns.size(), [&](const std::size_t i, const unsigned long row) -> RowFile::Value {
+                       if (i == 0)
+                         return static_cast<double>(row);
+                       return value_in(settings[row].values, setting_columns()[i - 1].column);
+                     }};
+      table.inputs = {{"parameters.prm", without_comments(input.effective)}};
+      table.reasons_and_seconds                  = {{"reason", "time limit"}};
+      table.time_limit                           = input.parameters.tradeoff.run_time_limit;
+      table.others                               = {{"reference", ""}};
       const std::vector<RowFile::Column> results = {
         {"entries", "", "the setting as entries of the parameter file", 512},
         {"status", "", "finished, inverted, failed, stopped, refused, or not offered; empty: not tried yet", 16},
@@ -73,17 +86,6 @@ namespace crawler
         {"most cells", "1", "largest number of cells of an adaptive mesh over time"}};
       table.columns.insert(table.columns.end(), results.begin(), results.end());
       return table;
-    }
-
-    /// Value in a column: an empty text or not a number if unknown.
-    RowFile::Value
-    value_in(const TradeoffTexts &texts, const RowFile::Column &column)
-    {
-      const auto found       = texts.find(column.name);
-      const std::string text = found == texts.end() ? "" : found->second;
-      if (column.width > 0)
-        return shortened(text, column.width);
-      return to_number(text).value_or(NAN);
     }
 
     void
@@ -321,9 +323,8 @@ namespace crawler
         if (!is_done)
           all.emplace_back(first, end);
       }
-      const unsigned long n = all.size(), stride = golden_stride(std::max(1ul, n));
-      for (unsigned long i = 0; i < n; ++i)
-        spread.push_back(all[i * stride % n]);
+      for (const unsigned long i : spread_out(all.size()))
+        spread.push_back(all[i]);
       return spread;
     }
 
@@ -404,20 +405,10 @@ namespace crawler
     TradeoffReference
     begin(Study &study)
     {
-      const auto known = [&](const std::size_t i, const unsigned long row) -> RowFile::Value {
-        if (i == 0)
-          return static_cast<double>(row);
-        return value_in(study.settings[row].values, study.table.columns[i]);
-      };
       const Input &input = study.input;
-      PlannedRows plan{study.settings.size(),
-                       {study.table.n_known, known},
-                       {without_comments(input.effective), {}, {}},
-                       input.effective,
-                       {{"reference", ""}}};
       std::string text;
       study.done        = points_done(study.communicator, [&]() {
-        auto done = begin_or_resume(study.folder, study.table, input.file, plan);
+        auto done = begin_or_resume(study.folder, study.table, input.file);
         text      = read_attribute(study.folder.path / study.table.file, study.table.group, "reference");
         return done;
       });
@@ -438,8 +429,9 @@ namespace crawler
       const nlohmann::json made = make_reference(input.parameters, study.interrupted);
       text = broadcast(made.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), study.communicator);
       on_first_rank(study.communicator, [&]() {
-        plan.more["reference"] = text;
-        create_table(study.folder, study.table, plan);
+        PointTable table          = study.table;
+        table.others["reference"] = text;
+        create_table(study.folder, table);
       });
       return nlohmann::json::parse(text);
     }
@@ -486,7 +478,7 @@ namespace crawler
     const Input input             = read_input(file, /*command=*/"tradeoff");
     const TradeoffParameters &own = input.parameters.tradeoff;
     const auto settings           = file.placing_errors([&]() { return settings_to_try(input); });
-    const PointTable table        = tradeoff_table(own.run_time_limit);
+    const PointTable table        = tradeoff_table(input, settings);
     clock.set_limit(own.time_limit, "Tradeoff/Time limit");
     const std::function<bool()> interrupted = [&]() { return clock.is_over(); };
     const StudyKind kind = {"tradeoff", table.file, {"Tradeoff/Time limit", "Tradeoff/Time limit per run"}};

@@ -17,20 +17,6 @@ namespace crawler
     constexpr double first_accuracy = 1e-12, first_of_check = 1e-10, next = 100., loosest = 1e-4, loosest_check = 1e-6;
     constexpr double coarse_accuracy = 1e-3;
 
-    /// Sets the nonlinear model, and numerics chosen by the program.
-    Parameters
-    with_free_numerics(const Parameters &parameters)
-    {
-      Parameters free      = parameters;
-      free.model           = Model::nonlinear;
-      free.discretization  = {};
-      free.time            = {};
-      free.time.end_time   = parameters.time.end_time;
-      free.time.max_steps  = parameters.time.max_steps;
-      free.time.cycle_stop = CycleStopMode::off;
-      return free;
-    }
-
     Task
     computed(const Parameters &parameters, const double accuracy, const std::function<bool()> &interrupted)
     {
@@ -95,7 +81,9 @@ namespace crawler
   TradeoffReference
   make_reference(const Parameters &parameters, const std::function<bool()> &interrupted)
   {
-    const Parameters free = with_free_numerics(parameters);
+    Parameters free      = parameters.with_free_numerics();
+    free.model           = Model::nonlinear;
+    free.time.cycle_stop = CycleStopMode::off;
     TradeoffReference reference;
     const TradeoffAnswer &answer = reference.answer, &check = reference.check;
     reference.answer = find_answer(free, first_accuracy, loosest, reference, interrupted);

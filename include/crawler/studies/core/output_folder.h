@@ -55,9 +55,11 @@ namespace crawler
   void
   prepare(const std::filesystem::path &folder);
 
-  /// Removes the folder of a run, but not files that are not the program's.
+  /// Removes files of a study in @p folder, or folders of its runs (without @p ending), that are called @p word,
+  /// perhaps with a number behind it: "best", "best-2"; not the files of others in them. Removes @p folder if it is
+  /// empty then.
   void
-  remove_run(const std::filesystem::path &folder);
+  remove_numbered(const std::filesystem::path &folder, const std::string &word, const std::string &ending = "");
 
   /// Removes files that a run writes as it proceeds: the fields and the statistics.
   void

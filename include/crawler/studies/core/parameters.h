@@ -94,6 +94,18 @@ namespace crawler
     FitParameters fit;
     UnitNames units;
 
+    /// Returns the same with mesh and time steps that the program chooses.
+    Parameters
+    with_free_numerics() const
+    {
+      Parameters free     = *this;
+      free.discretization = {};
+      free.time           = {};
+      free.time.end_time  = time.end_time;
+      free.time.max_steps = time.max_steps;
+      return free;
+    }
+
     void
     add_parameters(Declarations &declarations);
   };

@@ -124,7 +124,7 @@ namespace crawler
     double
     unused_limits(const std::vector<double> &y, const std::vector<double> &multipliers);
 
-    /// Limits with their multipliers, by the multipliers of c.
+    /// Wanted limits with their multipliers, by the multipliers of c.
     std::vector<GaitLimit>
     limits(const std::vector<double> &multipliers) const;
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <crawler/studies/optimize/scene_family.h>
-#include <crawler/studies/sweep/sweep_inputs.h>
 #include <crawler/studies/sweep/sweep_points.h>
 
 #include <memory>

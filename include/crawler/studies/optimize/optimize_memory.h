@@ -35,7 +35,7 @@ namespace crawler
     void
     keep(StartResult start);
 
-    /// Keeps only @p starts, in this order, and closes the files.
+    /// Keeps only @p starts, in this order, closes the files, and writes them as comma-separated values, too.
     void
     arrange(const std::vector<StartName> &starts);
 
@@ -46,13 +46,12 @@ namespace crawler
     }
 
   private:
-    /// File to which rows are appended.
+    /// Table to which rows are appended.
     struct Rows
     {
-      std::string file, group;
-      std::vector<RowFile::Column> columns; ///< columns that are written
+      PointTable table;
       std::unique_ptr<RowFile> rows = nullptr;
-      unsigned long n = 0, max = 0; ///< rows written, and places for rows
+      unsigned long n               = 0; ///< rows written
     };
     void
     open(Rows &rows, const std::string &ending) const;
@@ -66,8 +65,6 @@ namespace crawler
 
     const OptimizeNames &names_;
     const StudyFolder &folder_;
-    const PointTable table_;
-    PlannedRows plan_;
     std::vector<StartResult> starts_; ///< in the order of their rows
     Rows start_rows_, evaluation_rows_;
   };

@@ -7,9 +7,21 @@
 
 #include <mpi.h>
 
+#include <filesystem>
+#include <string>
+#include <vector>
+
 namespace crawler
 {
   /// crawler run: one simulation with all its files (collective).
   ExitCode
   run(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file);
+
+  /// Run of @p file for a study with these @p options, with all files in the folder @p place, which is made (this rank
+  /// alone).
+  ExitCode
+  run_for_study(CommandOptions options,
+                const std::filesystem::path &file,
+                const std::vector<std::string> &overrides,
+                const std::filesystem::path &place);
 } // namespace crawler

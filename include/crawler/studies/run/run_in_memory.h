@@ -81,10 +81,6 @@ namespace crawler
         const std::function<bool()> &interrupted);
 
   private:
-    /// Takes the numbers into the scene of the input.
-    void
-    take(const std::vector<double> &numbers);
-
     const std::vector<std::string> paths_;
     Form form_;
     Input input_;

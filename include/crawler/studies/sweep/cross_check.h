@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/base/row_file.h>
+#include <crawler/base/words.h>
 #include <crawler/studies/core/compute.h>
 
 #include <cmath>
@@ -45,14 +46,9 @@ namespace crawler
     };
     Kind kind = unchecked;
     std::string explanation; ///< explanation of a wrong answer, in a sentence
-
-    /// "agree", "unchecked" or "silent wrong answer".
-    std::string
-    in_words() const
-    {
-      return kind == agree ? "agree" : kind == unchecked ? "unchecked" : "silent wrong answer";
-    }
   };
+  template <>
+  inline constexpr const char *words_of<Verdict::Kind>[] = {"agree", "unchecked", "silent wrong answer"};
 
   /**
    * Compares answers to one scene. Each of @p runs is compared with @p refined, or, if that one gave no answer, with

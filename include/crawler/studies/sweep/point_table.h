@@ -10,6 +10,7 @@
 
 #include <mpi.h>
 
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -19,20 +20,24 @@
 
 namespace crawler
 {
-  /// Table of a study that has a row for each point of a design: its place and its content.
+  /// Table of a study that has a row for each point of a design: its place, and its content as far as it is known
+  /// before any point is computed.
   struct PointTable
   {
     std::string file;  ///< in the folder of the study, HDF5
     std::string group; ///< in the file
     std::vector<RowFile::Column> columns;
-    std::size_t n_known; ///< index and axes: the first columns, known from the beginning
-    std::string done;    ///< column of texts that is written last: empty where nothing is computed yet
+    std::string effective; ///< all entries as used, as a .prm file
+    unsigned long n_rows;
+    RowFile::Known known = {}; ///< index and axes: the first columns, known from the beginning
+    SweepInputs inputs   = {}; ///< inputs on which the rows depend (one process reads them)
     /// Reasons with the seconds used: rows that ran out of a time limit are computed again if it is increased.
-    std::vector<std::pair<std::string, std::string>> reasons_and_seconds;
-    double time_limit;  ///< [s]
+    std::vector<std::pair<std::string, std::string>> reasons_and_seconds = {};
+    double time_limit                                                    = HUGE_VAL; ///< [s]
     bool grows = false; ///< rows come as they are found: their number is not that of the study
+    std::map<std::string, std::string> others = {}; ///< attributes that are kept with the rows
 
-    /// Columns that are written when a point is computed; the last one is `done`.
+    /// Columns that are written when a point is computed; the last one is the status, which is empty before.
     std::vector<RowFile::Column>
     written_columns() const;
   };
@@ -49,34 +54,21 @@ namespace crawler
   RowFile::Known
   known_columns(const std::vector<RowFile::Column> &columns, const SweepDesign &design);
 
-  /// Knowledge of a study about its rows before it computes any.
-  struct PlannedRows
-  {
-    unsigned long n;
-    RowFile::Known known;                         ///< index and axes
-    SweepInputs inputs;                           ///< inputs on which the rows depend
-    std::string effective;                        ///< all entries as used, as a .prm file
-    std::map<std::string, std::string> more = {}; ///< attributes that are kept with the rows
-  };
-
   /// Makes the table without rows (one process).
   void
-  create_table(const StudyFolder &folder, const PointTable &table, const PlannedRows &plan);
+  create_table(const StudyFolder &folder, const PointTable &table);
 
   /// Makes the files of a new study, or, with --resume, looks for the same study. Returns which rows exist. Throws as
   /// StudyFolder::begin() and resume() (one process).
   std::vector<bool>
-  begin_or_resume(StudyFolder &folder, const PointTable &table, const ParameterFile &file, const PlannedRows &plan);
+  begin_or_resume(StudyFolder &folder, const PointTable &table, const ParameterFile &file);
 
   /// Sends the result of @p list on rank 0 to all ranks (collective).
   std::vector<bool>
   points_done(MPI_Comm communicator, const std::function<std::vector<bool>()> &list);
 
-  /// Writes the table of a RowFile as comma-separated values, in parts of some rows each, which the ranks share
-  /// (collective). Throws FileError, on all ranks.
+  /// Writes the table of a RowFile as comma-separated values beside it, in parts of some rows each, which the ranks
+  /// share (collective). Throws FileError, on all ranks.
   void
-  write_table_csv(MPI_Comm communicator,
-                  const std::filesystem::path &table,
-                  const std::string &group,
-                  const std::filesystem::path &csv);
+  write_table_csv(MPI_Comm communicator, const std::filesystem::path &table, const std::string &group);
 } // namespace crawler

@@ -11,49 +11,27 @@
 
 namespace crawler
 {
-  /// Returns a number coprime to @p n near its golden section: its multiples modulo n visit all of n parts, spread out
-  /// from the beginning. So the time left is known early, and a study that is stopped is a coarse picture of
-  /// everything.
-  unsigned long
-  golden_stride(unsigned long n);
+  /// Returns 0, ..., @p n - 1, each once, spread out from the beginning. So the time left is known early, and a study
+  /// that is stopped is a coarse picture of everything.
+  std::vector<unsigned long>
+  spread_out(unsigned long n);
+
+  /// Largest number of points of a block.
+  inline constexpr unsigned long largest_block = 256;
 
   /**
-   * Points of a sweep in blocks of at most 256 neighbours, which share the numerics if they can. Blocks do not depend
-   * on the number of ranks or on rows that exist already, so neither do the answers. A block does not go beyond the end
-   * of the last axis of a grid, or of the last two where the rows are short and the axis before it is of numbers:
-   * beyond, its points would no longer be similar.
+   * Points of a sweep in blocks of neighbours, which share the numerics if they can. Blocks do not depend on the number
+   * of ranks or on rows that exist already, so neither do the answers. A block does not go beyond the end of the last
+   * axis of a grid, or of the last two where the rows are short and the axis before it is of numbers: beyond, its
+   * points would no longer be similar.
    */
-  class SweepBlocks
-  {
-  public:
-    static constexpr unsigned long most = 256;
+  std::vector<SweepBlock>
+  sweep_blocks(const SweepDesign &design);
 
-    explicit SweepBlocks(const SweepDesign &design);
-
-    unsigned long
-    size() const
-    {
-      return n_runs_ * parts_of_run_;
-    }
-
-    /// Number of points of the largest block.
-    unsigned long
-    largest() const
-    {
-      return (rows_ + parts_of_run_ - 1) / parts_of_run_ * row_;
-    }
-
-    SweepBlock
-    operator[](unsigned long number) const;
-
-  private:
-    unsigned long row_ = 1, rows_, n_runs_, parts_of_run_; ///< points in a row, rows in a run, which is cut into parts
-  };
-
-  /// Numbers of the blocks in the order in which they are computed: longest first, as far as that is known, by the
-  /// duration and the number of digits wanted; otherwise spread over the whole sweep (golden_stride()).
-  std::vector<unsigned long>
-  order_of(const SweepBlocks &blocks, SweepPoints &points);
+  /// Blocks in the order in which they are computed: longest first, as far as that is known, by the duration and the
+  /// number of digits wanted; otherwise spread over the whole sweep.
+  std::vector<SweepBlock>
+  sweep_blocks_in_order(SweepPoints &points);
 
   /**
    * Work of one rank in a sweep. The work is handed out in parts of blocks, small enough that each of @p n_ranks gets
@@ -89,7 +67,7 @@ namespace crawler
     SweepBlock
     block_of(const unsigned long part) const
     {
-      return blocks_[order_[part / parts_of_block_]];
+      return blocks_[part / parts_of_block_];
     }
     /// Points of the part @p number, in order.
     std::vector<unsigned long>
@@ -111,8 +89,7 @@ namespace crawler
     check(std::vector<Point> &points, const std::function<bool()> &interrupted) const;
 
     SweepPoints &points_;
-    const SweepBlocks blocks_;
-    const std::vector<unsigned long> order_; ///< order_of()
+    const std::vector<SweepBlock> blocks_; ///< sweep_blocks_in_order()
     const unsigned long parts_of_block_;
     const double time_limit_; ///< time limit of each point [s]
     SweepNumerics numerics_;

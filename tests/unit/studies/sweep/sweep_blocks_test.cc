@@ -21,14 +21,12 @@ namespace
       parameters.axes =
         "A/p : linspace(1, 2, " + std::to_string(p) + "); A/chi : linspace(0, 1, " + std::to_string(chi) + ")";
       const SweepDesign design(parameters);
-      const SweepBlocks blocks(design);
       unsigned long next = 0;
-      for (unsigned long i = 0; i < blocks.size(); ++i)
+      for (const SweepBlock &block : sweep_blocks(design))
       {
-        const SweepBlock block = blocks[i];
         ASSERT_EQ(block.first, next);
-        ASSERT_TRUE(block.size >= 1 && block.size <= SweepBlocks::most);
-        if (static_cast<unsigned long>(chi) > SweepBlocks::most / 2)
+        ASSERT_TRUE(block.size >= 1 && block.size <= largest_block);
+        if (static_cast<unsigned long>(chi) > largest_block / 2)
         {
           ASSERT_EQ(block.first / chi, (block.first + block.size - 1) / chi);
         }
@@ -49,7 +47,7 @@ namespace
       SweepParameters parameters;
       parameters.axes = axis + "; A/chi : linspace(0, 1, 10)";
       const SweepDesign design(parameters);
-      EXPECT_EQ(SweepBlocks(design).size(), 2u) << axis;
+      EXPECT_EQ(sweep_blocks(design).size(), 2u) << axis;
     }
   }
 
@@ -60,22 +58,20 @@ namespace
       const ParameterFile file = sweep_file(std::string(differ ? "Time/End time : 1, 5, 2; " : "") +
                                             "Body/Anchoring exponent : linspace(1.5, 4, 500)");
       SweepPoints points(MPI_COMM_SELF, file);
-      const SweepBlocks blocks(points.design());
-      const std::vector<unsigned long> order = order_of(blocks, points);
+      const auto blocks = sweep_blocks(points.design());
       std::set<unsigned long> seen;
       double last = 1e300;
-      for (unsigned long i = 0; i < blocks.size(); ++i)
+      for (const SweepBlock &block : sweep_blocks_in_order(points))
       {
-        seen.insert(order[i]);
+        seen.insert(block.first);
         if (!differ)
           continue;
-        const SweepBlock block = blocks[order[i]];
-        const double expected  = points.parameters(block.first).time.end_time * static_cast<double>(block.size);
+        const double expected = points.parameters(block.first).time.end_time * static_cast<double>(block.size);
         EXPECT_LE(expected, last);
         last = expected;
       }
       EXPECT_EQ(seen.size(), blocks.size());
-      EXPECT_EQ(*seen.rbegin(), blocks.size() - 1);
+      EXPECT_EQ(*seen.rbegin(), blocks.back().first);
     }
   }
 } // namespace
