@@ -7,7 +7,6 @@
 Kills at random places, and what needs many ranks, points or little memory: tests/long/study_kills.py.
 """
 import math
-import os
 import pathlib
 import shutil
 import signal
@@ -17,7 +16,7 @@ import sys
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Paused, call, checks, contents, environment, expect, on_ranks, prm, ranks_that_stop, refused, skip  # noqa: E402
+from program import Paused, call, checks, contents, environment, expect, on_ranks, prm, ranks_that_stop, refused  # noqa: E402
 from tables import csv_rows, h5_columns, json_of, number, same_as_csv, same_columns  # noqa: E402
 
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
@@ -263,7 +262,7 @@ def test_two_at_once(folder):
         return process
 
     with Paused(command, "write:summary.json:STOP", folder) as first:
-        refused(call(command, folder), "a run or study is writing to")
+        refused(call([PROGRAM, "run", "sweep.prm", "--output", "shared", "--overwrite"], folder), "a run or study is writing to")
         with waits() as second:  # noted once; then it ends at once
             while second.poll() is None:
                 second.terminate()
@@ -435,31 +434,6 @@ def test_what_cannot_be_checked(folder):
         expect(bad.returncode == 2 and words in bad.stderr and not (folder / "bad").exists(), f"{entry}: {bad}")
 
 
-def test_full_disk(folder):
-    """A disk that is full when the table begins, or when all but results.csv is written."""
-    write(folder, f"{P} : linspace(1.5, 4, 12); {CHI} : linspace(0.05, 0.5, 12)")
-    disk = folder / "disk"
-    disk.mkdir()
-    if call(["mount", "-t", "tmpfs", "-o", "size=300k", "tmpfs", disk]).returncode != 0:
-        skip("a full disk: only root can make a small one")
-        return
-    try:
-        full = sweep(folder, "disk/full")
-        expect(full.returncode == 6 and "full" in full.stderr, f"a full disk is an error of files: {full}")
-        call(["mount", "-o", "remount,size=16M", disk])
-        killed = sweep(folder, "disk/full", "--resume", stop_at="row:8:KILL")
-        space = os.statvfs(disk)
-        (disk / "filling").write_bytes(bytes(space.f_bavail * space.f_frsize - 60000))  # too little for results.csv
-        end = sweep(folder, "disk/full", "--resume")
-        expect(killed.returncode == -signal.SIGKILL and end.returncode == 6 and "results.h5 is intact" in end.stderr
-               and computed(table(disk / "full")).all(), f"a disk that is full at the end ({end.returncode}): {end.stderr}")
-        (disk / "filling").unlink()
-        more = sweep(folder, "disk/full", "--resume")
-        expect(more.returncode == 0 and len(csv_rows(disk / "full" / "results.csv")) == 144, "and --resume makes results.csv")
-    finally:
-        subprocess.run(["umount", disk], check=True)
-
-
 def test_bad_input(folder):
     """Wrong names and values are found before the first solve."""
     for name, text in {"empty": "", "good": "# a remark\np,chi\n2,0.1\n# another\n2.0,0.2\n", "short": "p,q\n1,2\n\n3\n",
@@ -507,5 +481,5 @@ def test_bad_input(folder):
 
 
 checks.run((test_bad_input, test_places_of_files, test_rows_that_fail, test_time_limits,
-            test_changed_inputs, test_killed_at_files, test_two_at_once, test_crashes, test_full_disk, test_cross_check,
+            test_changed_inputs, test_killed_at_files, test_two_at_once, test_crashes, test_cross_check,
             test_what_cannot_be_checked), (test_grid, test_designs, test_signals, test_kills))
