@@ -275,15 +275,8 @@ def test_two_at_once(folder):
     expect(computed(table(folder / "shared")).all() and not (folder / "shared" / "study.lock").exists(), "and both are done")
 
 
-def test_signals(folder):
-    """SIGTERM and Ctrl-C within a point that takes long; a rank that cannot write."""
-    write(folder, f"{P} : 2, 3; {CHI} : 0.3", "set Seed = 1")
-    long = ("--set", "Time/End time=30000", "--set", "Time/Cycle stop=off", "--set", "Output/Number of snapshots=0")
-    for name in ("TERM", "INT"):
-        result = sweep(folder, name, *long, stop_at=f"step:3000:{name}")
-        expect(result.returncode == 5 and "--resume" in result.stderr and table(folder / name)["status"] == ["", ""]
-               and json_of(folder / name / "summary.json")["reason"] == "signal",
-               f"SIG{name} within a long point: {result.returncode} {result.stderr}")
+def test_rank_that_cannot_write(folder):
+    """It ends all, and the rest is computed when it can."""
     write(folder, f"{P} : linspace(1.5, 4, 12); {CHI} : linspace(0.05, 0.5, 16)")
     one = (PROGRAM, "sweep", "sweep.prm", "--output", "rank", "--resume")
     # No file of rank 1 may grow beyond 50 blocks of 512 bytes; without the signal that would be an error of write.
@@ -353,6 +346,8 @@ def test_kills(folder):
         expect(result.returncode == code and n >= len(done) + (8 if "row:8" in str(place) else 0)
                and (n < 144 or "rank" in what) and (folder / "killed" / "study.lock").exists() == (code != 5),
                f"{what}: {result.returncode}, {n} rows {result.stderr}")
+        expect(code != 5 or "--resume" in result.stderr and json_of(folder / "killed/summary.json")["reason"] == "signal",
+               f"{what}: {result.stderr}")
         again = sweep(folder, "killed", "--resume")
         rest = table(folder / "killed")
         for earlier in (before, now):
@@ -482,4 +477,4 @@ def test_bad_input(folder):
 
 checks.run((test_bad_input, test_places_of_files, test_rows_that_fail, test_time_limits,
             test_changed_inputs, test_killed_at_files, test_two_at_once, test_crashes, test_cross_check,
-            test_what_cannot_be_checked), (test_grid, test_designs, test_signals, test_kills))
+            test_what_cannot_be_checked), (test_grid, test_designs, test_rank_that_cannot_write, test_kills))
