@@ -105,12 +105,9 @@ TEST(TwoLevelWave, OnOtherGrounds)
 TEST(TwoLevelWave, DoesTheWorkThatIsGiven)
 {
   const Settings body = test::set("L = 3; gamma = 0.4; k = 7; T = 1.7");
-  for (const auto &[n, phase] : {std::pair("1", "0.7"), {"2", "0"}})
-  {
-    const auto result = test::on_level(
-      two_level_wave(-1., fmt::format("Given by = work; Work = 0.25; Wave number = {}; Phase = {}", n, phase), body));
-    EXPECT_NEAR(result.energy_balance->stress_work, 0.25, 1e-6 * 0.25) << n;
-  }
+  const auto result =
+    test::on_level(two_level_wave(-1., "Given by = work; Work = 0.25; Wave number = 2; Phase = 0.7", body));
+  EXPECT_NEAR(result.energy_balance->stress_work, 0.25, 1e-6 * 0.25);
   const auto by_speed = numbers(two_level_wave(-1., "Given by = wave speed; Wave speed = 0.6; Wave number = 2", body));
   EXPECT_DOUBLE_EQ(by_speed.frequency, 0.4);
 }
