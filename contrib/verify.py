@@ -99,7 +99,7 @@ CHECKS = (
     Check("nodes", 5, "{root}/tests/long/nodes.py {crawler} mpirun"),
     Check("disk", 15, "{root}/tests/cli/disk.py {crawler} {root}/prm 12 {seed}"),
     Check("entries", 30, "{root}/tests/python/entry_effects.py {crawler} {build}/python {root} all"),
-    Check("hostile_input", 3, "{root}/tests/cli/faults.py {crawler} {root}/prm"),
+    Check("hostile_input", 3, "{root}/tests/cli/faults.py {crawler}"),
     Check("memory", 3, "{root}/tests/long/memory.py {crawler} 100000 0.2"),
     Check("fuzz", 65, "{root}/contrib/fuzz.sh 600"),
     Check("sanitizers", 12, "{root}/contrib/check_sanitizers.sh"),

@@ -345,29 +345,12 @@ def test_exit_codes(folder):
         expect((summary["status"], summary["reason"]) == (status, reason), f"summary.json: {summary}")
         expect(done.stderr.count("\n") == 1 and done.stderr.startswith(f"crawler: {reason}: ") and summary["message"] in done.stderr,
                f"{reason}: {done.stderr}")
+        expect(("Stopped at t = " in read(folder / "results/log.txt")) == (status == "stopped"), f"log.txt of {reason}")
         statistics(folder / "results")
-
-
-def test_signals(folder):
-    """They stop a run in order."""
-    # A million steps, and no pilot runs. The signal comes with the tenth of a thousand pictures.
-    text = prm("Discretization/Number of cells=50", "Time/Step control=fixed", "Time/Initial step=1e-6", "Output/Number of snapshots=1000")
-    for name in ("TERM", "INT"):
-        done = run(folder, options=["--overwrite"], text=text, code=5, stop_at=f"write:000009.vtu:{name}")
-        results = folder / "results"
-        summary, rows, times = summary_of(results), statistics(results), output_times(results)
-        expect(done.stderr.startswith("crawler: signal: stopped by a signal at t = "), done.stderr)
-        expect_complete(summary)
-        expect((summary["status"], summary["reason"]) == ("stopped", "signal"), f"summary.json: {summary}")
-        expect(len(rows) == summary["steps"] + 1 and math.isclose(rows[-1][1], summary["end_time"], rel_tol=1e-15),
-               f"{len(rows)} rows, the last one {rows[-1]}: {summary}")
-        expect(len(times) == 10 and times[-1] <= summary["end_time"] + 1e-11, f"output times {times}")
-        ElementTree.parse(results / "kymograph.vts")
-        expect_words(read(results / "log.txt"), "Stopped at t = ")
 
 
 checks.run((test_check, test_files, test_files_without_a_mesh, test_accuracy_not_met, test_overrides, test_places_of_files,
             test_byte_order_mark, test_minus_zero, test_notes, test_quiet, test_overwrite, test_without_energies,
             test_numerics_of_the_user, test_unused_petsc_options, test_options_of_the_krylov_method,
             test_inversion_of_the_position_form, test_last_row_of_an_inversion, test_files_of_the_other_form, test_inversion,
-            test_exit_codes, test_signals))
+            test_exit_codes))

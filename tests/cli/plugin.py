@@ -142,15 +142,6 @@ with tempfile.TemporaryDirectory() as folder:
     expect(result.returncode == 0 and os.path.exists("gallery.png") and "measured_table" in result.stdout,
            f"the installed gallery: {result.stdout} {result.stderr}")
 
-    # The installed program finds the installed plot scripts: this one says that it is the one.
-    with open(os.path.join(share, "python/crawler/plot", "sweep.py"), "w") as file:
-        file.write("import sys, pathlib\n(pathlib.Path(sys.argv[1]) / 'installed_script').touch()\n")
-    os.mkdir("drawn")
-    with open("drawn/results.h5", "w"):
-        pass
-    result = call([PROGRAM, "plot", "drawn"])
-    expect(result.returncode == 0 and os.path.exists("drawn/installed_script"), f"plot: {result.stdout} {result.stderr}")
-
     # What does not even start.
     FAULTY = os.path.join(folder, "faulty.so")
     include = f"-I{folder}/installed/include"

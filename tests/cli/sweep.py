@@ -7,7 +7,6 @@
 Kills at random places, and what needs many ranks, points or little memory: tests/long/study_kills.py.
 """
 import math
-import os
 import pathlib
 import shutil
 import signal
@@ -17,7 +16,7 @@ import sys
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Paused, call, checks, contents, environment, expect, on_ranks, prm, ranks_that_stop, refused, skip  # noqa: E402
+from program import Paused, call, checks, contents, environment, expect, on_ranks, prm, ranks_that_stop, refused  # noqa: E402
 from tables import csv_rows, h5_columns, json_of, number, same_as_csv, same_columns  # noqa: E402
 
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
@@ -202,32 +201,17 @@ def cannot_resume(folder, output, words, what):
 
 
 def test_changed_inputs(folder):
-    """What changes the answers is noticed by --resume: values of axes, scene files (data files: sweep_inputs_test.cc)."""
-    def resumes(output, what):
-        result = sweep(folder, output, "--resume")
-        expect(result.returncode == 0, f"{what} goes on ({result.returncode}) {result.stderr}")
-
+    """What changes the answers is noticed by --resume: values of axes (scene and data files: sweep_inputs_test.cc)."""
     (folder / "values.csv").write_text("p,chi\n2,0.1\n3,0.2\n", encoding="utf-8")
     write(folder, f"{P} : column(values.csv, p); {CHI} : column(values.csv, chi)", "set Design = zip")
     sweep(folder, "axes")
     (folder / "values.csv").write_text("remark,p,chi\n\"a, b\",2.0,0.1\nc,3,0.20\n", encoding="utf-8")
-    resumes("axes", "a CSV file with the same values")
+    result = sweep(folder, "axes", "--resume")
+    expect(result.returncode == 0, f"a CSV file with the same values goes on ({result.returncode}) {result.stderr}")
     (folder / "values.csv").write_text("p,chi\n2,0.1\n3.5,0.2\n", encoding="utf-8")
     cannot_resume(folder, "axes", (f'{P} of point 1 was "3" and is "3.5"',), "a changed value of a CSV file")
     (folder / "values.csv").write_text("p,chi\n2,0.1\n3,0.2\n4,0.2\n", encoding="utf-8")
     cannot_resume(folder, "axes", ("number of points was 2 and is 3",), "another number of values")
-
-    def scene(name, modulus, more=""):
-        (folder / name).write_text(f"{more}\nsubsection Body\n set Elastic modulus = {modulus}\nend\n", encoding="utf-8")
-
-    scene("soft.prm", 5)
-    scene("stiff.prm", 10)
-    write(folder, f"File : soft.prm, stiff.prm; {CHI} : 0.3")
-    sweep(folder, "scenes")
-    scene("soft.prm", 5, "# a remark")
-    resumes("scenes", "a scene file with another comment")
-    scene("stiff.prm", 11)
-    cannot_resume(folder, "scenes", ('Body/Elastic modulus in stiff.prm was "10" and is "11"',), "a changed scene file")
 
 
 def test_killed_at_files(folder):
@@ -278,7 +262,7 @@ def test_two_at_once(folder):
         return process
 
     with Paused(command, "write:summary.json:STOP", folder) as first:
-        refused(call(command, folder), "a run or study is writing to")
+        refused(call([PROGRAM, "run", "sweep.prm", "--output", "shared", "--overwrite"], folder), "a run or study is writing to")
         with waits() as second:  # noted once; then it ends at once
             while second.poll() is None:
                 second.terminate()
@@ -291,15 +275,8 @@ def test_two_at_once(folder):
     expect(computed(table(folder / "shared")).all() and not (folder / "shared" / "study.lock").exists(), "and both are done")
 
 
-def test_signals(folder):
-    """SIGTERM and Ctrl-C within a point that takes long; a rank that cannot write."""
-    write(folder, f"{P} : 2, 3; {CHI} : 0.3", "set Seed = 1")
-    long = ("--set", "Time/End time=30000", "--set", "Time/Cycle stop=off", "--set", "Output/Number of snapshots=0")
-    for name in ("TERM", "INT"):
-        result = sweep(folder, name, *long, stop_at=f"step:3000:{name}")
-        expect(result.returncode == 5 and "--resume" in result.stderr and table(folder / name)["status"] == ["", ""]
-               and json_of(folder / name / "summary.json")["reason"] == "signal",
-               f"SIG{name} within a long point: {result.returncode} {result.stderr}")
+def test_rank_that_cannot_write(folder):
+    """It ends all, and the rest is computed when it can."""
     write(folder, f"{P} : linspace(1.5, 4, 12); {CHI} : linspace(0.05, 0.5, 16)")
     one = (PROGRAM, "sweep", "sweep.prm", "--output", "rank", "--resume")
     # No file of rank 1 may grow beyond 50 blocks of 512 bytes; without the signal that would be an error of write.
@@ -369,6 +346,8 @@ def test_kills(folder):
         expect(result.returncode == code and n >= len(done) + (8 if "row:8" in str(place) else 0)
                and (n < 144 or "rank" in what) and (folder / "killed" / "study.lock").exists() == (code != 5),
                f"{what}: {result.returncode}, {n} rows {result.stderr}")
+        expect(code != 5 or "--resume" in result.stderr and json_of(folder / "killed/summary.json")["reason"] == "signal",
+               f"{what}: {result.stderr}")
         again = sweep(folder, "killed", "--resume")
         rest = table(folder / "killed")
         for earlier in (before, now):
@@ -450,31 +429,6 @@ def test_what_cannot_be_checked(folder):
         expect(bad.returncode == 2 and words in bad.stderr and not (folder / "bad").exists(), f"{entry}: {bad}")
 
 
-def test_full_disk(folder):
-    """A disk that is full when the table begins, or when all but results.csv is written."""
-    write(folder, f"{P} : linspace(1.5, 4, 12); {CHI} : linspace(0.05, 0.5, 12)")
-    disk = folder / "disk"
-    disk.mkdir()
-    if call(["mount", "-t", "tmpfs", "-o", "size=300k", "tmpfs", disk]).returncode != 0:
-        skip("a full disk: only root can make a small one")
-        return
-    try:
-        full = sweep(folder, "disk/full")
-        expect(full.returncode == 6 and "full" in full.stderr, f"a full disk is an error of files: {full}")
-        call(["mount", "-o", "remount,size=16M", disk])
-        killed = sweep(folder, "disk/full", "--resume", stop_at="row:8:KILL")
-        space = os.statvfs(disk)
-        (disk / "filling").write_bytes(bytes(space.f_bavail * space.f_frsize - 60000))  # too little for results.csv
-        end = sweep(folder, "disk/full", "--resume")
-        expect(killed.returncode == -signal.SIGKILL and end.returncode == 6 and "results.h5 is intact" in end.stderr
-               and computed(table(disk / "full")).all(), f"a disk that is full at the end ({end.returncode}): {end.stderr}")
-        (disk / "filling").unlink()
-        more = sweep(folder, "disk/full", "--resume")
-        expect(more.returncode == 0 and len(csv_rows(disk / "full" / "results.csv")) == 144, "and --resume makes results.csv")
-    finally:
-        subprocess.run(["umount", disk], check=True)
-
-
 def test_bad_input(folder):
     """Wrong names and values are found before the first solve."""
     for name, text in {"empty": "", "good": "# a remark\np,chi\n2,0.1\n# another\n2.0,0.2\n", "short": "p,q\n1,2\n\n3\n",
@@ -522,5 +476,5 @@ def test_bad_input(folder):
 
 
 checks.run((test_bad_input, test_places_of_files, test_rows_that_fail, test_time_limits,
-            test_changed_inputs, test_killed_at_files, test_two_at_once, test_crashes, test_full_disk, test_cross_check,
-            test_what_cannot_be_checked), (test_grid, test_designs, test_signals, test_kills))
+            test_changed_inputs, test_killed_at_files, test_two_at_once, test_crashes, test_cross_check,
+            test_what_cannot_be_checked), (test_grid, test_designs, test_rank_that_cannot_write, test_kills))

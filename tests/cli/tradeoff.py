@@ -82,19 +82,6 @@ def check_rows(rows, summary):
            and {row["formulation"] for row in finished} == {"position", "stretch"}, "all ways have finished")
 
 
-def check_pareto(rows, summary):
-    """By the definition: no other row is as cheap and as good, and better in one."""
-    good = True
-    for batch in False, True:
-        own = [(number(row["seconds"]), number(row["shown error"]), int(row["index"]) in summary["pareto"]) for row in rows
-               if row["status"] == "finished" and (row["engine"] == "batch") == batch]
-        for cost, error, on_front in own:
-            beaten = any(c <= cost and e <= error and (c, e) != (cost, error) for c, e, _ in own)
-            good &= on_front != beaten
-        expect(sum(on_front for _, _, on_front in own) > 1, "a front of several")
-    expect(good, "the Pareto fronts are what the definition says")
-
-
 def check_hdf5(folder, rows):
     """The same numbers and texts in tradeoff.h5."""
     expect(same_as_csv(h5_columns(folder / "tradeoff.h5", "tradeoff"), rows), "tradeoff.h5 has what tradeoff.csv has")
@@ -288,7 +275,6 @@ def main(folder):
         expect(summary["status"] == "finished" and summary["ranks"] == ranks, f"summary {summary}")
         check_files(output)
         check_rows(rows, summary)
-        check_pareto(rows, summary)
         check_hdf5(output, rows)
         if ranks == 1:
             check_advice(folder, output, result.stdout)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The Python package as a guest in someone's process: the sentences of its errors, Ctrl-C, threads, memory that does
-not grow, nothing on the screen; and that it runs where it is installed.
+not grow, nothing on the screen.
 
-    python3 behaviour.py PATH_TO_CRAWLER FOLDER_OF_THE_PACKAGE CMAKE
+    python3 behaviour.py PATH_TO_CRAWLER FOLDER_OF_THE_PACKAGE
 """
 import contextlib
 import io
@@ -25,9 +25,9 @@ LONG = {"Accuracy": 1e-9, "Active stress": {"Generator": "expression",
 INVERTS = {"Active stress": {"Generator": "expression", "Expression": {"Active stress": "3*sin(2*pi*(s+t))"}}}
 
 
-def python(script, stop_at=None, package=PACKAGE, **variables):
+def python(script, stop_at=None, **variables):
     """Another interpreter that has the package; it ends at os._exit, whatever its threads do."""
-    return call([sys.executable, "-c", script], stop_at=stop_at, variables={"PYTHONPATH": package, **variables})
+    return call([sys.executable, "-c", script], stop_at=stop_at, variables={"PYTHONPATH": PACKAGE, **variables})
 
 
 def raises(action, kind, *words):
@@ -254,15 +254,6 @@ assert crawler.run({file!r}, fields=False).status == "finished"
     expect(ended.returncode == 0, f"the series: {ended.stderr}")
 
 
-def check_installed(folder):
-    done = call([sys.argv[3], "--install", pathlib.Path(PACKAGE).parent, "--prefix", folder / "there", "--component", "python"])
-    expect(done.returncode == 0, f"cmake --install: {done.stderr}")
-    (place,) = (folder / "there").glob("lib/python3.*/dist-packages")
-    script = f"import crawler; assert crawler.__file__.startswith({str(folder)!r}); print(crawler.run({str(FILE)!r}))"
-    ended = python(script, package=str(place))
-    expect(ended.stdout.startswith("<crawler.Result: finished"), f"installed: {ended}")
-
-
 def main(folder):
     os.chdir(folder)
     check_errors(folder)
@@ -274,7 +265,6 @@ def main(folder):
     check_threads()
     check_silence()
     check_imports()
-    check_installed(folder)
     check_memory()
 
 

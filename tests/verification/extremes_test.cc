@@ -54,13 +54,6 @@ TEST(Extremes, ThoseOfAnIndependentSolver)
   }
 }
 
-TEST(Extremes, ThousandStrides)
-{
-  const auto result = test::run_with(with(test::wave(-1., 0.4, 1., 1000.), {{"Accuracy", "1e-6"}})).result;
-  ASSERT_EQ(result.time.status, Status::finished);
-  EXPECT_NEAR(result.displacement / 90.0997471196, 1., 1e-6);
-}
-
 /// One cell of degree 1 has one stretch, so net friction = 0 means that its middle stays where it is. One of degree 8
 /// resolves a wave as long as the body. A mesh with layers has four cells at least.
 TEST(Extremes, OneCell)

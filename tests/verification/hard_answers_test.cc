@@ -162,6 +162,10 @@ TEST(HardAnswers, DisplacementsAreWithinTheirBounds)
      "Active stress = 0.3*(1-exp(-5*t))",
      -0.00327110,
      1e-4},
+    {"a stiff body that is nearly emptied (doc/theory.md, section 5)",
+     "p = 2; k = 10; chi = 0.6; c = 1; Accuracy = 1e-4",
+     0.26374413,
+     1e-4},
     {"kinks of friction, and a displacement that is nearly 0, so that Accuracy is of 1e-4 of the deformation (true by "
      "runs at 1e-6, and by 200 cells)",
      "Accuracy = 1e-5; k = 0.628969760229485; p = 2.877515581644195; Ground/Backward ratio = 0.44833912717340346; "

@@ -60,23 +60,6 @@ TEST(Ladder, NonlinearFollowsAPrescribedStrain)
   }
 }
 
-/// The wave's series against the body with the same strain, against the full equation: each error within its estimate.
-TEST(Ladder, EachLevelAgainstTheOneAbove)
-{
-  for (const double a : {-1., 1., -3., 2.})
-  {
-    const auto settings = test::wave(a, 0.15, a > 0. ? -1. : 1.);
-    const auto series   = on_level(settings, Model::perturbation, 1e-1),
-               motion   = on_level(settings, Model::kinematic, 1e-1);
-    const double full   = test::run_with(with(settings, "Accuracy = 1e-8")).result.displacement;
-    EXPECT_LE(std::abs(series.displacement - full), series.error->total);
-    EXPECT_LE(std::abs(motion.displacement - full), motion.error->total);
-    EXPECT_GT(series.error->total, 0.);
-    EXPECT_NEAR(series.energy_balance->stress_work / motion.energy_balance->stress_work, 1., 0.05);
-    EXPECT_NEAR(series.energy_balance->paper_energy() / motion.energy_balance->paper_energy(), 1., 0.05);
-  }
-}
-
 TEST(Ladder, AutomaticChoice)
 {
   const auto model = [](const test::Settings &settings, const double accuracy) {

@@ -15,12 +15,6 @@ namespace
 {
   const Settings stretch = {{"Discretization/Formulation", "stretch"}};
 
-  /// doc/theory.md, section 5.
-  struct Row
-  {
-    double a, k, chi, displacement;
-  };
-
   /// The answer finished with an error as small as wanted, and no smaller than the true one.
   void
   expect_true(const SimulationResult &result, const double exact, const double half_digit, const double accuracy)
@@ -68,25 +62,6 @@ TEST(MeshFamily, ErrorsAreTrueAndSmallEnough)
       test::run_with(test::with(test::with(test::wave(-1., 0.4), stretch), "Accuracy = {}", accuracy)).result;
     expect_true(result, 0.0900725298, 1e-10, accuracy);
   }
-}
-
-/// Bodies that nearly invert, stiff and very soft ones.
-TEST(MeshFamily, NumbersOfTheTable)
-{
-  for (const Row &row : {Row{-1., 1., 0.6, 0.2349598824},
-                         Row{-1., 1., 0.7, 0.287958443},
-                         Row{-1., 1., 0.8, 0.328038004},
-                         Row{-1., 10., 0.6, 0.26374413},
-                         Row{-1., 1e-5, 0.3, 0.047935667}})
-    for (const std::string formulation : {"stretch", "automatic"})
-    {
-      SCOPED_TRACE(fmt::format("k = {:g}, chi = {:g}, {}", row.k, row.chi, formulation));
-      const auto result =
-        test::run_with(test::with(test::wave(row.a, row.chi, 1., 1., row.k),
-                                  {{"Accuracy", "1e-4"}, {"Discretization/Formulation", formulation}}))
-          .result;
-      expect_true(result, row.displacement, 1e-9, 1e-4);
-    }
 }
 
 /// Displacements whose order is 2 twice in a row settle on few cells, whatever the works do.

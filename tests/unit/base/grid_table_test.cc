@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// Reading samples on a grid (grid_table.h) and interpolating them (grid_interpolation.h, cubic_spline.h).
+// Reading samples on a grid (grid_table.h) and interpolating them (grid_interpolation.h).
 #include "../../support/complaint.h"
-#include "../../support/expect_near.h"
 #include "../../support/grid_text.h"
 #include "../../support/hdf5_file.h"
 #include "../../support/temporary_folder.h"
@@ -157,22 +156,6 @@ TEST(GridTable, SaysWhatIsWrongInHdf5)
             "m[1,1] in FILE (s = 0.5, t = 1) is nan, but a finite number is expected");
   write_file(file, read_whole_file(file).substr(0, 300));
   EXPECT_EQ(complaint_about(file), "FILE begins like an HDF5 file, but HDF5 cannot open it");
-}
-
-/// Value, slope and curvature go on over the seam, and where the period begins does not matter.
-TEST(CubicSpline, Periodic)
-{
-  const std::vector<double> knots = {0., 0.2, 0.3, 0.6, 0.7, 1.}, y = {1., -2., 0.5, 3., 0.2, 1.};
-  const CubicSpline spline(knots, CubicSpline::Ends::periodic);
-  const auto M = spline.curvatures(y);
-  EXPECT_EQ(M.front(), M.back());
-  const auto slope = [&](const double x) { return spline.place(x).derivative(y, M); };
-  EXPECT_NEAR(slope(0.), slope(1.), 1e-13);
-  for (const double knot : {0.2, 0.3, 0.6, 0.7})
-    EXPECT_NEAR(slope(knot - 1e-12), slope(knot), 1e-8);
-  const CubicSpline later({0.3, 0.6, 0.7, 1., 1.2, 1.3}, CubicSpline::Ends::periodic);
-  test::expect_near(
-    later.curvatures(std::vector<double>{0.5, 3., 0.2, 1., -2., 0.5}), {M[2], M[3], M[4], M[0], M[1], M[2]}, 1e-12);
 }
 
 /// Doubling both grids divides the errors by 4 (linear) and 16 (cubic), those of the rate by 2 and 8.

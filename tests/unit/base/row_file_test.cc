@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A table into which all ranks write; run on several, too.
-#include "../../support/complaint.h"
 #include "../../support/test.h"
 
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
-#include <crawler/base/files.h>
 #include <crawler/base/row_file.h>
 
 namespace
@@ -113,32 +111,5 @@ namespace
   {
     EXPECT_THROW(read_table("/nowhere/at/all.h5", "results"), FileError);
     EXPECT_THROW(RowFile::create("/nowhere/at/all.h5", "results", columns, 3, {}), FileError);
-  }
-
-  TEST(RowFile, WhatIsNoTableOrDamagedIsBadInput)
-  {
-    const auto path = a_file();
-    if (rank_of(MPI_COMM_WORLD) > 0)
-      return;
-    RowFile::create(path, "results", columns, 1000, {{"made by", "a test"}});
-    const std::string whole     = read_whole_file(path);
-    const auto expect_bad_input = [&](const std::string &group, const std::string &attribute, const std::string &part) {
-      test::expect_words(test::complaint_of([&]() { read_attribute(path, group, attribute); }), {part, path.string()});
-      if (attribute == "made by")
-        test::expect_words(test::complaint_of([&]() { read_table(path, group); }), {part, path.string()});
-    };
-    expect_bad_input("nothing", "made by", "has no group \"nothing\"");
-    expect_bad_input("results", "nothing", "has no attribute \"nothing\"");
-    for (const std::string &text : {whole.substr(0, whole.size() / 2), whole.substr(0, 20)})
-    {
-      write_file(path, text);
-      expect_bad_input("results", "made by", "cannot be read as an HDF5 file");
-    }
-    for (const std::string text : {"", "index,A/x\n0,1\n"})
-    {
-      write_file(path, text);
-      expect_bad_input("results", "made by", "is not an HDF5 file");
-    }
-    std::filesystem::remove(path);
   }
 } // namespace

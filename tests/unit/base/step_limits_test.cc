@@ -29,15 +29,3 @@ TEST(StepLimits, NoStepIsLongerThanALimitThatItMeets)
   unsigned int present = 0;
   EXPECT_EQ(admitted_step(nullptr, 0, present, 0., 2.), 2.);
 }
-
-/// The limits are searched from where the last step was.
-TEST(StepLimits, StepsCoverTheWholeTime)
-{
-  unsigned int present = 0, n = 0;
-  double t = 0.;
-  for (; t < 1.; t += admitted_step(limits, 3, present, t, 0.5))
-    ++n;
-  EXPECT_GE(n, 100u);
-  EXPECT_LE(n, 106u);
-  EXPECT_EQ(present, 2u);
-}

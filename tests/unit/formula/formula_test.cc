@@ -96,9 +96,3 @@ INSTANTIATE_TEST_SUITE_P(
                   "(s < t ? (t < 0.4 ? s + t : s - t) : sin(s)) + (s*t > 0.1 ? t : s)",
                   "(s - 0.5 ? sqrt(s*t - 0.1) : 1/(s*t))", // not a number or infinite at some points
                   "0.6*exp(-((s - (L + 5*w) + (L + 10*w)*mod(t, 1)/1)/w)^2)"));
-
-TEST(Formula, ErrorsAreThoseOfMuParser)
-{
-  for (const char *text : {"", "sin(s", "s +", "unknown*s", "sin(s, t)", "s ? 1", "\"text\""})
-    EXPECT_THROW(Formula(text, constants), mu::ParserError) << text;
-}

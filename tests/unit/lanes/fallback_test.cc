@@ -107,18 +107,6 @@ INSTANTIATE_TEST_SUITE_P(All, FallbackTest, ::testing::ValuesIn(cases()), [](con
   return test.param.name;
 });
 
-/// The stretch of an end is 1 - m/k, so these times are known.
-TEST(Fallback, AnEndInvertsWhenItsStressReachesTheModulus)
-{
-  const auto inversion = [](const std::string &formula) {
-    return LaneRun(expression(-1., formula), "radau 5", short_steps).simulate(Engine::automatic).inversion.value();
-  };
-  EXPECT_NEAR(inversion("1.5*t*s^8").t, 1. / 1.5, 1e-9);
-  EXPECT_EQ(inversion("1.5*t*s^8").s, 1.);
-  EXPECT_NEAR(inversion("1.5*exp(-((t-0.5)/0.05)^2)*cos(pi*s)").t, 0.5 - 0.05 * std::sqrt(std::log(1.5)), 1e-9);
-  EXPECT_EQ(inversion("1.5*exp(-((t-0.5)/0.05)^2)*cos(pi*s)").s, 0.);
-}
-
 /// A stiff body follows its stress at once, w = 1 - m/k, and in the middle one of three stages this is 0.01; the end of
 /// the only step is far from that. With an energy balance the stages are looked at.
 TEST(Fallback, ABatchGivesUpWhatIsNearlyInvertedWithinItsLastStep)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// The equations of the stretch form in the fused engine, and their linear systems, for one body and in packs.
+// The equations of the stretch form in the fused engine, and their linear systems.
 #include "../../support/derivative.h"
 #include "../../support/features.h"
 #include "../../support/test.h"
@@ -19,8 +19,7 @@ namespace
   constexpr double t = 0.3, real_shift = 23., complex_shift[2] = {11., 7.};
   constexpr int pairs = 1;
 
-  template <typename Pack>
-  using System = generic::StretchSystem<Pack, pairs>;
+  using System = generic::StretchSystem<double, pairs>;
 
   Feature
   plain(const double a)
@@ -101,38 +100,18 @@ namespace
   };
 
   /// The system in its memory.
-  template <typename Pack>
-  struct InMemory
+  struct Alone : Case
   {
-    explicit InMemory(const LaneSetup &setup, LawHost *host)
-      : system(setup)
-      , host(host)
+    explicit Alone(const Feature &feature, const int n_cells = 8, const bool other = false)
+      : Case(feature, n_cells, other)
+      , system(setup)
     {
       generic::LaneMemory sizes(nullptr);
       system.lay_out(sizes);
       memory.resize(sizes.size());
       generic::LaneMemory pieces(memory.data());
       system.lay_out(pieces);
-    }
-
-    void
-    set_body(const int lane, const double k, const double a)
-    {
-      system.set_body(lane, {.k = k, .a = a, .host = host});
-    }
-
-    System<Pack> system;
-    LawHost *const host;
-    LaneStorage memory;
-  };
-
-  struct Alone : Case, InMemory<double>
-  {
-    explicit Alone(const Feature &feature, const int n_cells = 8, const bool other = false)
-      : Case(feature, n_cells, other)
-      , InMemory<double>(setup, this)
-    {
-      set_body(0, scene.body.elastic_modulus, scene.friction_exponent());
+      system.set_body(0, {.k = scene.body.elastic_modulus, .a = scene.friction_exponent(), .host = this});
     }
 
     std::vector<double>
@@ -154,6 +133,9 @@ namespace
     {
       return test::derivative([&](const double step) { return residual(by, by_dot, step); });
     }
+
+    System system;
+    LaneStorage memory;
   };
 
   std::vector<Feature>
@@ -245,57 +227,4 @@ TEST(LaneStretch, WhatIsNotANumberStays)
   EXPECT_TRUE(std::isnan(generic::added</*largest=*/true>(1., std::numeric_limits<double>::quiet_NaN())));
   EXPECT_EQ(generic::added</*largest=*/true>(1., 2.), 2.);
   EXPECT_EQ(generic::added</*largest=*/true>(2., 1.), 2.);
-}
-
-/// Bodies with other moduli and exponents do not see each other.
-TEST(LaneStretch, LanesAreBodiesAlone)
-{
-  constexpr int lanes                   = 2;
-  using Pack                            = generic::pack2;
-  const std::vector<double> exponents[] = {{0.7, 2.}, {-1., -2.5}, {-0.5, -0.3}};
-  const std::vector<double> moduli      = {1., 0.3};
-  for (const auto &a : exponents)
-  {
-    std::vector<std::unique_ptr<Alone>> alone;
-    for (int l = 0; l < lanes; ++l)
-    {
-      auto settings = test::wave(a[l], 0.3, 1., 1., moduli[l]);
-      alone.push_back(std::make_unique<Alone>(Feature{"", settings}));
-    }
-    InMemory<Pack> both(alone[0]->setup, alone[0].get());
-    const int n = alone[0]->n;
-    std::vector<Pack> y(n + 1), y_dot(n + 1), m(n), F(n + 1);
-    for (int l = 0; l < lanes; ++l)
-    {
-      both.set_body(l, alone[l]->scene.body.elastic_modulus, a[l]);
-      for (int i = 0; i <= n; ++i)
-      {
-        y[i][l]     = alone[l]->y[i];
-        y_dot[i][l] = 0.3 * alone[l]->y_dot[i];
-        if (i < n)
-          m[i][l] = alone[l]->m[i];
-      }
-    }
-    const double times[lanes] = {t, t};
-    both.system.residual(times, y.data(), y_dot.data(), m.data(), F.data());
-    both.system.factorize(times, y.data(), y_dot.data(), m.data(), Pack{1., 2.});
-    std::vector<Pack> x = F;
-    both.system.solve(x.data());
-    for (int l = 0; l < lanes; ++l)
-    {
-      Alone &one = *alone[l];
-      for (double &rate : one.y_dot)
-        rate *= 0.3;
-      std::vector<double> F_one(n + 1);
-      one.system.residual(&t, one.y.data(), one.y_dot.data(), one.m.data(), F_one.data());
-      one.system.factorize(&t, one.y.data(), one.y_dot.data(), one.m.data(), 1. + l);
-      std::vector<double> x_one = F_one;
-      one.system.solve(x_one.data());
-      for (int i = 0; i <= n; ++i)
-      {
-        EXPECT_NEAR(F[i][l], F_one[i], 1e-13 * largest(F_one)) << "a = " << a[l] << ", row " << i;
-        EXPECT_NEAR(x[i][l], x_one[i], 1e-12 * largest(x_one)) << "a = " << a[l] << ", row " << i;
-      }
-    }
-  }
 }

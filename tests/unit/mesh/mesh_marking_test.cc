@@ -67,21 +67,6 @@ namespace
   }
 } // namespace
 
-TEST(MeshMarking, IndicatorsOfAllRanks)
-{
-  for (const unsigned int n : {1u, 2u, 7u})
-  {
-    const Mesh mesh = uniform(n);
-    std::vector<double> own;
-    for (unsigned int c = 0; c < mesh->n_local_cells(); ++c)
-      own.push_back(1. + mesh->first_cell + c);
-    const auto all = mesh->gather(own);
-    ASSERT_EQ(all.size(), n);
-    for (unsigned int c = 0; c < n; ++c)
-      EXPECT_EQ(all[c], 1. + c);
-  }
-}
-
 TEST(MeshMarking, DividesUntilTheRestIsBelowATenth)
 {
   const Mesh mesh = uniform(16);

@@ -3,7 +3,6 @@
 #include "../../support/test.h"
 
 #include <crawler/parameters/axis.h>
-#include <crawler/parameters/declarations.h>
 
 using namespace crawler;
 
@@ -79,20 +78,4 @@ TEST(Axis, WhatIsWrongIsSaid)
   expect_error("1, 2, 1.0", {"occurs twice"});
   expect_error("1,, 2", {"value 2 of the list", "empty"});
   expect_error("logspace(0, 400, 2)", {"400"});
-}
-
-TEST(Axis, AllValuesAreCheckedAgainstTheDeclarations)
-{
-  double length = 1.;
-  Declarations declarations;
-  declarations.enter("Body");
-  declarations.number("Length", length, positive(), "length").means("Length.");
-  declarations.leave();
-  require_valid("Body/Length", {"1", "3"}, name, declarations);
-  EXPECT_EQ(length, 3.);
-  const auto complaint_about = [&](const std::string &entry) {
-    return test::complaint_of([&]() { require_valid(entry, {"2", "-1"}, name, declarations); });
-  };
-  test::expect_words(complaint_about("Body/Length"), {name + ": ", "a positive number is expected"});
-  test::expect_words(complaint_about("Body/Lenght"), {name + ": ", "nearest name is \"Length\""});
 }

@@ -2,9 +2,7 @@
 #include "../../support/complaint.h"
 #include "../../support/test.h"
 
-#include <crawler/base/nearest_name.h>
 #include <crawler/parameters/declarations.h>
-#include <crawler/parameters/entry_lists.h>
 
 using namespace crawler;
 
@@ -74,33 +72,8 @@ TEST(Declarations, NumbersOfAnEntryHaveNames)
       << path;
 }
 
-TEST(NearestName, RanksByDistance)
-{
-  EXPECT_EQ(nearest_names("anchoring exponet", {"Length", "Anchoring exponent", "Energy"}).front(),
-            "Anchoring exponent");
-  EXPECT_TRUE(nearest_names("zzzzzzzz", {"Length", "Energy"}).empty());
-  EXPECT_EQ(quoted_list({"a", "b", "c"}), "\"a\", \"b\" or \"c\"");
-}
-
 TEST(ToText, RoundTrips)
 {
   for (const double value : {0., 1. / 3., 1e-300, -2.5e17, 0.1})
     EXPECT_EQ(*to_number(to_text(value)), value);
-}
-
-/// The name of a file counts from a folder, is kept as an absolute one, and is short in the current folder.
-TEST(Declarations, FilesCountFromAFolder)
-{
-  Declarations declarations;
-  std::string file = "none.csv", profile = "1";
-  declarations.file("File", file, "a file").means("Documentation.");
-  declarations.file("Profile", profile, "a formula or a file", "1", ".csv").means("Documentation.");
-  EXPECT_EQ(file, "none.csv");
-  declarations.set("File", "a.csv", "/folder/inner/..");
-  declarations.set("Profile", "2/s", "/folder");
-  EXPECT_EQ(file, "/folder/a.csv");
-  EXPECT_EQ(profile, "2/s");
-  declarations.set("Profile", "p.csv", "inner");
-  EXPECT_EQ(profile, "inner/p.csv");
-  EXPECT_EQ(declarations.value(1), (std::filesystem::current_path() / "inner/p.csv").string());
 }

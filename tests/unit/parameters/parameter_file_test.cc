@@ -11,11 +11,9 @@ using namespace crawler;
 namespace
 {
   Parameters
-  read(const std::string &text, const std::vector<std::string> &overrides = {})
+  read(const std::string &text)
   {
     ParameterFile file = ParameterFile::from_text(text, "file.prm");
-    for (const auto &assignment : overrides)
-      file.add_override(assignment);
     Parameters parameters;
     Declarations declarations;
     parameters.add_parameters(declarations);
@@ -61,13 +59,6 @@ TEST(ParameterFile, WhatStandsBelowAnIncludeReplacesWhatItSets)
   EXPECT_NE(error_of("subsection Body\n set Length = 7\nend\ninclude " + body + "\n").find("second time"),
             std::string::npos);
   EXPECT_NE(error_of("include " + body + "\ninclude " + body + "\n").find("second time"), std::string::npos);
-}
-
-TEST(ParameterFile, OverridesAreStronger)
-{
-  const std::string text = "subsection Body\n  set Length = 3\nend\n";
-  EXPECT_EQ(read(text, {"Body/Length=4"}).body.length, 4.);
-  EXPECT_EQ(read(text, {"Body/Length=4", " Body / Length = 5 "}).body.length, 5.);
 }
 
 /// Whoever mixes files and overrides must tell them apart, however they are written.

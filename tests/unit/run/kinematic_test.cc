@@ -108,16 +108,6 @@ TEST(Kinematic, IsTheSeriesForAEqualToOne)
   }
 }
 
-/// Halving a strain shows the order to which the series is the level: D/eps^2 = const + O(eps^2).
-TEST(Kinematic, TendsToTheSeries)
-{
-  const auto gap = [](const double chi) {
-    const auto settings = test::wave(-2.5, chi, 1.3, 0.8);
-    return std::abs(on_level(settings).displacement / on_level(settings, Model::perturbation).displacement - 1.);
-  };
-  EXPECT_NEAR(std::log2(gap(0.04) / gap(0.02)), 2., 0.1);
-}
-
 /// Of a stiff body: m = -k e makes the strain e, up to O(1/k).
 TEST(Kinematic, StiffBody)
 {

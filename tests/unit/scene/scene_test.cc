@@ -32,22 +32,6 @@ namespace
     {1., 1., 1.}, {1e-6, 1., 1.}, {1e6, 1., 1.}, {1e-6, 1e-3, 1e12}, {1e6, 3600., 1e-9}, {0.3, 7e5, 2e-4}};
 } // namespace
 
-/// In natural units L = T = gamma = 1, and only the stiffness is left.
-TEST(Scene, NaturalUnits)
-{
-  const Scene scene   = test::parameters_with(in_user_units(1e-6, 3600., 1e12)).create_scene();
-  const Units units   = natural_units(scene);
-  const Scene natural = in_units(scene, units);
-  for (const double one : {natural.body.length,
-                           natural.end_time,
-                           natural.body.friction_coefficient,
-                           natural.body.elastic_modulus / stiffness,
-                           units.energy() / (units.force * units.length),
-                           units.power() * units.time / units.energy(),
-                           units.velocity() * units.time / units.length})
-    EXPECT_NEAR(one, 1., 1e-14);
-}
-
 /// The whole program: the same crawler moves the same part of its length in any units.
 TEST(Scene, TheSameMotionInAllUnits)
 {

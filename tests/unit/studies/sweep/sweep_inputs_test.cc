@@ -109,14 +109,6 @@ namespace
       fmt::format(R"({{"{}":"{}"}})", std::filesystem::absolute("ground.csv").string(), fingerprint("ground.csv")));
   }
 
-  TEST_F(Inputs, HowMuchIsComputedMayChange)
-  {
-    const std::string axes   = " set Axes = Body/Length : 1, 2\n";
-    const SweepInputs before = inputs("subsection Sweep\n" + axes + "end\n");
-    EXPECT_TRUE(changes(before, inputs("subsection Sweep\n" + axes + " set Time limit = 5\nend\n")).empty());
-    EXPECT_EQ(changes(before, inputs("set Accuracy = 1e-5\nsubsection Sweep\n" + axes + "end\n")).size(), 1u);
-  }
-
   TEST_F(Inputs, TheChecksumIsThatOfZlib)
   {
     write_file("check", "123456789");
