@@ -8,14 +8,16 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 {
   namespace
   {
-    /// Result of @p use for the engine of a setup, as the type of a null pointer.
+    /// Result of @p use for the engine of a setup, as the type of a null pointer. Batches have the position form alone
+    /// (batch_method).
     template <typename Pack, typename Use>
     auto
     with_engine(const LaneSetup &setup, const Use &use)
     {
-      if (setup.is_stretch)
-        return setup.n_stages == 3 ? use(static_cast<RadauLanes<Pack, 3, StretchSystem> *>(nullptr))
-                                   : use(static_cast<RadauLanes<Pack, 5, StretchSystem> *>(nullptr));
+      if constexpr (PackTraits<Pack>::size == 1)
+        if (setup.is_stretch)
+          return setup.n_stages == 3 ? use(static_cast<RadauLanes<Pack, 3, StretchSystem> *>(nullptr))
+                                     : use(static_cast<RadauLanes<Pack, 5, StretchSystem> *>(nullptr));
       return setup.n_stages == 3 ? use(static_cast<RadauLanes<Pack, 3, PositionSystem> *>(nullptr))
                                  : use(static_cast<RadauLanes<Pack, 5, PositionSystem> *>(nullptr));
     }
