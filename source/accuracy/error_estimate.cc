@@ -218,7 +218,11 @@ namespace crawler
     if (result.cycles)
       change_steps(n, finer_tolerance_of_cycles);
     if (result.time.steps <= few_steps)
-      limit_steps(n.step_limits, scene.end_time / (more_than_few * result.time.steps));
+    {
+      const double covered =
+        result.cycles ? scene.end_time - result.cycles->extrapolated * result.cycles->period : result.time.time;
+      limit_steps(n.step_limits, covered / (more_than_few * result.time.steps));
+    }
     return n;
   }
 

@@ -8,8 +8,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 {
   namespace
   {
-    /// Result of @p use for the engine of a setup, as the type of a null pointer. Batches have the position form alone
-    /// (batch_method).
+    /// Result of @p use for the engine of a setup, as the type of a null pointer.
     template <typename Pack, typename Use>
     auto
     with_engine(const LaneSetup &setup, const Use &use)

@@ -49,12 +49,17 @@ def damaged_tables(place, scene):
     whole = place / "whole"
     expect(crawler("sweep", scene, "--output", whole).returncode == 0, "the sweep itself")
     reference = (whole / "results.csv").read_text()
-    for name, harm in [
-            ("many_dimensions", lambda file: replaced(file["results"], "displacement", np.zeros((2,) * 30, "i1"))),
-            ("huge", lambda file: replaced(file["results"], "displacement", shape=(1 << 60,), dtype="f8", chunks=(1024,))),
-            ("array_attribute", lambda file: file["results"]["displacement"].attrs.create("unit", np.zeros(1 << 16, "S64"))),
-            ("variable_texts", lambda file: replaced(file["results"], "status", ["a", "b"], dtype=h5py.string_dtype())),
-            ("no_group", lambda file: file.move("results", "swept"))]:
+    for name, words, harm in [
+            ("many_dimensions", "not a column of a table",
+             lambda file: replaced(file["results"], "displacement", np.zeros((2,) * 30, "i1"))),
+            ("huge", "not a column of a table",
+             lambda file: replaced(file["results"], "displacement", shape=(1 << 60,), dtype="f8", chunks=(1024,))),
+            ("array_attribute", 'attribute "unit" that is not text',
+             lambda file: file["results"]["displacement"].attrs.create("unit", np.zeros(1 << 16, "S64"))),
+            ("variable_texts", 'no attribute "name"',
+             lambda file: replaced(file["results"], "status", ["a", "b"], dtype=h5py.string_dtype())),
+            ("no_group", 'no group "results"',
+             lambda file: file.move("results", "swept"))]:
         folder = place / name
         shutil.copytree(whole, folder)
         with h5py.File(folder / "results.h5", "r+") as file:
@@ -64,9 +69,14 @@ def damaged_tables(place, scene):
                 for key, value in attributes.items():
                     file["results"]["displacement"].attrs[key] = value
         before = (folder / "results.h5").read_bytes()
-        is_refused(crawler("sweep", scene, "--output", folder, "--resume"), 2, "results.h5", name)
+        is_refused(crawler("sweep", scene, "--output", folder, "--resume"), 2, words, name)
         expect((folder / "results.h5").read_bytes() == before, f"{name}: a refused table is another one")
         expect(not (folder / "study.lock").exists(), f"{name}: a refused study leaves its lock")
+
+    text = place / "text"
+    shutil.copytree(whole, text)
+    (text / "results.h5").write_text("no table\n", encoding="utf-8")
+    is_refused(crawler("sweep", scene, "--output", text, "--resume"), 2, "HDF5 file", "a text as a table")
 
     # Flipped bits: the rows that they are in are computed anew, so the table is that of the first time.
     chance = random.Random(1)

@@ -186,6 +186,9 @@ def test_time_limits(folder):
     expect(all_of_it.returncode == 5 and not computed(table(folder / "slow")).any()
            and json_of(folder / "slow" / "summary.json")["reason"] == "time_limit" and "--resume" in all_of_it.stderr,
            f"the limit of the sweep ends it with exit code 5 ({all_of_it.returncode}) {all_of_it.stderr}")
+    for name in ("TERM", "INT"):
+        within = sweep(folder, "slow", "--overwrite", "--set", "Accuracy=1e-7", stop_at=f"step:20:{name}")
+        expect(within.returncode == 5 and table(folder / "slow")["status"] == ["", ""], f"SIG{name} within a point: {within}")
     left = sorted(path.name for path in (folder / "slow" / "points").rglob("*"))
     expect(left == [place.name, "mine.txt"], f"--overwrite removes the fields, and nothing of others ({left})")
     rest = sweep(folder, "slow", "--resume", "--set", "Sweep/Time limit=1e6", "--set", "Accuracy=1e-7")
@@ -230,6 +233,13 @@ def test_killed_at_files(folder):
                f"killed before {place} has its name: {killed.returncode}, {names}")
         if place in ("original.prm", "results.csv"):
             refused(sweep(folder, output), "--resume continues")
+        if place == "results.csv":
+            part = output / "results.csv.part"
+            part.unlink()
+            (part / "is a folder").mkdir(parents=True)
+            blocked = sweep(folder, output, "--resume")
+            expect(blocked.returncode == 6 and "results.h5 is intact" in blocked.stderr, f"no place for a file: {blocked}")
+            shutil.rmtree(part)
         result = sweep(folder, output, "--resume")
         expect(result.returncode == 0 and same_columns(reference, table(output)) and (output / "results.csv").is_file()
                and json_of(output / "summary.json")["status"] == "finished" and not list(output.glob("*.part"))

@@ -7,7 +7,7 @@
 #include <crawler/lanes/lane_memory.h>
 #include <crawler/lanes/lane_tridiagonal.h>
 
-/// Equations and linear systems of the stretch form for a pack of bodies (included by radau_lanes.h).
+/// Equations and linear systems of the stretch form for one body (included by radau_lanes.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
   /// Floor of w^(1+a) where the unknown is made of it.
@@ -24,10 +24,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   {
   public:
     using Number                      = Complex<Pack>;
-    static constexpr int lanes        = PackTraits<Pack>::size;
     static constexpr bool largest     = true;  ///< the size of a vector is its largest element, else the mean square
     static constexpr bool gives_rates = false; ///< for LaneHost::look_inside
     static constexpr bool keeps_tries = false;
+    static_assert(PackTraits<Pack>::size == 1, "batches are of the position form (batch_method)");
 
     explicit StretchSystem(const LaneSetup &setup)
       : n_points(static_cast<int>(setup.n_cells))
@@ -149,9 +149,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     evaluate(const double *t, const Pack *q, const Pack *q_dot, const Pack *m, const bool slopes)
     {
       constexpr double nothing = 1e-300;
-      if constexpr (lanes == 1)
-        if ((setup_.laws & LaneLaws::general) != 0) // the unknowns are no powers
-          return host_->evaluate_cells(*t, m, q, q_dot, nodes_.laws);
+      if ((setup_.laws & LaneLaws::general) != 0) // the unknowns are no powers
+        return host_->evaluate_cells(*t, m, q, q_dot, nodes_.laws);
       find_stretch(q);
       Pack least = broadcast<Pack>(1.);
       for (int j = 0; j < n_points; ++j)

@@ -7,7 +7,7 @@
 
 #include <cstddef>
 
-/// Tridiagonal systems of the Radau methods for a pack of bodies (included by lane_stretch.h).
+/// Tridiagonal systems of the Radau methods for one body (included by lane_stretch.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
   /// Tridiagonal matrices K + g M with a real g and with the complex ones of all pairs. All are eliminated together and

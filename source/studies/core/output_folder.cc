@@ -231,14 +231,13 @@ namespace crawler
   }
 
   void
-  remove_numbered(const fs::path &folder, const std::string &word, const std::string &ending)
+  remove_runs(const fs::path &folder, const std::regex &names)
   {
     std::error_code error;
     std::vector<fs::path> own;
     for (const auto &entry : fs::directory_iterator(folder, error))
-      if (const std::string name = entry.path().stem().string();
-          entry.is_directory(error) == ending.empty() && entry.path().extension() == ending &&
-          (name == word || (name.starts_with(word) && to_number(name.substr(word.size())))))
+      if (entry.is_directory(error) != entry.path().has_extension() &&
+          std::regex_match(entry.path().filename().string(), names))
         own.push_back(entry.path());
     for (const fs::path &path : own)
     {

@@ -280,7 +280,9 @@ namespace crawler
       const std::vector<Quantity> quantities = quantities_of(result);
       RunGradient gradient                   = gradient_of(run, variations, quantities);
       const TimeParameters finer_time        = time_of_finer_run(time);
-      const RecordedRun finer_run(scene, finer_time, numerics_of_finer_run(choice, time, scene, result), keep_going);
+      SimulationResult whole                 = result;
+      whole.cycles.reset(); // all of them are recorded
+      const RecordedRun finer_run(scene, finer_time, numerics_of_finer_run(choice, time, scene, whole), keep_going);
       const auto finer_values = gradient_of(finer_run, variations, quantities).quantities;
       for (std::size_t i = 0; i < known.size(); ++i)
         set(*known[i], gradient.quantities[i], finer_values[i], result, accuracy);

@@ -3,7 +3,6 @@
 #include <crawler/base/files.h>
 #include <crawler/base/plain_numbers.h>
 #include <crawler/parameters/declarations.h>
-#include <crawler/studies/core/input.h>
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/python.h>
 #include <crawler/studies/core/study.h>
@@ -389,8 +388,8 @@ namespace crawler
       memory = std::make_unique<OptimizeMemory>(cases, folder, file);
       if (memory->starts().empty())
       {
-        remove_numbered(folder.path, "best");
-        remove_numbered(folder.path, "optimum", ".prm");
+        remove_runs(folder.path, std::regex("best(-[0-9]+)?"));
+        remove_runs(folder.path, std::regex("optimum(-[0-9]+)?[.]prm"));
       }
     });
     clock.set_limit(cases.parameters().optimize.time_limit, "Optimize/Time limit");

@@ -176,7 +176,7 @@ namespace crawler
   create_table(const StudyFolder &folder, const PointTable &table)
   {
     auto attributes         = provenance(table.effective, folder.options.command_line);
-    attributes["not known"] = "NaN in numbers, an empty text in texts; an empty status: not computed yet";
+    attributes["not known"] = "NaN in numbers, an empty text in texts, also of the status of what is not computed yet";
     attributes.insert(table.inputs.begin(), table.inputs.end());
     attributes.insert(table.others.begin(), table.others.end());
     RowFile::create(folder.path / table.file, table.group, table.columns, table.n_rows, attributes, table.known);

@@ -7,7 +7,6 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/crash_file.h>
-#include <crawler/studies/core/input.h>
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/progress.h>
 #include <crawler/studies/core/study.h>
@@ -215,7 +214,7 @@ namespace crawler
       table.inputs = sweep_inputs(points);
       auto list    = begin_or_resume(folder, table, file);
       if (std::count(list.begin(), list.end(), true) == 0)
-        remove_numbered(folder.path / "points", ""); // fields of an earlier sweep
+        remove_runs(folder.path / "points", std::regex("[0-9]+")); // fields of an earlier sweep
       return list;
     });
     const auto n_done            = static_cast<unsigned long>(std::count(done.begin(), done.end(), true));

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -55,11 +56,10 @@ namespace crawler
   void
   prepare(const std::filesystem::path &folder);
 
-  /// Removes files of a study in @p folder, or folders of its runs (without @p ending), that are called @p word,
-  /// perhaps with a number behind it: "best", "best-2"; not the files of others in them. Removes @p folder if it is
-  /// empty then.
+  /// Removes what a study keeps of its runs in @p folder: folders called by one of @p names, and files if these have an
+  /// extension; not the files of others in them. Removes @p folder if it is empty then.
   void
-  remove_numbered(const std::filesystem::path &folder, const std::string &word, const std::string &ending = "");
+  remove_runs(const std::filesystem::path &folder, const std::regex &names);
 
   /// Removes files that a run writes as it proceeds: the fields and the statistics.
   void
