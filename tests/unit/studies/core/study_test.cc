@@ -2,7 +2,10 @@
 #include "../../../support/test.h"
 
 #include <crawler/base/clock.h>
+#include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/study.h>
+
+#include <fstream>
 
 using namespace crawler;
 
@@ -19,4 +22,23 @@ TEST(StudyClock, IsOverAtTheTimeLimit)
   time = 110.;
   EXPECT_TRUE(clock.is_over());
   EXPECT_EQ(clock.reason(), "time_limit");
+}
+
+/// Names that only resemble those of the program's own runs are names of others.
+TEST(StudyFolder, RemovesItsOwnRunsAlone)
+{
+  const std::filesystem::path folder = testing::TempDir() + "own_runs";
+  std::filesystem::remove_all(folder);
+  for (const char *name : {"best", "best-2", "best2", "best-2b"})
+  {
+    std::filesystem::create_directories(folder / name);
+    std::ofstream(folder / name / "summary.json") << "{}";
+  }
+  remove_runs(folder, std::regex("best(-[0-9]+)?"));
+  std::set<std::string> left;
+  for (const auto &entry : std::filesystem::directory_iterator(folder))
+    left.insert(entry.path().filename());
+  EXPECT_EQ(left, (std::set<std::string>{"best2", "best-2b"}));
+  EXPECT_TRUE(std::filesystem::exists(folder / "best2" / "summary.json"));
+  std::filesystem::remove_all(folder);
 }
