@@ -76,26 +76,4 @@ namespace crawler
     };
     return StressByFunctions(evaluator, [bounds](const ActiveStress::Box &) { return bounds; });
   }
-
-  StressByFunctions
-  stiff_strain(const Scene &scene)
-  {
-    const ActiveStress &stress = *scene.active_stress;
-    const double k             = scene.body.elastic_modulus;
-    return StressByFunctions(
-      [&stress, k](const std::vector<double> &points, const bool rate) {
-        auto at = rate ? stress.rate_at(points) : stress.at(points);
-        return stress_at_points([k, m = std::move(at)](const double t, const std::span<double> e) {
-          m->values(t, e);
-          for (double &value : e)
-            value /= -k;
-        });
-      },
-      [&stress, k](const ActiveStress::Box &box) {
-        auto bounds = stress.bounds(box);
-        if (bounds)
-          *bounds = {bounds->value / k, bounds->rate / k};
-        return bounds;
-      });
-  }
 } // namespace crawler
