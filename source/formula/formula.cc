@@ -36,14 +36,7 @@ namespace crawler
           result[i] = operation(x[i], y[i]);
     }
 
-    struct Power
-    {
-      double
-      operator()(const double x, const double y) const
-      {
-        return std::pow(x, y);
-      }
-    };
+    using Power = decltype([](const double x, const double y) { return std::pow(x, y); });
 
     void
     select(Function, const std::span<const Operand> arguments, double *result, const std::size_t n)

@@ -14,58 +14,48 @@ namespace crawler
     constexpr double same = 1e-14; ///< breaks are closer by round-off, relative to the end
 
     /// Search for the points of [0, end] at which the sides of operations change.
-    class BreakSearch
+    struct BreakSearch
     {
-    public:
-      using Sides = std::function<std::vector<Interval>(const Interval &)>;
-
-      BreakSearch(Sides sides, const double end)
-        : sides_(std::move(sides))
-        , end_(end)
-      {
-      }
+      const std::function<std::vector<Interval>(const Interval &)> sides;
+      const double end;
+      std::size_t n_bounds       = 0;
+      std::vector<double> breaks = {};
 
       Places
       find()
       {
-        look(0., end_);
-        return n_bounds_ <= allowed() ? Places(breaks_) : std::nullopt;
+        look(0., end);
+        return n_bounds <= allowed() ? Places(breaks) : std::nullopt;
       }
 
-    private:
       /// Number of bounds that may be computed; a break takes about a hundred.
       std::size_t
       allowed() const
       {
         constexpr std::size_t first = 20000, of_break = 400, most_breaks = 5000;
-        return breaks_.size() <= most_breaks ? first + of_break * breaks_.size() : 0;
+        return breaks.size() <= most_breaks ? first + of_break * breaks.size() : 0;
       }
 
       void
       look(const double from, const double to)
       {
-        if (++n_bounds_ > allowed())
+        if (++n_bounds > allowed())
           return;
-        const std::vector<Interval> sides = sides_({from, to});
-        if (std::ranges::all_of(sides, [](const Interval &side) { return singleton(side); }))
+        const std::vector<Interval> between = sides({from, to});
+        if (std::ranges::all_of(between, [](const Interval &side) { return singleton(side); }))
           return;
         const double middle = 0.5 * (from + to);
-        if (middle > from && middle < to && to > same * end_) // neighbours: `to` is the first number on its side
+        if (middle > from && middle < to && to > same * end) // neighbours: `to` is the first number on its side
         {
           look(from, middle);
           look(middle, to);
         }
-        else if ((breaks_.empty() || to - breaks_.back() > same * end_) &&
-                 !std::ranges::equal(sides_(from), sides_(to), [](const Interval &a, const Interval &b) {
+        else if ((breaks.empty() || to - breaks.back() > same * end) &&
+                 !std::ranges::equal(sides(from), sides(to), [](const Interval &a, const Interval &b) {
                    return a.lower() == b.lower() && a.upper() == b.upper();
                  }))
-          breaks_.push_back(from > 0. ? to : 0.);
+          breaks.push_back(from > 0. ? to : 0.);
       }
-
-      const Sides sides_;
-      const double end_;
-      std::size_t n_bounds_ = 0;
-      std::vector<double> breaks_;
     };
 
     /// Breaks of a formula in one variable; the other one is called u.
@@ -79,7 +69,7 @@ namespace crawler
       Places
       alone() const
       {
-        return BreakSearch([this](const Interval &x) { return sides(x, 0., false); }, end).find();
+        return BreakSearch{[this](const Interval &x) { return sides(x, 0., false); }, end}.find();
       }
 
       /// Breaks of all operations on each piece between those of u, in [0, end_of_u], where it does not matter.
@@ -96,7 +86,7 @@ namespace crawler
           if (ends[i] - ends[i - 1] <= same * end_of_u)
             continue;
           const double u = 0.5 * (ends[i - 1] + ends[i]);
-          const auto its = BreakSearch([&](const Interval &x) { return sides(x, u, true); }, end).find();
+          const auto its = BreakSearch{[&](const Interval &x) { return sides(x, u, true); }, end}.find();
           if (!its)
             return std::nullopt;
           all.insert(all.end(), its->begin(), its->end());

@@ -11,9 +11,8 @@ namespace crawler
   LaneTables::LaneTables(const LaneMethod &method)
     : method_(method)
     , element_(reference_element(method.degree))
-    , sample_places_(method.is_stretch ? std::vector<double>{0.5} : element_.sample_places)
+    , sample_places_(method.is_stretch ? element_.stretch_points : element_.sample_places)
   {
-    samples_                    = interpolation_matrix(element_.nodes, sample_places_, /*derivative=*/true);
     const RadauTableau &tableau = radau_tableau(method.n_stages);
     const bool uniform          = method.cell_ends.empty();
     for (unsigned int c = 0; c < method.n_cells; ++c)
@@ -28,7 +27,7 @@ namespace crawler
                         sizes_.data(),
                         element_.tables(),
                         static_cast<unsigned int>(sample_places_.size()),
-                        samples_.data(),
+                        (method.is_stretch ? element_.stretch_derivatives : element_.sample_derivatives).data(),
                         {tableau.c.data(),
                          tableau.b.data(),
                          tableau.inverse.data(),

@@ -47,12 +47,14 @@ namespace crawler
     factors_             = blocks;
     bool ok = block_tridiagonal_kernels<Number>(d.element.degree).condense(n, factors_.data(), schur_.data());
 
-    Number own[4] = {1., 0., 0., 1.};
+    Number corner = 1., row = 0., column = 0., diagonal = 1.; // of a rank without cells
     if (n > 0)
     {
       // Node i couples to node 0 (row_zero, column_zero), and to node i+1 (next above, below under the diagonal).
-      Number corner = schur_[0], diagonal = schur_[3];
-      Number row = schur_[1], column = schur_[2]; // A[0][i], A[i][0] for i = 1
+      corner   = schur_[0];
+      row      = schur_[1]; // A[0][i] for i = 1
+      column   = schur_[2]; // A[i][0]
+      diagonal = schur_[3];
       for (unsigned int i = 1; i < n; ++i)
       {
         const Number *S = &schur_[4 * i];
@@ -70,19 +72,15 @@ namespace crawler
         column                = -below_[i] * column;
         row                   = next_row;
       }
-      own[0] = corner;
-      own[1] = row;
-      own[2] = column;
-      own[3] = diagonal;
     }
     const unsigned int ranks = d.n_active_ranks;
     if (d.n_ranks == 1)
     {
-      std::copy(own, own + 4, reduced_.begin());
-      return ok && is_finite(own[0]) && is_finite(own[3]);
+      reduced_ = {corner, row, column, diagonal};
+      return ok && is_finite(corner) && is_finite(diagonal);
     }
     // Ranks without cells send numbers that are not read.
-    Number sent[5] = {own[0], own[1], own[2], own[3], ok ? Number(1.) : Number(0.)};
+    Number sent[5] = {corner, row, column, diagonal, ok ? Number(1.) : Number(0.)};
     std::vector<Number> all(5 * d.n_ranks);
     MPI_Allgather(
       sent, 5 * doubles_in<Number>, MPI_DOUBLE, all.data(), 5 * doubles_in<Number>, MPI_DOUBLE, d.communicator);

@@ -36,15 +36,6 @@ namespace crawler
         sums.largest = now.largest;
     }
 
-    void
-    add(EnergyBalance &energies, const KinematicBody::Integrals &now, const double weight)
-    {
-      Rates works = now.rates();
-      for (double &work : works)
-        work *= weight;
-      energies.add_works(works);
-    }
-
     /// Bounds of the strain from some points of the box, where it has no bounds of its own or an enclosure is too wide
     /// to be of use.
     ActiveStress::Bounds
@@ -111,24 +102,6 @@ namespace crawler
       return finer;
     }
 
-    /// Adds the time integrals from @p start to @p end, one panel of Gauss points, each of which is passed to @p see;
-    /// returns the change of the displacement.
-    double
-    add_panel(KinematicBody &body, const double start, const double end, EnergyBalance &energies, const auto &see)
-    {
-      static const GaussPanels panel(0., 1., 1);
-      double displacement = 0.;
-      for (unsigned int i = 0; i < GaussPanels::n_points; ++i)
-      {
-        const auto &now     = body.evaluate(start + (end - start) * panel.points()[i]);
-        const double weight = (end - start) * panel.weights()[i];
-        see(now, weight);
-        displacement += weight * now.sums.velocity;
-        add(energies, now, weight);
-      }
-      return displacement;
-    }
-
     /// @p space_ends and @p ends are those of the panels in space and time.
     Sums
     integrate(const Scene &scene,
@@ -144,7 +117,7 @@ namespace crawler
       for (std::size_t p = 1; p < ends.size(); ++p)
       {
         sums.displacement +=
-          add_panel(body, ends[p - 1], ends[p], sums.energies, [&](const auto &now, const double duration) {
+          advance(body, ends[p - 1], ends[p], sums.energies, [&](const auto &now, const double duration) {
             add(sums, now, duration);
           });
         if (keep_going && !keep_going())
@@ -266,10 +239,26 @@ namespace crawler
   }
 
   double
-  advance(KinematicBody &body, const double start, const double end, EnergyBalance &energies)
+  advance(KinematicBody &body,
+          const double start,
+          const double end,
+          EnergyBalance &energies,
+          const std::function<void(const KinematicBody::Integrals &, double)> &see)
   {
-    const double displacement = add_panel(body, start, end, energies, [](const auto &, double) {});
-    energies.elastic_energy   = body.evaluate(end).sums.elastic_energy;
+    static const GaussPanels panel(0., 1., 1);
+    double displacement = 0.;
+    for (unsigned int i = 0; i < GaussPanels::n_points; ++i)
+    {
+      const auto &now     = body.evaluate(start + (end - start) * panel.points()[i]);
+      const double weight = (end - start) * panel.weights()[i];
+      if (see)
+        see(now, weight);
+      displacement += weight * now.sums.velocity;
+      Rates works = now.rates();
+      for (double &work : works)
+        work *= weight;
+      energies.add_works(works);
+    }
     return displacement;
   }
 

@@ -13,13 +13,11 @@ namespace crawler
     if (is_prescribed())
       strain = scene.active_stress->prescribed_strain();
     else if (wave)
-      strain = &approximate_.emplace(leading_order_strain(*wave));
+      approximate_ = std::make_unique<StressByFunctions>(leading_order_strain(*wave));
     else if (scene.active_stress->rate_at({0.}) != nullptr)
-    {
-      const ActiveStress &stiff = approximate_.emplace(stiff_strain(scene));
-      if (!find_jump(stiff, 1., 1.))
-        strain = &stiff;
-    }
+      approximate_ = in_units(*scene.active_stress, Units{.force = -scene.body.elastic_modulus});
+    if (approximate_ && (wave || !find_jump(*approximate_, 1., 1.)))
+      strain = approximate_.get();
   }
 
   ModelErrors

@@ -43,59 +43,21 @@ namespace crawler
       bounds.rate += h.q * std::abs(wave.speed) * amplitude;
     }
     const auto evaluator = [wave](const std::vector<double> &points, const bool rate) {
-      std::vector<double> sine, cosine; // [harmonic][point]
+      std::vector<double> q;
       for (const Harmonic &h : wave.harmonics)
-        for (const double s : points)
+        q.push_back(h.q);
+      return waves_at_points(q, points, [wave, rate](const std::size_t i, const double t) {
+        const Harmonic &h  = wave.harmonics[i];
+        const double theta = h.q * wave.speed * t, qc = h.q * wave.speed, st = std::sin(theta);
+        if (rate)
         {
-          sine.push_back(std::sin(h.q * s));
-          cosine.push_back(std::cos(h.q * s));
+          const double ct = std::cos(theta);
+          return std::array<double, 3>{{0., -qc * (h.a * st + h.b * ct), qc * (h.a * ct - h.b * st)}};
         }
-      // Sum of sin qs and cos qs, with factors that are functions of the harmonic and of theta = q c t.
-      const auto combine = [&](const auto &factors) {
-        return stress_at_points([wave, sine, cosine, factors](const double t, const std::span<double> result) {
-          std::fill(result.begin(), result.end(), 0.);
-          for (std::size_t n = 0; n < wave.harmonics.size(); ++n)
-          {
-            const Harmonic &h               = wave.harmonics[n];
-            const auto [of_sine, of_cosine] = factors(h, h.q * wave.speed * t);
-            const std::size_t first         = n * result.size();
-            for (std::size_t i = 0; i < result.size(); ++i)
-              result[i] += of_sine * sine[first + i] + of_cosine * cosine[first + i];
-          }
-        });
-      };
-      if (rate)
-        return combine([c = wave.speed](const Harmonic &h, const double theta) {
-          const double qc = h.q * c, st = std::sin(theta), ct = std::cos(theta);
-          return std::pair(-qc * (h.a * st + h.b * ct), qc * (h.a * ct - h.b * st));
-        });
-      return combine([](const Harmonic &h, const double theta) {
-        const double half = std::sin(0.5 * theta), st = std::sin(theta), ct_minus_1 = -2. * half * half;
-        return std::pair(h.a * ct_minus_1 - h.b * st, h.a * st + h.b * ct_minus_1);
+        const double half = std::sin(0.5 * theta), ct_minus_1 = -2. * half * half;
+        return std::array<double, 3>{{0., h.a * ct_minus_1 - h.b * st, h.a * st + h.b * ct_minus_1}};
       });
     };
     return StressByFunctions(evaluator, [bounds](const ActiveStress::Box &) { return bounds; });
-  }
-
-  StressByFunctions
-  stiff_strain(const Scene &scene)
-  {
-    const ActiveStress &stress = *scene.active_stress;
-    const double k             = scene.body.elastic_modulus;
-    return StressByFunctions(
-      [&stress, k](const std::vector<double> &points, const bool rate) {
-        auto at = rate ? stress.rate_at(points) : stress.at(points);
-        return stress_at_points([k, m = std::move(at)](const double t, const std::span<double> e) {
-          m->values(t, e);
-          for (double &value : e)
-            value /= -k;
-        });
-      },
-      [&stress, k](const ActiveStress::Box &box) {
-        auto bounds = stress.bounds(box);
-        if (bounds)
-          *bounds = {bounds->value / k, bounds->rate / k};
-        return bounds;
-      });
   }
 } // namespace crawler

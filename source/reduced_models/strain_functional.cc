@@ -5,20 +5,6 @@
 
 namespace crawler
 {
-  /// State at one time; lists over the points of the quadrature.
-  struct StrainFunctional::State
-  {
-    explicit State(const std::size_t n)
-      : m(n)
-      , by_B(n)
-      , by_rate(n)
-    {
-    }
-
-    GivenMotion motion;
-    std::vector<double> m, by_B, by_rate;
-  };
-
   StrainFunctional::StrainFunctional(const unsigned int n_space_panels, const unsigned int n_time_panels)
     : points(GaussPanels(0., 1., n_space_panels).points_and_ends())
     , times(GaussPanels(0., 1., n_time_panels).points_and_ends())
@@ -48,15 +34,16 @@ namespace crawler
   StrainFunctional::evaluate(const std::size_t time,
                              const StrainSamples &samples,
                              const BodyAtPoints &body,
-                             State &state) const
+                             GivenMotion &motion,
+                             std::vector<double> &m) const
   {
     const double *const e = &samples.strain[time * points.size()], *const e_t = &samples.rate[time * points.size()];
     if (!std::all_of(e, e + points.size(), [](const double one) { return 1. + one > 0.; }))
       return false;
-    state.motion.find(space_, {e, n_}, {e_t, n_}, body, /*with_slopes=*/true);
-    space_.running_integral(state.motion.gv, state.m);
+    motion.find(space_, {e, n_}, {e_t, n_}, body, /*with_slopes=*/true);
+    space_.running_integral(motion.gv, m);
     for (std::size_t i = 0; i < n_; ++i)
-      state.m[i] -= body.elastic_modulus[i] * e[i];
+      m[i] -= body.elastic_modulus[i] * e[i];
     return true;
   }
 
@@ -64,22 +51,23 @@ namespace crawler
   StrainFunctional::values(const StrainSamples &samples, const BodyAtPoints &body) const
   {
     const auto &weights = space_.weights();
-    State state(n_);
+    GivenMotion motion;
+    std::vector<double> m(n_);
     Values values{};
     for (std::size_t time = 0; time < times.size(); ++time)
     {
-      if (!evaluate(time, samples, body, state))
+      if (!evaluate(time, samples, body, motion, m))
         return std::nullopt;
       const double *const e = &samples.strain[time * points.size()], *const e_t = &samples.rate[time * points.size()];
       double dissipation_rate = 0., positive_power = 0., square = 0., elastic_energy = 0.;
       for (std::size_t i = 0; i < n_; ++i)
       {
-        dissipation_rate += weights[i] * state.motion.gv[i] * state.motion.v[i];
-        positive_power += weights[i] * std::max(-state.m[i] * e_t[i], 0.);
+        dissipation_rate += weights[i] * motion.gv[i] * motion.v[i];
+        positive_power += weights[i] * std::max(-m[i] * e_t[i], 0.);
         square += weights[i] * e[i] * e[i];
         elastic_energy += 0.5 * weights[i] * body.elastic_modulus[i] * e[i] * e[i];
       }
-      values[displacement] += time_weights_[time] * state.motion.velocity;
+      values[displacement] += time_weights_[time] * motion.velocity;
       values[dissipation] += time_weights_[time] * dissipation_rate;
       values[positive_work] += time_weights_[time] * positive_power;
       values[mean_square] += time_weights_[time] * square;
@@ -97,7 +85,8 @@ namespace crawler
   {
     const auto &w                = space_.weights();
     const std::vector<double> &k = body.elastic_modulus;
-    State state(n_);
+    GivenMotion motion;
+    std::vector<double> m(n_), by_B(n_), by_m(n_);
     StrainSamples result;
     result.resize(samples.strain.size());
     for (std::size_t time = 0; time < times.size(); ++time)
@@ -117,42 +106,41 @@ namespace crawler
           by_e[i] = 2. * weight * w[i] * e[i];
         continue;
       }
-      evaluate(time, samples, body, state);
-      const auto dg = [&](const std::size_t i) { return state.motion.w_dg[i] / state.motion.w[i]; };
+      evaluate(time, samples, body, motion, m);
+      const auto dg = [&](const std::size_t i) { return motion.w_dg[i] / motion.w[i]; };
       if (number == displacement)
         for (std::size_t i = 0; i < n_; ++i)
         {
-          by_e[i]       = -weight * w[i] * dg(i) * state.motion.v[i] / state.motion.g_mean;
-          state.by_B[i] = weight * w[i] * (1. - state.motion.g[i] / state.motion.g_mean);
+          by_e[i] = -weight * w[i] * dg(i) * motion.v[i] / motion.g_mean;
+          by_B[i] = weight * w[i] * (1. - motion.g[i] / motion.g_mean);
         }
       else if (number == dissipation || number == stress_work)
         for (std::size_t i = 0; i < n_; ++i)
         {
-          by_e[i]       = weight * w[i] * dg(i) * state.motion.v[i] * state.motion.v[i];
-          state.by_B[i] = 2. * weight * w[i] * state.motion.gv[i];
+          by_e[i] = weight * w[i] * dg(i) * motion.v[i] * motion.v[i];
+          by_B[i] = 2. * weight * w[i] * motion.gv[i];
         }
       else
       {
-        std::vector<double> &by_m = state.by_rate, &by_force = state.by_B; // derivatives by m and g v
+        std::vector<double> &by_force = by_B; // derivative by g v
         for (std::size_t i = 0; i < n_; ++i)
-          by_m[i] = -state.m[i] * e_t[i] > 0. ? -weight * w[i] * e_t[i] : 0.;
+          by_m[i] = -m[i] * e_t[i] > 0. ? -weight * w[i] * e_t[i] : 0.;
         space_.running_integral_transposed(by_m, by_force);
         double by_drift = 0.;
         for (std::size_t i = 0; i < n_; ++i)
-          by_drift += by_force[i] * state.motion.g[i];
+          by_drift += by_force[i] * motion.g[i];
         for (std::size_t i = 0; i < n_; ++i)
         {
-          const double of_force = by_force[i] - by_drift * w[i] / state.motion.g_mean;
-          by_e[i]               = of_force * dg(i) * state.motion.v[i] - k[i] * by_m[i];
-          state.by_B[i]         = of_force * state.motion.g[i];
+          const double of_force = by_force[i] - by_drift * w[i] / motion.g_mean;
+          by_e[i]               = of_force * dg(i) * motion.v[i] - k[i] * by_m[i];
+          by_B[i]               = of_force * motion.g[i];
         }
       }
-      space_.running_integral_transposed(state.by_B, state.by_rate);
-      std::copy_n(state.by_rate.begin(), n_, by_rate);
+      space_.running_integral_transposed(by_B, {by_rate, n_});
       if (number == positive_work)
         for (std::size_t i = 0; i < n_; ++i)
-          if (-state.m[i] * e_t[i] > 0.)
-            by_rate[i] -= weight * w[i] * state.m[i];
+          if (-m[i] * e_t[i] > 0.)
+            by_rate[i] -= weight * w[i] * m[i];
     }
     return result;
   }

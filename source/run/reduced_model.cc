@@ -154,45 +154,39 @@ namespace crawler
                        const std::vector<double> &points,
                        const std::function<bool(double time, const State &state)> &see) const
   {
+    const bool is_series = model_ == Model::perturbation; // of the body only the extremes count
+    KinematicBody body(
+      reduced_scene.scene, *reduced_scene.strain, is_series ? std::vector<double>{0., 0.5, 1.} : space_panels_, points);
     State state;
-    if (model_ == Model::perturbation)
-    {
-      const NaturalWave &wave = *reduced_scene.wave;
-      KinematicBody body(reduced_scene.scene, *reduced_scene.strain, {0., 0.5, 1.}, points);
-      for (const double t : times)
-      {
-        const auto &now      = body.evaluate(t); // for its extremes
-        state.displacement   = perturbation::displacement(wave, t);
-        state.velocity       = perturbation::velocity(wave, t);
-        state.energy_balance = perturbation::energies(wave, t);
-        state.stretch        = {{1. + now.smallest.strain, now.smallest.s}, {1. + now.largest.strain, now.largest.s}};
-        state.fields         = perturbation::fields(wave, t, points);
-        if (!see(t, state))
-          return;
-      }
-      return;
-    }
-    KinematicBody body(reduced_scene.scene, *reduced_scene.strain, space_panels_, points);
     state.energy_balance.initial_energy = body.evaluate(0.).sums.elastic_energy;
-    for (std::size_t i = 0; i < times.size(); ++i)
+    double before                       = times.empty() ? 0. : times.front();
+    for (const double t : times)
     {
-      if (i > 0)
-      {
-        double now = times[i - 1];
-        for (auto end = std::ranges::upper_bound(time_panels_, now); now < times[i]; ++end)
+      if (!is_series)
+        for (auto end = std::ranges::upper_bound(time_panels_, before); before < t; ++end)
         {
-          const double next = end == time_panels_.end() ? times[i] : std::min(*end, times[i]);
-          state.displacement += advance(body, now, next, state.energy_balance);
-          now = next;
+          const double next = end == time_panels_.end() ? t : std::min(*end, t);
+          state.displacement += advance(body, before, next, state.energy_balance);
+          before = next;
         }
+      const auto &now = body.evaluate(t);
+      state.stretch   = {{1. + now.smallest.strain, now.smallest.s}, {1. + now.largest.strain, now.largest.s}};
+      if (is_series)
+      {
+        const NaturalWave &wave = *reduced_scene.wave;
+        state.displacement      = perturbation::displacement(wave, t);
+        state.velocity          = perturbation::velocity(wave, t);
+        state.energy_balance    = perturbation::energies(wave, t);
+        state.fields            = perturbation::fields(wave, t, points);
       }
-      const auto &now                     = body.evaluate(times[i]);
-      state.energy_balance.elastic_energy = now.sums.elastic_energy;
-      state.velocity                      = now.sums.velocity;
-      state.net_friction                  = now.sums.net_friction;
-      state.stretch = {{1. + now.smallest.strain, now.smallest.s}, {1. + now.largest.strain, now.largest.s}};
-      state.fields  = body.fields(state.displacement);
-      if (!see(times[i], state))
+      else
+      {
+        state.energy_balance.elastic_energy = now.sums.elastic_energy;
+        state.velocity                      = now.sums.velocity;
+        state.net_friction                  = now.sums.net_friction;
+        state.fields                        = body.fields(state.displacement);
+      }
+      if (!see(t, state))
         return;
     }
   }

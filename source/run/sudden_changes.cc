@@ -23,7 +23,6 @@ namespace crawler
     , cell_(smallest_cell)
     , a_(scene.friction_exponent())
     , k_(scene.body.elastic_modulus / units.force)
-    , end_moduli_(scene.end_moduli())
   {
     if (scene.active_stress->feedback() != nullptr)
       return;
@@ -31,12 +30,10 @@ namespace crawler
     starts_.insert(starts_.begin(), 0.);
     std::vector<double> places = {0., units.length};
     for (const double s : scene.breaks_in_space())
-      for (const double side : {s - beside * units.length, s + beside * units.length})
-      {
-        places.push_back(side);
-        moduli_.push_back(scene.body.elastic_modulus *
-                          (scene.profiles.elastic_modulus ? scene.profiles.elastic_modulus->value(side) : 1.));
-      }
+      places.insert(places.end(), {s - beside * units.length, s + beside * units.length});
+    moduli_ = profile_at(scene.profiles.elastic_modulus, places);
+    for (double &k : moduli_)
+      k *= scene.body.elastic_modulus;
     m_.resize(places.size());
     stress_ = scene.active_stress->at(places);
   }
@@ -45,9 +42,9 @@ namespace crawler
   SuddenChanges::at(const double t)
   {
     stress_->values(t * units_.time, m_);
-    Stresses stresses{{1. - m_[0] / end_moduli_.first, 1. - m_[1] / end_moduli_.second}, {}};
+    Stresses stresses{{1. - m_[0] / moduli_[0], 1. - m_[1] / moduli_[1]}, {}};
     for (std::size_t i = 2; i + 1 < m_.size(); i += 2)
-      stresses.jumps.push_back(m_[i + 1] / moduli_[i - 1] - m_[i] / moduli_[i - 2]);
+      stresses.jumps.push_back(m_[i + 1] / moduli_[i + 1] - m_[i] / moduli_[i]);
     return stresses;
   }
 

@@ -36,7 +36,7 @@ namespace crawler
   {
     const auto read = [&](const std::string &name, const std::string &quantity, const std::string &text) {
       return read_profile(
-        {quantity, "s", text, body.profile_interpolation, "hold", "Body/" + name, body.constants, "Body/Constants"},
+        {{quantity, text, body.constants, "Body/" + name, "Body/Constants", {"s"}}, body.profile_interpolation},
         body.length,
         end_time);
     };

@@ -72,10 +72,10 @@ namespace crawler
         {"expression",
          "gamma times a formula of the stretch w",
          [](const auto &p, const Body &body, const double end_time) -> std::unique_ptr<const FrictionLaw> {
-           const ProfileInput input{
-             "friction law", "w", p.expression, "", "", "Ground/Expression", p.constants, "Ground/Constants"};
+           const FormulaInput input{
+             "friction law", p.expression, p.constants, "Ground/Expression", "Ground/Constants", {"w"}};
            auto law = std::make_unique<ExpressionFriction>(body.friction_coefficient,
-                                                           read_formula(input.formula(), body.length, end_time));
+                                                           read_formula(input, body.length, end_time));
            // Every body is near the stretch 1; other stretches are checked when a body gets there.
            require_positive([&](const double w) { return law->value(w); }, 0.9, 1.1, input);
            return law;
@@ -132,14 +132,14 @@ namespace crawler
   Ground
   create_ground(const GroundParameters &parameters, const Body &body, const double end_time)
   {
-    Ground ground{read_profile({"profile of the ground",
-                                "x",
-                                parameters.profile,
+    Ground ground{read_profile({{"profile of the ground",
+                                 parameters.profile,
+                                 parameters.constants,
+                                 "Ground/Profile",
+                                 "Ground/Constants",
+                                 {"x"}},
                                 parameters.interpolation,
-                                parameters.outside,
-                                "Ground/Profile",
-                                parameters.constants,
-                                "Ground/Constants"},
+                                parameters.outside},
                                body.length,
                                end_time),
                   {}};

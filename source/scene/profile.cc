@@ -14,80 +14,49 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace crawler
 {
   namespace
   {
-    class FormulaProfile : public Profile
+    /// Makes a profile with the jumps and kinks in [0, @p length], none if this is 0.
+    std::shared_ptr<const Profile>
+    formula_profile(const std::shared_ptr<const Formula> &formula, const double length)
     {
-    public:
-      /// Searches jumps and kinks in [0, @p length], nowhere if this is 0.
-      FormulaProfile(const std::shared_ptr<const Formula> &formula, const double length)
-        : gradient_(formula)
-      {
-        constexpr std::size_t most = 64; // more are no jumps of a material
-        const auto breaks          = length > 0. ? formula_breaks(formula, length, 0.).in_space : std::nullopt;
-        if (breaks && breaks->size() <= most)
-          breaks_ = *breaks;
-      }
-
-      std::vector<double>
-      breaks() const override
-      {
-        return breaks_;
-      }
-
-      void
-      values(const std::span<const double> x, const std::span<double> f, const std::span<double> slope) const override
-      {
-        const std::span<const double> places[] = {x};
-        const std::span<double> slopes[]       = {slope};
-        gradient_.evaluate(places, f, slopes);
-      }
-
-    private:
-      mutable FormulaGradient gradient_; ///< holds intermediate values
-      std::vector<double> breaks_;
-    };
+      constexpr std::size_t most = 64; // more are no jumps of a material
+      auto breaks                = length > 0. ? formula_breaks(formula, length, 0.).in_space : std::nullopt;
+      if (!breaks || breaks->size() > most)
+        breaks.emplace();
+      return std::make_shared<Profile>(
+        [gradient = FormulaGradient(formula)](
+          const std::span<const double> x, const std::span<double> f, const std::span<double> slope) mutable {
+          const std::span<const double> places[] = {x};
+          const std::span<double> slopes[]       = {slope};
+          gradient.evaluate(places, f, slopes);
+        },
+        *breaks);
+    }
 
     /// Linear interpolation of samples, or a cubic spline of their logarithms.
-    class TableProfile : public Profile
+    class Interpolation
     {
     public:
-      TableProfile(std::vector<double> x, std::vector<double> y, const bool cubic, const bool hold)
+      Interpolation(std::vector<double> x, std::vector<double> y, const bool cubic, const bool hold)
         : x_(std::move(x))
         , y_(std::move(y))
         , hold_(hold)
       {
         if (cubic)
         {
-          spline_ = std::make_unique<CubicSpline>(x_);
+          spline_.emplace(x_);
           for (const double value : y_)
             logarithms_.push_back(std::log(value));
           curvatures_ = spline_->curvatures(logarithms_);
         }
       }
 
-      std::vector<double>
-      breaks() const override
-      {
-        return spline_ && x_.size() > max_knots_of_splines ? std::vector<double>{x_.front(), x_.back()} : x_;
-      }
-
-      void
-      values(const std::span<const double> x, const std::span<double> f, const std::span<double> slope) const override
-      {
-        for (std::size_t i = 0; i < x.size(); ++i)
-        {
-          const auto [value, derivative] = at(x[i]);
-          f[i]                           = value;
-          if (!slope.empty())
-            slope[i] = derivative;
-        }
-      }
-
-    private:
+      /// Value and derivative.
       std::pair<double, double>
       at(const double x) const
       {
@@ -110,45 +79,11 @@ namespace crawler
         return {y_[right - 1] + slope * (x - x_[right - 1]), slope};
       }
 
-      const std::vector<double> x_, y_;
-      const bool hold_;
-      std::unique_ptr<CubicSpline> spline_;
-      std::vector<double> logarithms_, curvatures_; ///< if there is a spline
-    };
-
-    class ScaledProfile : public Profile
-    {
-    public:
-      ScaledProfile(std::shared_ptr<const Profile> profile, const double unit)
-        : profile_(std::move(profile))
-        , unit_(unit)
-      {
-      }
-
-      std::vector<double>
-      breaks() const override
-      {
-        auto result = profile_->breaks();
-        for (double &x : result)
-          x /= unit_;
-        return result;
-      }
-
-      void
-      values(const std::span<const double> x, const std::span<double> f, const std::span<double> slope) const override
-      {
-        scaled_.assign(x.begin(), x.end());
-        for (double &value : scaled_)
-          value *= unit_;
-        profile_->values(scaled_, f, slope);
-        for (double &value : slope)
-          value *= unit_;
-      }
-
     private:
-      const std::shared_ptr<const Profile> profile_;
-      const double unit_;
-      mutable std::vector<double> scaled_;
+      std::vector<double> x_, y_;
+      bool hold_;
+      std::optional<CubicSpline> spline_;
+      std::vector<double> logarithms_, curvatures_; ///< if there is a spline
     };
 
     /// Makes a profile of at least as many samples as the interpolation needs; @p what names them in messages.
@@ -158,40 +93,54 @@ namespace crawler
       const bool cubic        = input.interpolation == "cubic";
       const std::size_t least = cubic ? 4 : 2;
       if (x.size() < least)
-        refuse(input.entry,
+        refuse(input.formula_entry,
                "\"{}\" has {} {}, but at least {} are expected for {} interpolation",
-               input.text,
+               input.formula,
                x.size(),
                what,
                least,
                input.interpolation);
-      return std::make_shared<TableProfile>(std::move(x), std::move(y), cubic, input.outside == "hold");
+      std::vector<double> breaks = x;
+      if (cubic && x.size() > max_knots_of_splines)
+        breaks = {x.front(), x.back()};
+      return std::make_shared<Profile>(
+        [table = Interpolation(std::move(x), std::move(y), cubic, input.outside == "hold")](
+          const std::span<const double> places, const std::span<double> f, const std::span<double> slope) {
+          for (std::size_t i = 0; i < places.size(); ++i)
+          {
+            const auto [value, derivative] = table.at(places[i]);
+            f[i]                           = value;
+            if (!slope.empty())
+              slope[i] = derivative;
+          }
+        },
+        std::move(breaks));
     }
 
     std::shared_ptr<const Profile>
     read_table(const ProfileInput &input)
     {
-      const std::string header = input.variable + ",value";
-      CsvNumbers numbers       = read_csv_numbers(
-        input.text,
-        {input.variable, "value"},
-        fmt::format("a formula of {}, or the name of a CSV file with the header {}", input.variable, header),
-        input.entry);
+      const std::string &variable = input.variables.front();
+      CsvNumbers numbers =
+        read_csv_numbers(input.formula,
+                         {variable, "value"},
+                         fmt::format("a formula of {0}, or the name of a CSV file with the header {0},value", variable),
+                         input.formula_entry);
       std::vector<double> &x = numbers.columns[0], &y = numbers.columns[1];
       for (std::size_t i = 0; i < x.size(); ++i)
       {
         if (!(y[i] > 0.))
-          refuse(input.entry,
+          refuse(input.formula_entry,
                  "row {} of \"{}\" has the value {:g}, but a positive number is expected",
                  numbers.rows[i],
-                 input.text,
+                 input.formula,
                  y[i]);
         if (i > 0 && !(x[i] > x[i - 1]))
-          refuse(input.entry,
+          refuse(input.formula_entry,
                  "row {} of \"{}\" has {} = {:g} after {:g}, but increasing numbers are expected",
                  numbers.rows[i],
-                 input.text,
-                 input.variable,
+                 input.formula,
+                 variable,
                  x[i],
                  x[i - 1]);
       }
@@ -204,10 +153,10 @@ namespace crawler
     {
       for (std::size_t i = 0; i < values.size(); ++i)
         if (!(values[i] > 0.))
-          refuse(input.entry,
+          refuse(input.formula_entry,
                  "number {} of \"{}\" is {:g}, but a positive number is expected",
                  i + 1,
-                 input.text,
+                 input.formula,
                  values[i]);
       return table_profile(equal_parts(0., length, values.size() - 1), values, "numbers", input);
     }
@@ -215,13 +164,12 @@ namespace crawler
     std::shared_ptr<const Profile>
     read_any_profile(const ProfileInput &input, const double length, const double end_time)
     {
-      if (input.text.ends_with(".csv"))
+      if (input.formula.ends_with(".csv"))
         return read_table(input);
-      if (input.variable == "s" && input.text.find(',') != std::string::npos)
-        if (const auto values = to_numbers(input.text))
+      if (input.variables.front() == "s" && input.formula.find(',') != std::string::npos)
+        if (const auto values = to_numbers(input.formula))
           return list_profile(*values, length, input);
-      return std::make_shared<FormulaProfile>(read_formula(input.formula(), length, end_time),
-                                              input.variable == "s" ? length : 0.);
+      return formula_profile(read_formula(input, length, end_time), input.variables.front() == "s" ? length : 0.);
     }
   } // namespace
 
@@ -245,7 +193,7 @@ namespace crawler
   std::shared_ptr<const Profile>
   read_profile(const ProfileInput &input, const double length, const double end_time)
   {
-    if (to_number(input.text) == 1.)
+    if (to_number(input.formula) == 1.)
       return nullptr;
     const auto profile = read_any_profile(input, length, end_time);
     require_positive([&](const double x) { return profile->value(x); }, 0., length, input);
@@ -253,26 +201,41 @@ namespace crawler
   }
 
   std::shared_ptr<const Profile>
-  in_units(std::shared_ptr<const Profile> profile, const double unit)
+  in_units(const std::shared_ptr<const Profile> &profile, const double unit)
   {
-    return profile ? std::make_shared<ScaledProfile>(std::move(profile), unit) : nullptr;
+    if (!profile)
+      return nullptr;
+    std::vector<double> breaks = profile->breaks();
+    for (double &x : breaks)
+      x /= unit;
+    return std::make_shared<Profile>(
+      [profile, unit, scaled = std::vector<double>()](
+        const std::span<const double> x, const std::span<double> f, const std::span<double> slope) mutable {
+        scaled.assign(x.begin(), x.end());
+        for (double &value : scaled)
+          value *= unit;
+        profile->values(scaled, f, slope);
+        for (double &value : slope)
+          value *= unit;
+      },
+      std::move(breaks));
   }
 
   void
   require_positive(const std::function<double(double)> &factor,
                    const double from,
                    const double to,
-                   const ProfileInput &input)
+                   const FormulaInput &input)
   {
     constexpr unsigned int n = 1000;
     for (const double x : equal_parts(from, to, n))
       if (const double f = factor(x); !(std::isfinite(f) && f > 0.))
-        refuse(input.entry,
+        refuse(input.formula_entry,
                "the {} \"{}\" is {} at {} = {:g}; a positive number is expected",
                input.quantity,
-               input.text,
+               input.formula,
                f,
-               input.variable,
+               input.variables.front(),
                x);
   }
 } // namespace crawler

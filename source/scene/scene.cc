@@ -33,8 +33,8 @@ namespace crawler
         , pieces_(pieces)
       {
         if (stress.prescribed_strain() != nullptr)
-          facts_.prescribed_strain = std::make_shared<ScaledActiveStress>(
-            *stress.prescribed_strain(), Units{units.length, units.time, /*force=*/1.}, nullptr);
+          facts_.prescribed_strain =
+            in_units(*stress.prescribed_strain(), Units{units.length, units.time, /*force=*/1.});
         if (const StretchFeedback *feedback = stress.feedback())
           facts_.feedback = StretchFeedback{{feedback->facts.uses_rate,
                                              feedback->facts.distance / units.length,
@@ -67,7 +67,7 @@ namespace crawler
         auto bounds = stress_.bounds(
           {box.s_from * units_.length, box.s_to * units_.length, box.t_from * units_.time, box.t_to * units_.time});
         if (bounds)
-          *bounds = {bounds->value / units_.force, bounds->rate * units_.time / units_.force};
+          *bounds = {bounds->value / std::abs(units_.force), bounds->rate * units_.time / std::abs(units_.force)};
         return bounds;
       }
 
@@ -252,6 +252,12 @@ namespace crawler
         strongest));
   }
 
+  std::unique_ptr<const ActiveStress>
+  in_units(const ActiveStress &stress, const Units &units, const TimeSegments *pieces)
+  {
+    return std::make_unique<ScaledActiveStress>(stress, units, pieces);
+  }
+
   Scene
   in_units(const Scene &scene, const Units &units, const TimeSegments *pieces)
   {
@@ -261,7 +267,7 @@ namespace crawler
     scaled.body.elastic_modulus /= units.force;
     scaled.body.friction_coefficient /= friction;
     scaled.friction      = scene.friction->scaled(1. / friction);
-    scaled.active_stress = std::make_unique<ScaledActiveStress>(*scene.active_stress, units, pieces);
+    scaled.active_stress = in_units(*scene.active_stress, units, pieces);
     scaled.end_time /= units.time;
     for (auto *const profile : {&scaled.profiles.elastic_modulus,
                                 &scaled.profiles.friction,

@@ -50,7 +50,8 @@ namespace crawler
   private:
     const LaneMethod method_;
     const ReferenceElement &element_;
-    std::vector<double> sizes_, sample_places_, samples_;
+    std::vector<double> sizes_;
+    const std::vector<double> &sample_places_; ///< in a cell
   };
 
   /// Dense output: the state at a time of the step, [unknowns] (in natural units).

@@ -92,8 +92,12 @@ namespace crawler
             double tolerance,
             const std::function<bool()> &keep_going = {});
 
-  /// Adds the time integrals from @p start to @p end (one panel of Gauss points) to @p energies; returns the change of
-  /// the displacement.
+  /// Adds the works from @p start to @p end, by one panel of Gauss points, to @p energies; returns the change of the
+  /// displacement. @p see gets the state at each of the points and its weight.
   double
-  advance(KinematicBody &body, double start, double end, EnergyBalance &energies);
+  advance(KinematicBody &body,
+          double start,
+          double end,
+          EnergyBalance &energies,
+          const std::function<void(const KinematicBody::Integrals &now, double weight)> &see = {});
 } // namespace crawler

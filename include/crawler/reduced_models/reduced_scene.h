@@ -23,9 +23,9 @@ namespace crawler
     /// Optimal wave; nothing for other active stresses. The perturbation level needs it.
     std::optional<NaturalWave> wave;
 
-    /// Strain of the kinematic level: the prescribed one, that of the optimal wave to leading order, or that of a stiff
-    /// body, -m/k. Null if the rate of the active stress is not known, or the stress jumps, so that the level does not
-    /// fit.
+    /// Strain of the kinematic level: the prescribed one, that of the optimal wave to leading order, or that of a body
+    /// so stiff that its elastic force balances the active stress at any time, -m/k. Null if the rate of the active
+    /// stress is not known, or the stress jumps, so that the level does not fit.
     const ActiveStress *strain = nullptr;
 
     /// True if that strain is the body's by definition.
@@ -40,6 +40,6 @@ namespace crawler
     model_errors() const;
 
   private:
-    std::optional<StressByFunctions> approximate_; ///< strain, if none is prescribed
+    std::unique_ptr<const ActiveStress> approximate_; ///< strain, if none is prescribed
   };
 } // namespace crawler

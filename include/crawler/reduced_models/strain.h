@@ -37,9 +37,4 @@ namespace crawler
   /// q(s+ct) - sin q s) + b (cos q(s+ct) - cos q s).
   StressByFunctions
   leading_order_strain(const NaturalWave &wave);
-
-  /// Strain of a body so stiff that its elastic force balances the active stress at any time: e = -m/k. @p scene must
-  /// outlive it, and its active stress must know its rate.
-  StressByFunctions
-  stiff_strain(const Scene &scene);
 } // namespace crawler

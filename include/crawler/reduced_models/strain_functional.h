@@ -63,10 +63,13 @@ namespace crawler
     weights(Number number, const StrainSamples &samples, const BodyAtPoints &body) const;
 
   private:
-    struct State;
-    /// Finds the state at one time; false if a stretch is not positive.
+    /// Finds motion and active stress at one time; false if a stretch is not positive.
     bool
-    evaluate(std::size_t time, const StrainSamples &samples, const BodyAtPoints &body, State &state) const;
+    evaluate(std::size_t time,
+             const StrainSamples &samples,
+             const BodyAtPoints &body,
+             GivenMotion &motion,
+             std::vector<double> &m) const;
 
     const GaussPanels space_, time_;
     const std::size_t n_; ///< points of the quadrature over the body

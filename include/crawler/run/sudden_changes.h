@@ -46,9 +46,8 @@ namespace crawler
     look_at_next_start();
 
     const Units units_;
-    const double cell_, a_, k_; ///< in natural units
-    const std::pair<double, double> end_moduli_;
-    std::vector<double> starts_, moduli_; ///< times when the stress may jump; k at both sides of the breaks in space
+    const double cell_, a_, k_;           ///< in natural units
+    std::vector<double> starts_, moduli_; ///< times when the stress may jump; k where the stress is
     std::size_t next_  = 0;               ///< index of the next start
     double thin_until_ = 0.;
     std::vector<double> m_;

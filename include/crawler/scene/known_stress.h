@@ -3,7 +3,9 @@
 
 #include <crawler/scene/active_stress.h>
 
-#include <concepts>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -12,7 +14,7 @@ namespace crawler
   // Evaluators of active stresses and feedback at points, made of functions that keep whatever does not depend
   // on time.
 
-  /// An evaluator by a function of the arguments of its values(), or by such a member of an object.
+  /// An evaluator by a function of the arguments of its values().
   template <typename Interface, typename Function, typename... Arguments>
   class EvaluatorByFunction : public Interface
   {
@@ -24,23 +26,47 @@ namespace crawler
     void
     values(Arguments... arguments) override
     {
-      if constexpr (std::invocable<Function &, Arguments...>)
-        function_(arguments...);
-      else
-        function_.values(arguments...);
+      function_(arguments...);
     }
 
   private:
     Function function_;
   };
 
-  /// Makes an evaluator from a function of t [time] and of the list that receives m, or from its values().
+  /// Makes an evaluator from a function of t [time] and of the list that receives m.
   template <typename Function>
   std::unique_ptr<ActiveStressAtPoints>
   stress_at_points(Function function)
   {
     return std::make_unique<EvaluatorByFunction<ActiveStressAtPoints, Function, double, std::span<double>>>(
       std::move(function));
+  }
+
+  /**
+   * Makes an evaluator of a sum of waves, which keeps the sines and cosines at the points: factors(i, t) are the
+   * constant part of wave i and the factors of sin(q_i s) and cos(q_i s).
+   */
+  template <typename Factors>
+  std::unique_ptr<ActiveStressAtPoints>
+  waves_at_points(const std::vector<double> &q, const std::vector<double> &points, Factors factors)
+  {
+    std::vector<double> sine, cosine; // [wave][point]
+    for (const double q_i : q)
+      for (const double s : points)
+      {
+        sine.push_back(std::sin(q_i * s));
+        cosine.push_back(std::cos(q_i * s));
+      }
+    return stress_at_points([n = q.size(), sine, cosine, factors](const double t, const std::span<double> m) {
+      std::fill(m.begin(), m.end(), 0.);
+      for (std::size_t i = 0; i < n; ++i)
+      {
+        const auto [constant, of_sine, of_cosine] = factors(i, t);
+        const std::size_t first                   = i * m.size();
+        for (std::size_t p = 0; p < m.size(); ++p)
+          m[p] += constant + of_cosine * cosine[first + p] + of_sine * sine[first + p];
+      }
+    });
   }
 
   /// Makes an evaluator from a function of t, the stretch seen and the stress wanted.

@@ -15,44 +15,47 @@ namespace crawler
   class Profile
   {
   public:
-    virtual ~Profile() = default;
+    using Values = std::function<void(std::span<const double> x, std::span<double> f, std::span<double> slope)>;
+
+    Profile(Values values, std::vector<double> breaks)
+      : values_(std::move(values))
+      , breaks_(std::move(breaks))
+    {
+    }
 
     /// Writes the factor [1] at the places @p x [length], and its derivative [1/length] unless @p slope is empty.
-    virtual void
-    values(std::span<const double> x, std::span<double> f, std::span<double> slope = {}) const = 0;
+    void
+    values(const std::span<const double> x, const std::span<double> f, const std::span<double> slope = {}) const
+    {
+      values_(x, f, slope);
+    }
 
     /// Places where the factor is known to have a jump or a kink [length].
-    virtual std::vector<double>
+    const std::vector<double> &
     breaks() const
     {
-      return {};
+      return breaks_;
     }
 
     double
     value(double x) const;
+
+  private:
+    const Values values_;
+    const std::vector<double> breaks_;
   };
 
   /// The factor at places; 1 where there is no profile.
   std::vector<double>
   profile_at(const std::shared_ptr<const Profile> &profile, const std::vector<double> &places);
 
-  /// A profile as written by the user: a formula, the name of a CSV file with two columns, or, along the body, a list
-  /// of its values at equally spaced places.
-  struct ProfileInput
+  /// A profile as written by the user: a formula of one variable, s or x, or instead of it the name of a CSV file (it
+  /// ends in .csv) with the columns of this variable and "value", or, along the body, a list of its values at equally
+  /// spaced places.
+  struct ProfileInput : FormulaInput
   {
-    std::string quantity;                ///< the quantity, for messages
-    std::string variable;                ///< s or x; also the first word of the file's header, "value" being the second
-    std::string text;                    ///< ends in .csv: a file
     std::string interpolation = "cubic"; ///< of a list or a file; or linear
     std::string outside       = "hold";  ///< of a file; or error
-    std::string entry;                   ///< full name of the entry
-    std::string constants = "", constants_entry = ""; ///< of a formula
-
-    FormulaInput
-    formula() const
-    {
-      return {quantity, text, constants, entry, constants_entry, {variable}};
-    }
   };
 
   /**
@@ -64,9 +67,9 @@ namespace crawler
 
   /// The profile in other units; @p unit is that of its places.
   std::shared_ptr<const Profile>
-  in_units(std::shared_ptr<const Profile> profile, double unit);
+  in_units(const std::shared_ptr<const Profile> &profile, double unit);
 
   /// Throws InputError unless the factor is positive and finite on a fine grid of @p from to @p to.
   void
-  require_positive(const std::function<double(double)> &factor, double from, double to, const ProfileInput &input);
+  require_positive(const std::function<double(double)> &factor, double from, double to, const FormulaInput &input);
 } // namespace crawler

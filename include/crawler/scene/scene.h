@@ -107,8 +107,12 @@ namespace crawler
   void
   require_well_posed_feedback(const Scene &scene);
 
-  /// The problem in other units. It refers to @p scene, which must outlive it. If @p pieces are given, which must
-  /// outlive it too, the active stress is that of the piece that is present at its evaluation.
+  /// An active stress in other units. It refers to @p stress, which must outlive it. If @p pieces are given, which must
+  /// outlive it too, it is that of the piece that is present at its evaluation.
+  std::unique_ptr<const ActiveStress>
+  in_units(const ActiveStress &stress, const Units &units, const TimeSegments *pieces = nullptr);
+
+  /// The problem in other units; it refers to @p scene as its active stress does.
   Scene
   in_units(const Scene &scene, const Units &units, const TimeSegments *pieces = nullptr);
 } // namespace crawler

@@ -22,14 +22,35 @@ namespace crawler
       .means("Time in which the stress grows by a smooth step from 0 at t = 0 to its full size.");
   }
 
-  Envelope::Envelope(const EnvelopeParameters &parameters, const std::string &section, const double length)
-    : start_(parameters.window_start)
-    , end_(parameters.window_end)
-    , edge_(parameters.window_edge)
-    , ramp_(parameters.ramp_duration)
-    , length_(length)
+  double
+  Ramp::value(const double t) const
   {
-    const double start = start_.value_or(0.), end = end_.value_or(length);
+    return end > 0. ? smooth_step(t / end) : 1.;
+  }
+
+  double
+  Ramp::rate(const double t) const
+  {
+    return end > 0. ? smooth_step_rate(t / end) / end : 0.;
+  }
+
+  ActiveStress::Bounds
+  Ramp::ramped(const ActiveStress::Bounds bounds, const double from, const double to) const
+  {
+    if (!(end > 0.))
+      return bounds;
+    const double largest = value(to), steepest = largest_smooth_step_rate(from / end, to / end) / end;
+    return {bounds.value * largest, bounds.rate * largest + bounds.value * steepest};
+  }
+
+  Window::Window(const EnvelopeParameters &parameters, const std::string &section, const double length)
+    : variable_('s')
+    , end_(length)
+    , edge_(parameters.window_edge)
+    , from_(parameters.window_start.value_or(-HUGE_VAL))
+    , to_(parameters.window_end.value_or(HUGE_VAL))
+  {
+    const double start = parameters.window_start.value_or(0.), end = parameters.window_end.value_or(length);
     if (end > length)
       refuse(section + "Window end",
              "the window ends at s = {:g}, but a place on the body, at most {:g}, is expected",
@@ -40,7 +61,7 @@ namespace crawler
              "the window starts at s = {:g}, but a place before its end, {:g}, is expected",
              start,
              end);
-    const int n_edges = (start_ ? 1 : 0) + (end_ ? 1 : 0);
+    const int n_edges = (parameters.window_start ? 1 : 0) + (parameters.window_end ? 1 : 0);
     if (n_edges * edge_ > (end - start) * (1. + 1e-12))
       refuse(section + "Window edge",
              "the edges of the window are {:g} wide, but at most {:g} is expected for a window "
@@ -51,48 +72,12 @@ namespace crawler
              end);
   }
 
-  double
-  Envelope::window(const double s) const
-  {
-    if (edge_ == 0.)
-      return (start_ && s < *start_) || (end_ && s > *end_) ? 0. : 1.;
-    return (start_ ? smooth_step((s - *start_) / edge_) : 1.) * (end_ ? smooth_step((*end_ - s) / edge_) : 1.);
-  }
-
-  double
-  Envelope::ramp(const double t) const
-  {
-    return ramp_ > 0. ? smooth_step(t / ramp_) : 1.;
-  }
-
-  double
-  Envelope::ramp_rate(const double t) const
-  {
-    return ramp_ > 0. ? smooth_step_rate(t / ramp_) / ramp_ : 0.;
-  }
-
-  ActiveStress::Bounds
-  Envelope::ramped(const ActiveStress::Bounds bounds, const double from, const double to) const
-  {
-    if (!(ramp_ > 0.))
-      return bounds;
-    const double largest = ramp(to), rate = largest_smooth_step_rate(from / ramp_, to / ramp_) / ramp_;
-    return {bounds.value * largest, bounds.rate * largest + bounds.value * rate};
-  }
-
-  std::vector<double>
-  Envelope::breaks_in_space() const
-  {
-    return edge_ == 0. ? within({start_.value_or(0.), end_.value_or(length_)}, length_) : std::vector<double>();
-  }
-
   Window::Window(const WindowEntries &entries, const char variable, const std::string &section, const double end)
     : variable_(variable)
     , end_(end)
-    , is_everywhere_(entries.interval.empty())
     , edge_(entries.edge_width)
   {
-    if (is_everywhere_)
+    if (entries.interval.empty())
       return;
     const std::string entry = fmt::format("{}Window in {}", section, variable),
                       name  = fmt::format("Window in {}", variable);
@@ -120,8 +105,6 @@ namespace crawler
   double
   Window::value(const double x) const
   {
-    if (is_everywhere_)
-      return 1.;
     if (edge_ == 0.) // of two adjacent windows only one includes the common end
       return x >= from_ && (x < to_ || to_ >= end_) ? 1. : 0.;
     return smooth_step((x - from_) / edge_) * smooth_step((to_ - x) / edge_);
@@ -130,7 +113,7 @@ namespace crawler
   double
   Window::rate(const double x) const
   {
-    if (is_everywhere_ || edge_ == 0.)
+    if (edge_ == 0.)
       return 0.;
     const double up = (x - from_) / edge_, down = (to_ - x) / edge_;
     return (smooth_step_rate(up) * smooth_step(down) - smooth_step(up) * smooth_step_rate(down)) / edge_;
@@ -139,9 +122,9 @@ namespace crawler
   std::pair<double, double>
   Window::largest(const double from, const double to) const
   {
-    if (!is_everywhere_ && (to < from_ || from > to_))
+    if (to < from_ || from > to_)
       return {0., 0.};
-    if (is_everywhere_ || edge_ == 0.)
+    if (edge_ == 0.)
       return {1., 0.};
     const double up   = largest_smooth_step_rate((from - from_) / edge_, (to - from_) / edge_),
                  down = largest_smooth_step_rate((to_ - to) / edge_, (to_ - from) / edge_);
@@ -151,7 +134,7 @@ namespace crawler
   std::vector<double>
   Window::ends() const
   {
-    return is_everywhere_ ? std::vector<double>() : within({from_, to_}, end_);
+    return within({from_, to_}, end_);
   }
 
   double

@@ -50,7 +50,8 @@ namespace crawler
   {
     const std::vector<double> points = off_breaks_at_ends(places, facts_.breaks_in_space, length_);
     if (!rate)
-      return stress_at_points(FormulaAtPoints(compiled_, points));
+      return stress_at_points([at = FormulaAtPoints(compiled_, points)](
+                                const double t, const std::span<double> m) mutable { at.values(t, m); });
     return stress_at_points([points, m = std::vector<double>(points.size()), gradient = FormulaGradient(compiled_)](
                               const double t, const std::span<double> m_t) mutable {
       gradient.evaluate(

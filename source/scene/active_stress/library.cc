@@ -57,100 +57,54 @@ namespace crawler
       failures.latest = fmt::format("the plug-in \"{}\" {}", failures.plugin, what);
     }
 
-    /// A guarded evaluator of the plug-in: errors become failures.
-    class Guarded
-    {
-    public:
-      /// Makes evaluators for some points, one or all.
-      using Make = std::function<std::unique_ptr<ActiveStressAtPoints>(const std::vector<double> &)>;
-
-      /// Makes the evaluator; null, and a failure, if that throws. @p maker is the name of the plug-in's function that
-      /// @p make calls, @p name that of the values.
-      Guarded(std::shared_ptr<LibraryFailures> failures,
-              Make make,
-              const std::string &maker,
-              std::string name,
-              const std::vector<double> &points)
-        : failures_(std::move(failures))
-        , make_(std::move(make))
-        , name_(std::move(name))
-        , points_(points)
-      {
-        const auto thrown = thrown_by([&]() { at_points_ = make_(points); });
-        if (thrown)
-          fail(*failures_, fmt::format("threw an exception in {}: {}", maker, *thrown));
-        else if (!at_points_)
-          fail(*failures_, fmt::format("returned no evaluator in {}", maker));
-      }
-
-      /// Writes the values; all are NaN if the plug-in throws, or writes one that is not finite.
-      void
-      values(const double t, const std::span<double> result)
-      {
-        if (!is_well(t, result))
-          std::fill(result.begin(), result.end(), NAN);
-      }
-
-    private:
-      bool
-      is_well(const double t, const std::span<double> result) const
-      {
-        if (!at_points_) // has been reported already
-        {
-          ++failures_->count;
-          return false;
-        }
-        if (const auto thrown = thrown_by([&]() { at_points_->values(t, result); }))
-        {
-          // Place of the failure: the first point that throws on its own.
-          const auto place = std::find_if(points_.begin(), points_.end(), [&](const double s) {
-            double value = 0.;
-            return thrown_by([&]() { make_({s})->values(t, {&value, 1}); }).has_value();
-          });
-          fail(*failures_,
-               fmt::format("threw an exception in {} at {}t = {:.9g}: {}",
-                           name_,
-                           place != points_.end() ? fmt::format("s = {:.9g}, ", *place) : "",
-                           t,
-                           *thrown));
-          return false;
-        }
-        const auto bad =
-          std::find_if_not(result.begin(), result.end(), [](const double value) { return std::isfinite(value); });
-        if (bad == result.end())
-          return true;
-        fail(*failures_,
-             fmt::format("returned {} in {} at s = {:.9g}, t = {:.9g}; a finite number is expected",
-                         *bad,
-                         name_,
-                         points_[static_cast<std::size_t>(bad - result.begin())],
-                         t));
-        return false;
-      }
-
-      std::shared_ptr<LibraryFailures> failures_;
-      Make make_;
-      std::string name_;
-      std::vector<double> points_;
-      std::unique_ptr<ActiveStressAtPoints> at_points_;
-    };
-
-    /// Makes a guarded evaluator of a stress of the plug-in or of its strain; @p whose follows names in messages.
+    /// Makes an evaluator of a stress of the plug-in, or of its strain, whose errors become failures: then all values
+    /// are NaN. @p whose follows names in messages.
     std::unique_ptr<ActiveStressAtPoints>
     guarded(const std::shared_ptr<LibraryFailures> &failures,
             const ActiveStress &stress,
-            const char *whose,
+            const std::string &whose,
             const std::vector<double> &points,
             const bool rate)
     {
-      return stress_at_points(Guarded(
-        failures,
-        [&stress, rate](const std::vector<double> &places) {
-          return rate ? stress.rate_at(places) : stress.at(places);
-        },
-        (rate ? "rate_at()" : "at()") + std::string(whose),
-        (rate ? "values() of the rate" : "values()") + std::string(whose),
-        points));
+      const auto make = [&stress, rate](const std::vector<double> &places) {
+        return rate ? stress.rate_at(places) : stress.at(places);
+      };
+      const std::string maker = (rate ? "rate_at()" : "at()") + whose,
+                        name  = (rate ? "values() of the rate" : "values()") + whose;
+      std::shared_ptr<ActiveStressAtPoints> at_points;
+      if (const auto thrown = thrown_by([&]() { at_points = make(points); }))
+        fail(*failures, fmt::format("threw an exception in {}: {}", maker, *thrown));
+      else if (!at_points)
+        fail(*failures, fmt::format("returned no evaluator in {}", maker));
+      return stress_at_points([=](const double t, const std::span<double> m) {
+        const unsigned long n_before = failures->count;
+        const auto is_finite         = [](const double value) { return std::isfinite(value); };
+        if (!at_points) // has been reported already
+          ++failures->count;
+        else if (const auto thrown = thrown_by([&]() { at_points->values(t, m); }))
+        {
+          // Place of the failure: the first point that throws on its own.
+          const auto place = std::ranges::find_if(points, [&](const double s) {
+            double value = 0.;
+            return thrown_by([&]() { make({s})->values(t, {&value, 1}); }).has_value();
+          });
+          fail(*failures,
+               fmt::format("threw an exception in {} at {}t = {:.9g}: {}",
+                           name,
+                           place != points.end() ? fmt::format("s = {:.9g}, ", *place) : "",
+                           t,
+                           *thrown));
+        }
+        else if (const auto bad = std::ranges::find_if_not(m, is_finite); bad != m.end())
+          fail(*failures,
+               fmt::format("returned {} in {} at s = {:.9g}, t = {:.9g}; a finite number is expected",
+                           *bad,
+                           name,
+                           points[static_cast<std::size_t>(bad - m.begin())],
+                           t));
+        if (failures->count > n_before)
+          std::fill(m.begin(), m.end(), NAN);
+      });
     }
 
     /// Notes a failure at the first of the numbers @p m that is not finite.

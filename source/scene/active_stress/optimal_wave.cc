@@ -17,13 +17,6 @@ namespace crawler
   namespace
   {
     const std::string section = "Active stress/Optimal wave/";
-
-    /// A harmonic; the parts that depend on s are computed once.
-    struct Harmonic
-    {
-      double q, a, b;
-      std::vector<double> sine, cosine; ///< of q s at the points
-    };
   } // namespace
 
   void
@@ -166,36 +159,25 @@ namespace crawler
   std::unique_ptr<ActiveStressAtPoints>
   OptimalWave::evaluator(const std::vector<double> &points, bool) const
   {
-    std::vector<Harmonic> harmonics;
+    std::vector<unsigned int> numbers; // of the harmonics that are there
+    std::vector<double> q;
     for (unsigned int n = 1; n <= shape_.a.size(); ++n)
-    {
-      if (shape_.power(n) == 0.)
-        continue;
-      Harmonic harmonic{2. * std::numbers::pi * n / body_.length, shape_.a[n - 1], shape_.b[n - 1], {}, {}};
-      for (const double s : points)
+      if (shape_.power(n) != 0.)
       {
-        harmonic.sine.push_back(std::sin(harmonic.q * s));
-        harmonic.cosine.push_back(std::cos(harmonic.q * s));
+        numbers.push_back(n);
+        q.push_back(2. * std::numbers::pi * n / body_.length);
       }
-      harmonics.push_back(std::move(harmonic));
-    }
-    return stress_at_points([this, harmonics = std::move(harmonics)](const double t, const std::span<double> m) {
-      const double c = wave_.speed;
-      std::fill(m.begin(), m.end(), 0.);
-      for (const Harmonic &wave : harmonics)
-      {
-        // Expansion of sin q(s+ct) and cos q(s+ct) in the formula of the class: constant + cosine cos qs + sine sin qs.
-        const double theta = wave.q * c * t;
-        const double st = std::sin(theta), ct = std::cos(theta);
-        const double half = std::sin(0.5 * theta), ct_minus_1 = -2. * half * half;
-        const double friction = chi_ * body_.friction_coefficient / wave.q;
-        const double elastic  = chi_ * body_.elastic_modulus / c;
-        const double constant = friction * (wave.a * ct - wave.b * st);
-        const double cosine   = -constant - elastic * (wave.a * st + wave.b * ct_minus_1);
-        const double sine     = friction * (wave.a * st + wave.b * ct) - elastic * (wave.a * ct_minus_1 - wave.b * st);
-        for (std::size_t i = 0; i < m.size(); ++i)
-          m[i] += constant + cosine * wave.cosine[i] + sine * wave.sine[i];
-      }
+    return waves_at_points(q, points, [this, numbers, q](const std::size_t i, const double t) {
+      // Expansion of sin q(s+ct) and cos q(s+ct) in the formula of the class: constant + cosine cos qs + sine sin qs.
+      const double c = wave_.speed, theta = q[i] * c * t, a = shape_.a[numbers[i] - 1], b = shape_.b[numbers[i] - 1];
+      const double st = std::sin(theta), ct = std::cos(theta);
+      const double half = std::sin(0.5 * theta), ct_minus_1 = -2. * half * half;
+      const double friction = chi_ * body_.friction_coefficient / q[i];
+      const double elastic  = chi_ * body_.elastic_modulus / c;
+      const double constant = friction * (a * ct - b * st);
+      const double cosine   = -constant - elastic * (a * st + b * ct_minus_1);
+      const double sine     = friction * (a * st + b * ct) - elastic * (a * ct_minus_1 - b * st);
+      return std::array<double, 3>{{constant, sine, cosine}};
     });
   }
 

@@ -158,38 +158,37 @@ namespace crawler
                                      const Scene &scene,
                                      std::unique_ptr<const ActiveStress> generator)
     : scene_(scene)
-    , given_by_(parameters.given_by)
-    , is_generated_(parameters.is_generated())
+    , parameters_(parameters)
     , strain_(create_strain(parameters, scene.body.length, scene.end_time, std::move(generator)))
   {
     const double phase_rate = parameters.wave_number * parameters.wave_speed / scene.body.length;
-    if (given_by_ == "wave" && parameters.amplitude != 0. && phase_rate != 0.)
+    if (parameters_.given_by == "wave" && parameters.amplitude != 0. && phase_rate != 0.)
       facts_.repetition = {1. / std::abs(phase_rate), 0.};
     facts_.has_rate          = false;
     facts_.breaks_in_space   = strain_->breaks_in_space();
     facts_.breaks_in_time    = strain_->breaks_in_time();
     facts_.prescribed_strain = strain_;
-    if (is_generated_)
+    if (parameters_.is_generated())
     {
       facts_.search = [this]() { return strain_->repetition(); };
-      require_usable_generator(scene.end_time);
+      require_usable_generator();
     }
-    require_admissible_strain(scene.end_time);
-    choose_panels(scene.end_time);
+    require_admissible_strain();
+    choose_panels();
   }
 
   /// Throws InputError if the strain jumps at a break of the generator.
   void
-  PrescribedStrain::require_usable_generator(const double end_time) const
+  PrescribedStrain::require_usable_generator() const
   {
     constexpr unsigned int n = 33;
     constexpr double beside = 1e-9, jump = 1e-6;
-    const double L = scene_.body.length, size = sampled_bounds(*strain_, {0., L, 0., end_time}, n, n).value;
+    const double L = scene_.body.length, size = sampled_bounds(*strain_, {0., L, 0., scene_.end_time}, n, n).value;
     const auto refuse = [&](const char *variable, const double place) {
       crawler::refuse(prescribed_strain_section + "Given by",
                       "Given by is {}, whose values jump at {} = {:g}; a strain without jumps is expected (give "
                       "fronts and edges a width)",
-                      given_by_,
+                      parameters_.given_by,
                       variable,
                       place);
     };
@@ -197,8 +196,8 @@ namespace crawler
     std::vector<double> e(n), after(n);
     for (const double t : facts_.breaks_in_time)
     {
-      at_points->values(t - beside * end_time, e);
-      at_points->values(t + beside * end_time, after);
+      at_points->values(t - beside * scene_.end_time, e);
+      at_points->values(t + beside * scene_.end_time, after);
       for (unsigned int i = 0; i < n; ++i)
         if (std::abs(after[i] - e[i]) > jump * size)
           refuse("t", t);
@@ -207,7 +206,7 @@ namespace crawler
     {
       const auto sides = strain_->at({s - beside * L, s + beside * L});
       std::array<double, 2> values{};
-      for (const double t : equal_parts(0., end_time, n - 1))
+      for (const double t : equal_parts(0., scene_.end_time, n - 1))
       {
         sides->values(t, values);
         if (std::abs(values[1] - values[0]) > jump * size)
@@ -217,15 +216,15 @@ namespace crawler
   }
 
   void
-  PrescribedStrain::require_admissible_strain(const double end_time)
+  PrescribedStrain::require_admissible_strain()
   {
     constexpr unsigned int n = 161;
-    extremes_                = find_extremes(*strain_, scene_.body.length, end_time, n, n);
+    extremes_                = find_extremes(*strain_, scene_.body.length, scene_.end_time, n, n);
     const auto &[e, s, t]    = extremes_.smallest;
-    const std::string entry  = prescribed_strain_section + (given_by_ == "wave"    ? "Amplitude"
-                                                            : given_by_ == "table" ? "File"
-                                                            : is_generated_        ? "Given by"
-                                                                                   : "Strain");
+    const std::string entry  = prescribed_strain_section + (parameters_.given_by == "wave"    ? "Amplitude"
+                                                            : parameters_.given_by == "table" ? "File"
+                                                            : parameters_.is_generated()      ? "Given by"
+                                                                                              : "Strain");
     if (!std::isfinite(e))
       refuse(entry, "the strain is {} at s = {:.6g}, t = {:.6g}; a finite number is expected", e, s, t);
     if (!(1. + e > 0.))
@@ -247,7 +246,7 @@ namespace crawler
              "the friction law has no positive value at the stretch {:.6g}, which this strain "
              "reaches; smaller strains, or another law, are expected",
              *stretch);
-    if (const auto jump = find_jump(*strain_, scene_.body.length, end_time))
+    if (const auto jump = find_jump(*strain_, scene_.body.length, scene_.end_time))
       refuse(entry,
              "the strain at s = {:.6g} changes by {:.6g} from t = {:.6g} to {:.6g}, but the integral "
              "of its rate is {:.6g}; a strain without jumps in time is expected",
@@ -261,7 +260,7 @@ namespace crawler
   /// Doubles the panels, which end at breaks of strain and profiles, until the stress changes by no more than round-off
   /// at some times.
   void
-  PrescribedStrain::choose_panels(const double end_time)
+  PrescribedStrain::choose_panels()
   {
     constexpr unsigned int most      = 512;
     constexpr double tolerance       = 1e-13;
@@ -278,8 +277,8 @@ namespace crawler
       double change = 0., largest = 0.;
       for (const double part : {0.03, 0.21, 0.47, 0.71, 0.95})
       {
-        now->values(part * end_time, coarse);
-        next->values(part * end_time, fine);
+        now->values(part * scene_.end_time, coarse);
+        next->values(part * scene_.end_time, fine);
         for (std::size_t i = 0; i < fine.size(); ++i)
         {
           change  = std::max(change, std::abs(fine[i] - coarse[i]));
@@ -301,7 +300,7 @@ namespace crawler
   PrescribedStrain::report(std::ostream &out) const
   {
     out << fmt::format("Strain given by {}: {:.6g} (s = {:.4g}, t = {:.4g}) to {:.6g} (s = {:.4g}, t = {:.4g})\n",
-                       given_by_,
+                       parameters_.given_by,
                        extremes_.smallest.strain,
                        extremes_.smallest.s,
                        extremes_.smallest.t,

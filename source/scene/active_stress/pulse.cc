@@ -63,12 +63,13 @@ namespace crawler
     , period_(parameters.repetition_period)
     , start_(parameters.start_position.value_or(sign_of(parameters.direction) > 0. ? -reach_ : length + reach_))
     , length_(length)
-    , envelope_(parameters.envelope, pulse_section, length)
+    , window_(parameters.envelope, pulse_section, length)
+    , ramp_{parameters.envelope.ramp_duration}
   {
     require_reachable_body(end_time);
     if (amplitude_ != 0. && period_ != 0.)
-      facts_.repetition = {period_, envelope_.ramp_end()};
-    facts_.breaks_in_space = envelope_.breaks_in_space();
+      facts_.repetition = {period_, ramp_.end};
+    facts_.breaks_in_space = window_.breaks();
   }
 
   /// Throws InputError if pulses are too narrow, overlap too much, or a single one never reaches the body.
@@ -108,10 +109,10 @@ namespace crawler
   {
     std::vector<double> window;
     for (const double s : points)
-      window.push_back(envelope_.window(s));
+      window.push_back(window_.value(s));
     return stress_at_points([this, rate, points, window](const double t, const std::span<double> m) {
       std::fill(m.begin(), m.end(), 0.);
-      const double ramp = envelope_.ramp(t), grow = envelope_.ramp_rate(t);
+      const double ramp = ramp_.value(t), grow = ramp_.rate(t);
       const double of_value = amplitude_ * (rate ? grow : ramp);
       const double of_slope = rate ? -amplitude_ * ramp * velocity_ / width_ : 0.;
       const double P        = period_;
@@ -173,7 +174,7 @@ namespace crawler
       for (double j = first; j <= last; ++j)
         add_pulse(start_ - j * d);
     }
-    return envelope_.ramped(sum, box.t_from, box.t_to);
+    return ramp_.ramped(sum, box.t_from, box.t_to);
   }
 
   void

@@ -87,7 +87,7 @@ namespace crawler
   Segments::Segments(const SegmentsParameters &parameters, const double length, const double end_time)
     : parameters_(parameters)
     , length_(length)
-    , envelope_({{}, {}, /*window_edge=*/0., parameters.ramp_duration}, segments_section, length)
+    , ramp_{parameters.ramp_duration}
   {
     const auto &p = parameters_;
     const auto n  = p.number;
@@ -103,7 +103,7 @@ namespace crawler
     }
 
     segments_         = create_segments();
-    facts_.repetition = {1. / p.frequency, envelope_.ramp_end()};
+    facts_.repetition = {1. / p.frequency, ramp_.end};
     for (std::size_t i = 1; i < segments_.size(); ++i)
     {
       facts_.breaks_in_space.push_back(segments_[i].first);
@@ -258,13 +258,13 @@ namespace crawler
     }
     std::vector<double> now(segments_.size() + 1, 0.);
     return stress_at_points([this, rate, segment, now](const double t, const std::span<double> m) mutable {
-      const double f = parameters_.frequency, ramp = envelope_.ramp(t);
+      const double f = parameters_.frequency, ramp = ramp_.value(t);
       for (std::size_t i = 0; i < segments_.size(); ++i)
       {
         const double x = f * t + segments_[i].phase;
         now[i]         = ramp * ((rate ? f : 1.) * signal(segments_[i], x, rate));
-        if (rate && envelope_.ramp_end() > 0.)
-          now[i] += envelope_.ramp_rate(t) * signal(segments_[i], x, /*rate=*/false);
+        if (rate && ramp_.end > 0.)
+          now[i] += ramp_.rate(t) * signal(segments_[i], x, /*rate=*/false);
       }
       for (std::size_t p = 0; p < segment.size(); ++p)
         m[p] = now[segment[p]];
@@ -294,7 +294,7 @@ namespace crawler
       const double rate = slope > 0. ? f * change * slope / width : 0.;
       largest           = {std::max(largest.value, value), std::max(largest.rate, rate)};
     }
-    return envelope_.ramped(largest, box.t_from, box.t_to);
+    return ramp_.ramped(largest, box.t_from, box.t_to);
   }
 
   void

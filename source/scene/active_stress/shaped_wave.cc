@@ -135,42 +135,28 @@ namespace crawler
     facts_.breaks_in_space = within(shape_.kinks(), body.length); // kinks at the start, V(s)
   }
 
+  /// Evaluates m, or m_t = chi [ gamma c ( V(s+ct) - V(ct) - (s/L) ( V(L+ct) - V(ct) ) ) - k V'(s+ct) ].
   std::unique_ptr<ActiveStressAtPoints>
   ShapedWave::evaluator(const std::vector<double> &points, const bool rate) const
   {
-    if (rate)
-      return rate_evaluator(points);
     std::vector<double> places = with_ends(points, body_.length), V(places.size()),
                         F      = V; // V and its integral at one time
     std::size_t panel          = 0;
     shape_.values_and_integrals(places, panel, V, F);
     return stress_at_points([=, this, start = V, x = places](const double t, const std::span<double> m) mutable {
       const double ct = speed_ * t, L = body_.length;
-      const double friction = chi_ * body_.friction_coefficient, elastic = chi_ * body_.elastic_modulus / speed_;
+      const double friction = chi_ * body_.friction_coefficient, elastic = chi_ * body_.elastic_modulus;
       for (std::size_t i = 0; i < x.size(); ++i)
         x[i] = places[i] + ct;
       shape_.values_and_integrals(x, panel, V, F);
-      const double tail = F[m.size()], mean = (F[m.size() + 1] - tail) / L;
-      for (std::size_t i = 0; i < m.size(); ++i)
-        m[i] = friction * (F[i] - tail - places[i] * mean) - elastic * (V[i] - start[i]);
-    });
-  }
-
-  /// Evaluator of m_t = chi [ gamma c ( V(s+ct) - V(ct) - (s/L) ( V(L+ct) - V(ct) ) ) - k V'(s+ct) ].
-  std::unique_ptr<ActiveStressAtPoints>
-  ShapedWave::rate_evaluator(const std::vector<double> &points) const
-  {
-    const std::vector<double> places = with_ends(points, body_.length);
-    return stress_at_points([=, this, x = places, V = places, F = places, panel = std::size_t(0)](
-                              const double t, const std::span<double> m) mutable {
-      const double ct = speed_ * t, L = body_.length;
-      const double friction = chi_ * body_.friction_coefficient * speed_, elastic = chi_ * body_.elastic_modulus;
-      for (std::size_t i = 0; i < x.size(); ++i)
-        x[i] = places[i] + ct;
-      shape_.values_and_integrals(x, panel, V, F);
-      const double tail = V[m.size()], head = V[m.size() + 1];
-      for (std::size_t i = 0; i < m.size(); ++i)
-        m[i] = friction * (V[i] - tail - places[i] / L * (head - tail)) - elastic * shape_.derivative(x[i], panel);
+      const std::size_t n = m.size(); // then both ends of the body
+      if (rate)
+        for (std::size_t i = 0; i < n; ++i)
+          m[i] = friction * speed_ * (V[i] - V[n] - places[i] / L * (V[n + 1] - V[n])) -
+                 elastic * shape_.derivative(x[i], panel);
+      else
+        for (std::size_t i = 0; i < n; ++i)
+          m[i] = friction * (F[i] - F[n] - places[i] * ((F[n + 1] - F[n]) / L)) - elastic / speed_ * (V[i] - start[i]);
     });
   }
 

@@ -128,7 +128,7 @@ namespace crawler
 
   TwoLevelWave::TwoLevelWave(const TwoLevelWaveParameters &parameters, const Scene &scene)
   try : PrescribedStrain({.given_by = "two-level wave"}, scene, strain_of(parameters, scene)), parameters_(parameters),
-    length_(scene.body.length), is_uniform_(scene.profiles.is_plain()), numbers_(numbers_of(parameters, scene))
+    numbers_(numbers_of(parameters, scene))
   {
   }
   catch (const InputError &error) // names entries of the travelling wave
@@ -152,8 +152,8 @@ namespace crawler
                        share,
                        parameters_.smallest_strain,
                        frequency,
-                       frequency * length_ / parameters_.wave_number);
-    if (is_uniform_)
+                       frequency * scene_.body.length / parameters_.wave_number);
+    if (scene_.profiles.is_plain())
       out << fmt::format("Displacement/sqrt(work * duration/(friction coefficient * length)) is {:.6g} for whole waves "
                          "at full strain; no gait with these strains exceeds {:.6g}\n",
                          merit,

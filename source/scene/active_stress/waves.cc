@@ -52,22 +52,21 @@ namespace crawler
     : parameters_(parameters)
     , length_(length)
     , end_time_(end_time)
-    , amplitude_(parameters.amplitude)
-    , offset_(parameters.offset)
     , wave_number_(parameters.wave_number / length)
     , phase_rate_(-sign_of(parameters.direction) * frequency_of(parameters, length))
     , start_(parameters.phase / (2. * pi))
     , profile_(parameters.profile, travelling_section)
-    , envelope_(parameters.envelope, travelling_section, length)
+    , window_(parameters.envelope, travelling_section, length)
+    , ramp_{parameters.envelope.ramp_duration}
   {
     require_countable_periods(std::abs(phase_rate_),
                               end_time,
                               profile_.jumps() && wave_number_ == 0.,
                               travelling_section + (parameters.given_by == "frequency" ? "Frequency" : "Wave speed"));
-    if (amplitude_ != 0. && phase_rate_ != 0.)
-      facts_.repetition = {1. / std::abs(phase_rate_), envelope_.ramp_end()};
+    if (parameters.amplitude != 0. && phase_rate_ != 0.)
+      facts_.repetition = {1. / std::abs(phase_rate_), ramp_.end};
     facts_.has_rate        = !(profile_.jumps() && phase_rate_ != 0.);
-    facts_.breaks_in_space = envelope_.breaks_in_space();
+    facts_.breaks_in_space = window_.breaks();
     if (phase_rate_ == 0.)
       for (const double s : times_of_jumps(profile_, wave_number_, start_, length))
         facts_.breaks_in_space.push_back(s);
@@ -83,21 +82,21 @@ namespace crawler
     std::vector<double> windows, sine, cosine;
     for (const double s : points)
     {
-      const double x = 2. * pi * (wave_number_ * s + start_), window = envelope_.window(s);
+      const double x = 2. * pi * (wave_number_ * s + start_), window = window_.value(s);
       windows.push_back(window);
       sine.push_back(window * std::sin(x));
       cosine.push_back(window * std::cos(x));
     }
     return stress_at_points([this, rate, windows, sine, cosine](const double t, const std::span<double> m) {
-      const double turns = phase_rate_ * t, theta = 2. * pi * (turns - std::floor(turns));
-      const double ramp = envelope_.ramp(t), st = std::sin(theta), ct = std::cos(theta);
-      double offset = ramp * offset_, of_sine = ramp * amplitude_ * ct, of_cosine = ramp * amplitude_ * st;
+      const double A = parameters_.amplitude, turns = phase_rate_ * t, theta = 2. * pi * (turns - std::floor(turns));
+      const double ramp = ramp_.value(t), st = std::sin(theta), ct = std::cos(theta);
+      double offset = ramp * parameters_.offset, of_sine = ramp * A * ct, of_cosine = ramp * A * st;
       if (rate)
       {
-        const double turn = ramp * amplitude_ * 2. * pi * phase_rate_, grow = envelope_.ramp_rate(t);
-        offset    = grow * offset_;
-        of_sine   = grow * amplitude_ * ct - turn * st;
-        of_cosine = grow * amplitude_ * st + turn * ct;
+        const double turn = ramp * A * 2. * pi * phase_rate_, grow = ramp_.rate(t);
+        offset    = grow * parameters_.offset;
+        of_sine   = grow * A * ct - turn * st;
+        of_cosine = grow * A * st + turn * ct;
       }
       for (std::size_t i = 0; i < m.size(); ++i)
         m[i] = offset * windows[i] + of_sine * sine[i] + of_cosine * cosine[i];
@@ -112,18 +111,19 @@ namespace crawler
     std::vector<double> window, x;
     for (const double s : points)
     {
-      window.push_back(envelope_.window(s));
+      window.push_back(window_.value(s));
       x.push_back(wave_number_ * s + start_);
     }
     return stress_at_points([this, rate, window, x](const double t, const std::span<double> m) {
-      const double turns = phase_rate_ * t, phase = turns - std::floor(turns), ramp = envelope_.ramp(t);
-      const double grow = envelope_.ramp_rate(t), turn = ramp * amplitude_ * phase_rate_;
+      const double turns = phase_rate_ * t, phase = turns - std::floor(turns), ramp = ramp_.value(t);
+      const double grow = ramp_.rate(t), A = parameters_.amplitude, offset = parameters_.offset,
+                   turn = ramp * A * phase_rate_;
       for (std::size_t i = 0; i < m.size(); ++i)
         if (!rate)
-          m[i] = window[i] * ramp * (offset_ + amplitude_ * profile_.value(x[i] + phase));
+          m[i] = window[i] * ramp * (offset + A * profile_.value(x[i] + phase));
         else
         {
-          const double value = grow == 0. ? 0. : offset_ + amplitude_ * profile_.value(x[i] + phase);
+          const double value = grow == 0. ? 0. : offset + A * profile_.value(x[i] + phase);
           m[i]               = window[i] * (grow * value + turn * profile_.rate(x[i] + phase));
         }
     });
@@ -166,41 +166,42 @@ namespace crawler
   }
 
   StandingWave::StandingWave(const StandingWaveParameters &parameters, const double length, const double end_time)
-    : amplitude_(parameters.amplitude)
-    , offset_(parameters.offset)
-    , wave_number_(2. * pi * parameters.wave_number / length)
-    , start_in_space_(parameters.phase_in_space)
-    , frequency_(parameters.frequency)
+    : parameters_(parameters)
+    , length_(length)
     , start_(parameters.phase / (2. * pi))
     , profile_(parameters.profile, standing_section)
-    , envelope_(parameters.envelope, standing_section, length)
+    , window_(parameters.envelope, standing_section, length)
+    , ramp_{parameters.envelope.ramp_duration}
   {
-    require_countable_periods(frequency_, end_time, profile_.jumps(), standing_section + "Frequency");
-    if (amplitude_ != 0. && frequency_ != 0.)
-      facts_.repetition = {1. / frequency_, envelope_.ramp_end()};
-    facts_.has_rate        = !(profile_.jumps() && frequency_ > 0.);
-    facts_.breaks_in_space = envelope_.breaks_in_space();
-    facts_.breaks_in_time  = times_of_jumps(profile_, frequency_, start_, end_time);
+    const double f = parameters.frequency;
+    require_countable_periods(f, end_time, profile_.jumps(), standing_section + "Frequency");
+    if (parameters.amplitude != 0. && f != 0.)
+      facts_.repetition = {1. / f, ramp_.end};
+    facts_.has_rate        = !(profile_.jumps() && f > 0.);
+    facts_.breaks_in_space = window_.breaks();
+    facts_.breaks_in_time  = times_of_jumps(profile_, f, start_, end_time);
   }
 
   std::unique_ptr<ActiveStressAtPoints>
   StandingWave::evaluator(const std::vector<double> &points, const bool rate) const
   {
+    const double q = 2. * pi * parameters_.wave_number / length_;
     std::vector<double> window, cosine;
     for (const double s : points)
     {
-      window.push_back(envelope_.window(s));
-      cosine.push_back(window.back() * std::cos(wave_number_ * s + start_in_space_));
+      window.push_back(window_.value(s));
+      cosine.push_back(window.back() * std::cos(q * s + parameters_.phase_in_space));
     }
     return stress_at_points([this, rate, window, cosine](const double t, const std::span<double> m) {
-      const double turns = frequency_ * t, x = turns - std::floor(turns) + start_;
-      const double ramp = envelope_.ramp(t), p = profile_.value(x);
-      double offset = ramp * offset_, factor = ramp * amplitude_ * p;
+      const double A = parameters_.amplitude, f = parameters_.frequency, turns = f * t,
+                   x    = turns - std::floor(turns) + start_;
+      const double ramp = ramp_.value(t), p = profile_.value(x);
+      double offset = ramp * parameters_.offset, factor = ramp * A * p;
       if (rate)
       {
-        const double grow = envelope_.ramp_rate(t);
-        offset            = grow * offset_;
-        factor            = amplitude_ * (grow * p + ramp * frequency_ * profile_.rate(x));
+        const double grow = ramp_.rate(t);
+        offset            = grow * parameters_.offset;
+        factor            = A * (grow * p + ramp * f * profile_.rate(x));
       }
       for (std::size_t i = 0; i < m.size(); ++i)
         m[i] = offset * window[i] + factor * cosine[i];

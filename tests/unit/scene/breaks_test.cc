@@ -71,7 +71,7 @@ TEST(Breaks, PiecesAreEvaluatedInside)
 TEST(Breaks, OfFormulasOfTheBody)
 {
   const auto expect = [](const std::string &formula, const std::vector<double> &places) {
-    const auto profile = read_profile({"friction", "s", formula, "cubic", "hold", "Body/Friction profile"}, 2., 1.);
+    const auto profile = read_profile({{"friction", formula, "", "Body/Friction profile", "", {"s"}}}, 2., 1.);
     test::expect_near(distinct_breaks_in_space(profile->breaks(), 2.), places, 1e-12, formula);
   };
   expect("s<0.571*L ? 1 : 0.325", {1.142});

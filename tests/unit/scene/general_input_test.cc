@@ -32,7 +32,8 @@ namespace
     std::shared_ptr<const Profile>
     table(const std::string &content, const std::string &interpolation, const std::string &outside = "hold")
     {
-      return read_profile({"profile", "x", file(content), interpolation, outside, "Ground/Profile"}, 1., 1.);
+      return read_profile(
+        {{"profile", file(content), "", "Ground/Profile", "", {"x"}}, interpolation, outside}, 1., 1.);
     }
     test::TemporaryFolder folder;
   };
@@ -119,7 +120,8 @@ TEST_F(ProfileFile, AListIsATableOverTheBody)
 {
   for (const char *interpolation : {"cubic", "linear"})
   {
-    const auto of_list = read_profile({"profile", "s", "2, 0.001, 0.001, 3", interpolation, "hold", "Body/X"}, 1.5, 1.);
+    const auto of_list =
+      read_profile({{"profile", "2, 0.001, 0.001, 3", "", "Body/X", "", {"s"}}, interpolation}, 1.5, 1.);
     const auto of_file = table("x,value\n0,2\n0.5,0.001\n1,0.001\n1.5,3\n", interpolation);
     for (double s = 0.; s <= 1.5; s += 0.01)
     {

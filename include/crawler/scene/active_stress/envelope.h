@@ -3,6 +3,7 @@
 
 #include <crawler/scene/active_stress.h>
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,46 +25,22 @@ namespace crawler
     add_parameters(Declarations &declarations);
   };
 
-  /**
-   * A factor window(s) ramp(t) of an active stress. The window is 1 from its start to its end and 0 outside; its edges
-   * are smooth steps (wave_entries.h) of a given width inside it, or jumps if the width is 0; a start or end that is
-   * not given has no edge. The ramp is a smooth step from 0 at t = 0 to 1 at the ramp's duration.
-   */
-  class Envelope
+  /// The factor ramp(t) of an active stress: a smooth step (wave_entries.h) from 0 at t = 0 to 1 at its end, or 1 if
+  /// that is 0.
+  struct Ramp
   {
-  public:
-    /// @p section is the path of the entries, with a slash at the end. Throws InputError if the window is empty,
-    /// reaches beyond the body, or is shorter than its edges.
-    Envelope(const EnvelopeParameters &parameters, const std::string &section, double length);
+    double end; ///< [time]
 
     double
-    window(double s) const;
+    value(double t) const;
 
+    /// Derivative [1/time].
     double
-    ramp(double t) const;
-
-    /// Derivative of the ramp [1/time].
-    double
-    ramp_rate(double t) const;
+    rate(double t) const;
 
     /// Bounds in [from, to] of the product of the ramp and a factor with @p bounds.
     ActiveStress::Bounds
     ramped(ActiveStress::Bounds bounds, double from, double to) const;
-
-    /// Time when the ramp ends [time]; 0 without one.
-    double
-    ramp_end() const
-    {
-      return ramp_;
-    }
-
-    /// Places in (0, L) where the window jumps [length].
-    std::vector<double>
-    breaks_in_space() const;
-
-  private:
-    const std::optional<double> start_, end_;
-    const double edge_, ramp_, length_;
   };
 
   /// An interval of s or of t as given by its entries; no numbers: everywhere.
@@ -76,7 +53,8 @@ namespace crawler
   /**
    * The factor W(x), 1 in the window [from, to] and 0 outside, with smooth steps S (wave_entries.h) of the edge width
    * inside both ends, W(x) = S((x - from)/width) S((to - x)/width), or jumps if the width is 0. A window that begins
-   * before 0 by the edge width, or ends as much after the end of the range, has no edge there.
+   * before 0 by the edge width, or ends as much after the end of the range, has no edge there; without interval it is 1
+   * everywhere.
    */
   class Window
   {
@@ -85,6 +63,10 @@ namespace crawler
     /// at the end. Throws InputError unless there are no or two numbers, increasing, that meet the range and leave room
     /// for edges.
     Window(const WindowEntries &entries, char variable, const std::string &section, double end);
+
+    /// Makes a window along the body; a start or end that is not given has no edge. Throws InputError if the window is
+    /// empty, reaches beyond the body, or is shorter than its edges.
+    Window(const EnvelopeParameters &parameters, const std::string &section, double length);
 
     double
     value(double x) const;
@@ -116,7 +98,7 @@ namespace crawler
     bool
     is_whole() const
     {
-      return is_everywhere_ || (from_ + edge_ <= 0. && to_ - edge_ >= end_);
+      return from_ + edge_ <= 0. && to_ - edge_ >= end_;
     }
 
     /// Description for the log; empty if it is whole.
@@ -126,7 +108,7 @@ namespace crawler
   private:
     const char variable_;
     const double end_;
-    bool is_everywhere_ = true;
-    double from_ = 0., to_ = 0., edge_ = 0.;
+    const double edge_;
+    double from_ = -HUGE_VAL, to_ = HUGE_VAL;
   };
 } // namespace crawler

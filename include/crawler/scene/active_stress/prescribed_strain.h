@@ -64,20 +64,21 @@ namespace crawler
     void
     report(std::ostream &out) const override;
 
+  protected:
+    const Scene scene_; ///< without active stress
+
   private:
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
 
     void
-    require_usable_generator(double end_time) const;
+    require_usable_generator() const;
     void
-    require_admissible_strain(double end_time);
+    require_admissible_strain();
     void
-    choose_panels(double end_time);
+    choose_panels();
 
-    const Scene scene_; ///< without active stress
-    const std::string given_by_;
-    const bool is_generated_;
+    const PrescribedStrainParameters parameters_;
     const std::shared_ptr<const ActiveStress> strain_;
     StrainExtremes extremes_{};
     std::vector<double> panels_; ///< ends of the panels of the quadrature over the body

@@ -59,6 +59,7 @@ namespace crawler
     const double velocity_, period_; ///< sigma v, P
     const double start_;             ///< x_0
     const double length_;            ///< of the body
-    const Envelope envelope_;
+    const Window window_;
+    const Ramp ramp_;
   };
 } // namespace crawler

@@ -99,7 +99,7 @@ namespace crawler
 
     const SegmentsParameters parameters_;
     const double length_;
-    const Envelope envelope_; ///< the ramp only
+    const Ramp ramp_;
     std::optional<Switching> smooth_;
     std::vector<Segment> segments_; ///< from s = 0 to s = L
   };

@@ -41,8 +41,6 @@ namespace crawler
   private:
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
-    std::unique_ptr<ActiveStressAtPoints>
-    rate_evaluator(const std::vector<double> &points) const;
 
     const double end_time_;
     const std::string shape_name_;

@@ -61,8 +61,6 @@ namespace crawler
 
   private:
     const TwoLevelWaveParameters parameters_;
-    const double length_;
-    const bool is_uniform_; ///< the body
     const Numbers numbers_;
   };
 } // namespace crawler

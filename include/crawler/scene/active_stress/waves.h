@@ -53,7 +53,7 @@ namespace crawler
     bool
     has_moving_jumps() const
     {
-      return profile_.jumps() && phase_rate_ != 0. && wave_number_ > 0. && amplitude_ != 0.;
+      return profile_.jumps() && phase_rate_ != 0. && wave_number_ > 0. && parameters_.amplitude != 0.;
     }
 
     std::unique_ptr<ActiveStressAtPoints>
@@ -63,12 +63,12 @@ namespace crawler
 
     const TravellingWaveParameters parameters_;
     const double length_, end_time_;
-    const double amplitude_, offset_;
     const double wave_number_; ///< per length: n/L
     const double phase_rate_;  ///< -sigma f [periods/time]
     const double start_;       ///< phase/(2 pi) [periods]
     const WaveProfile profile_;
-    const Envelope envelope_;
+    const Window window_;
+    const Ramp ramp_;
   };
 
   /// Section "Active stress/Standing wave".
@@ -104,10 +104,11 @@ namespace crawler
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
 
-    const double amplitude_, offset_;
-    const double wave_number_, start_in_space_; ///< [rad/length], [rad]
-    const double frequency_, start_;            ///< [1/time], [periods]
+    const StandingWaveParameters parameters_;
+    const double length_;
+    const double start_; ///< phase/(2 pi) [periods]
     const WaveProfile profile_;
-    const Envelope envelope_;
+    const Window window_;
+    const Ramp ramp_;
   };
 } // namespace crawler
