@@ -5,6 +5,7 @@
 #include <crawler/reduced_models/strain.h>
 #include <crawler/scene/scene.h>
 
+#include <memory>
 #include <optional>
 
 namespace crawler

@@ -13,7 +13,6 @@
 #include <cstring>
 #include <dlfcn.h>
 #include <filesystem>
-#include <functional>
 #include <ostream>
 #include <sstream>
 

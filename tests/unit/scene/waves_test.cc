@@ -83,7 +83,7 @@ TEST(TravellingWave, SineIsTheFormula)
 TEST(TravellingWave, WindowAndRampAreFactors)
 {
   expect_formula(travelling("Offset = 0.2; Window start = 0.3; Window end = 0.8"),
-                 "(s < 0.3 || s > 0.8 ? 0 : 0.2 + 0.1*sin(2*pi*(s + t)))");
+                 "(s < 0.3 || s >= 0.8 ? 0 : 0.2 + 0.1*sin(2*pi*(s + t)))");
   expect_formula(travelling("Offset = 0.2; Window start = 0.25; Window edge = 0.125; Ramp duration = 2"),
                  step("(s-0.25)*8") + "*" + step("(t/2)") + "*(0.2 + 0.1*sin(2*pi*(s + t)))");
   // An end of the body that is given has an edge.

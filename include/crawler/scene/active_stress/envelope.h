@@ -51,10 +51,10 @@ namespace crawler
   };
 
   /**
-   * The factor W(x), 1 in the window [from, to] and 0 outside, with smooth steps S (wave_entries.h) of the edge width
-   * inside both ends, W(x) = S((x - from)/width) S((to - x)/width), or jumps if the width is 0. A window that begins
-   * before 0 by the edge width, or ends as much after the end of the range, has no edge there; without interval it is 1
-   * everywhere.
+   * The factor W(x), 1 in the window [from, to) and 0 outside, with smooth steps S (wave_entries.h) of the edge width
+   * inside both ends, W(x) = S((x - from)/width) S((to - x)/width), or jumps if the width is 0 (but one that ends with
+   * the range includes its end). A window that begins before 0 by the edge width, or ends as much after the end of the
+   * range, has no edge there; without interval it is 1 everywhere.
    */
   class Window
   {
