@@ -217,10 +217,10 @@ namespace crawler
     }
     if (result.cycles)
       change_steps(n, finer_tolerance_of_cycles);
-    if (result.time.steps <= few_steps)
+    if (result.time.status == Status::finished && result.time.steps <= few_steps)
     {
       const double covered =
-        result.cycles ? scene.end_time - result.cycles->extrapolated * result.cycles->period : result.time.time;
+        scene.end_time - (result.cycles ? result.cycles->extrapolated * result.cycles->period : 0.);
       limit_steps(n.step_limits, covered / (more_than_few * result.time.steps));
     }
     return n;

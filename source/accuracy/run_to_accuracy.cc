@@ -37,13 +37,12 @@ namespace crawler
       constexpr double same           = 0.02; // relative
       const TimeParameters time       = time_of_finer_run(problem.parameters.time);
       NumericsChoice finer            = choice;
-      SimulationResult last           = result;
       const Extreme lost              = *result.inversion;
       std::string found;
       for (unsigned int i = 0; i < max_runs; ++i)
       {
-        finer.numerics = numerics_of_finer_run(finer, time, problem.scene, last);
-        SimulationResult check =
+        finer.numerics = numerics_of_finer_run(finer, time, problem.scene, result);
+        const SimulationResult check =
           Simulation(problem.ranks, problem.scene, time, finer.numerics).run({}, {}, {}, problem.keep_going);
         if (check.time.status == Status::stopped)
           return;
@@ -62,7 +61,6 @@ namespace crawler
         }
         result.inversion->t = check.inversion->t;
         found               = fmt::format("lost it at t = {:.6g}", check.inversion->t);
-        last                = std::move(check);
       }
       result.time.status = Status::failed;
       result.time.reason = "under_resolved";

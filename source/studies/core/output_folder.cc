@@ -16,6 +16,7 @@
 #include <chrono>
 #include <cstring>
 #include <fstream>
+#include <regex>
 #include <thread>
 #include <unistd.h>
 
@@ -231,13 +232,14 @@ namespace crawler
   }
 
   void
-  remove_runs(const fs::path &folder, const std::regex &names)
+  remove_runs(const fs::path &folder, const std::string &names)
   {
+    const std::regex own_name(names);
     std::error_code error;
     std::vector<fs::path> own;
     for (const auto &entry : fs::directory_iterator(folder, error))
       if (entry.is_directory(error) != entry.path().has_extension() &&
-          std::regex_match(entry.path().filename().string(), names))
+          std::regex_match(entry.path().filename().string(), own_name))
         own.push_back(entry.path());
     for (const fs::path &path : own)
     {

@@ -388,8 +388,8 @@ namespace crawler
       memory = std::make_unique<OptimizeMemory>(cases, folder, file);
       if (memory->starts().empty())
       {
-        remove_runs(folder.path, std::regex("best(-[0-9]+)?"));
-        remove_runs(folder.path, std::regex("optimum(-[0-9]+)?[.]prm"));
+        remove_runs(folder.path, "best(-[0-9]+)?");
+        remove_runs(folder.path, "optimum(-[0-9]+)?[.]prm");
       }
     });
     clock.set_limit(cases.parameters().optimize.time_limit, "Optimize/Time limit");

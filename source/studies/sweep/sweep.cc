@@ -214,7 +214,7 @@ namespace crawler
       table.inputs = sweep_inputs(points);
       auto list    = begin_or_resume(folder, table, file);
       if (std::count(list.begin(), list.end(), true) == 0)
-        remove_runs(folder.path / "points", std::regex("[0-9]+")); // fields of an earlier sweep
+        remove_runs(folder.path / "points", "[0-9]+"); // fields of an earlier sweep
       return list;
     });
     const auto n_done            = static_cast<unsigned long>(std::count(done.begin(), done.end(), true));

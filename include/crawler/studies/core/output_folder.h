@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
-#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -56,10 +55,10 @@ namespace crawler
   void
   prepare(const std::filesystem::path &folder);
 
-  /// Removes what a study keeps of its runs in @p folder: folders called by one of @p names, and files if these have an
-  /// extension; not the files of others in them. Removes @p folder if it is empty then.
+  /// Removes what a study keeps of its runs in @p folder: folders whose names match the regular expression @p names,
+  /// and files if these have an extension; not the files of others in them. Removes @p folder if it is empty then.
   void
-  remove_runs(const std::filesystem::path &folder, const std::regex &names);
+  remove_runs(const std::filesystem::path &folder, const std::string &names);
 
   /// Removes files that a run writes as it proceeds: the fields and the statistics.
   void

@@ -34,7 +34,7 @@ TEST(StudyFolder, RemovesItsOwnRunsAlone)
     std::filesystem::create_directories(folder / name);
     std::ofstream(folder / name / "summary.json") << "{}";
   }
-  remove_runs(folder, std::regex("best(-[0-9]+)?"));
+  remove_runs(folder, "best(-[0-9]+)?");
   std::set<std::string> left;
   for (const auto &entry : std::filesystem::directory_iterator(folder))
     left.insert(entry.path().filename());
