@@ -22,6 +22,7 @@ CRAWLER, TWO_RANKS = sys.argv[1], [sys.argv[2], "--oversubscribe", "-n", "2"]
 PLACES = {name: (["write:000003.vtu:KILL"], 1) for name in SCENES}
 PLACES["feedback"] = PLACES["delay"] = (["write:000002.vtu:KILL"], 1)
 PLACES["adaptive"] = (["pilot:20:KILL", "write:000003.vtu:KILL"], 1)
+PLACES["second try"] = (["write:000003.vtu:2:KILL", "write:000006.vtu:KILL", "write:kymograph.vts:KILL"], 3)
 PLACES["xdmf"] = (["step:200:KILL"], 1)
 PLACES["lanes"] = (["write:original.prm:KILL", "write:parameters.prm:KILL",  # from the first picture on with a state
                     "state:1:KILL", "write:restart.dat.new:KILL", "write:restart.dat:KILL", "write:000001.vtu:KILL",
@@ -48,10 +49,10 @@ def signals_in_pilots(scene):
         expect(not (scene.place / "pilots").exists(), f"{how} in the pilots: there are files")
 
 
-def signals(scene):
-    """In the run: exit code 5, a state, and it goes on. In what follows it: the same."""
+def signals(scene, in_try=""):
+    """In the run, or the try with this number: exit code 5, a state, and it goes on. In what follows it: the same."""
     resume = []
-    for place in ("write:000002.vtu:TERM", "write:000004.vtu:INT", "write:000006.vtu:USR1", "write:kymograph.vts:TERM"):
+    for place in (f"write:000002.vtu:{in_try}TERM", "write:000004.vtu:INT", "write:000006.vtu:USR1", "write:kymograph.vts:TERM"):
         scene.expect("stopped", [*NEVER, *resume], 5, "signal", stop_at=place)
         expect((scene.place / "stopped" / "restart.dat").exists(), f"{place}: no state was written")
         resume = ["--resume"]
@@ -136,6 +137,7 @@ def one_rank(place):
     for scene in scenes.values():
         killed(scene)
     signals_in_pilots(scenes["adaptive"])
+    signals(scenes["second try"], "2:")
     for part in (signals, time_limits, stop_file, damaged, other_parameters, ends, folders):
         part(scenes["lanes"])
 

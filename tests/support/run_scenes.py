@@ -12,6 +12,9 @@ WAVE = prm("Accuracy=1e-7", "Body/Anchoring exponent=2", "Active stress/Generato
 SEGMENTS = prm("Accuracy=1e-4", "Active stress/Generator=segments", "Active stress/Segments/Number of segments=8",
                "Active stress/Segments/Amplitude=0.1", "Active stress/Segments/Phase lag=0.125",
                "Output/Number of snapshots=10")
+PULSE = prm("Accuracy=1e-8", "Body/Anchoring exponent=2", "Active stress/Generator=pulse", "Active stress/Pulse/Shape=compact",
+            "Active stress/Pulse/Amplitude=0.6", "Active stress/Pulse/Width=0.3", "Active stress/Pulse/Speed=1.6",
+            "Active stress/Pulse/Repetition period=1", "Output/Number of snapshots=10")
 REFLEX = "Active stress/Strain feedback/"
 FEEDBACK = ["Accuracy=1e-4", "Body/Elastic modulus=0.1", "Body/Initial stretch=1+0.01*exp(-((s-0.425)/0.05)^2)",
             "Active stress/Generator=strain feedback", REFLEX + "Constants=A=0.05, g=0.5", "Output/Number of snapshots=5"]
@@ -38,6 +41,7 @@ SCENES = {
               ["Discretization/Number of cells=4", "Accuracy=1e-3", "Time/End time=1"]),
     "xdmf": (WAVE, [*FINE, "Output/Snapshot format=xdmf", "Time/End time=600"],
              [*COARSE, "Output/Snapshot format=xdmf", "Time/End time=10"]),
+    "second try": (PULSE, ["Time/End time=5"], ["Time/End time=5"]),
     "finer mesh of the user": (WAVE, ["Discretization/Number of cells=12", "Time/Tolerance=1e-9", "Time/Integrator=radau 5",
                                       "Time/End time=20"],
                                ["Discretization/Number of cells=12", "Time/Tolerance=1e-8", "Time/Integrator=radau 5",

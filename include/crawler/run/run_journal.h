@@ -42,6 +42,13 @@ namespace crawler
       return state_.empty() ? nullptr : &state_;
     }
 
+    /// True if the next run to begin has ended before, or has a state.
+    bool
+    knows_next() const
+    {
+      return n_begun_ < ended_.size() || !state_.empty();
+    }
+
     bool
     writes() const
     {

@@ -103,6 +103,8 @@ namespace crawler
   void
   RunMemory::forget_fields()
   {
+    if (journal.knows_next()) // the fields are those of the next try already
+      return;
     if (journal.was_written()) // older states need the files that are about to be removed
     {
       remove_checkpoints(folder);
