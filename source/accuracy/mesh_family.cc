@@ -18,9 +18,10 @@ namespace crawler
     /// Cells of the finest mesh: in general, for an Accuracy below accurate, and of bodies that invert.
     constexpr unsigned int max_cells = 51200, max_cells_if_accurate = 6400, max_cells_if_inverted = 1600;
     constexpr double accurate = 2e-6;
-    /// Limits on cells times steps of the next mesh, about a second for each 2e6, and the factor by which it takes more
-    /// of them than the last one.
-    constexpr double max_work = 2.5e7, max_work_if_accurate = 5e7, more_work = 5.;
+    /// Limits on cells times steps of the next mesh, about a second for each 2e6, in general, for an Accuracy below accurate,
+    /// and if it is the last one by the observed order and the other form has no mesh; factor by which it takes more of
+    /// them than the last one.
+    constexpr double max_work = 2.5e7, max_work_if_accurate = 5e7, max_work_if_near = 1e8, more_work = 5.;
     /// Part of the wanted error that the error in time may be; number of reductions of the time tolerance for that.
     constexpr double time_part            = 0.3;
     constexpr unsigned int max_tolerances = 5;
@@ -50,8 +51,12 @@ namespace crawler
     class Family
     {
     public:
-      Family(const Problem &problem, const NumericsChoice &choice, const RecordOptions &options)
+      Family(const Problem &problem,
+             const NumericsChoice &choice,
+             const RecordOptions &options,
+             const std::function<bool()> &is_for_other_form)
         : problem_(problem)
+        , is_for_other_form_(is_for_other_form)
         , parameters_(problem.parameters)
         , scene_(problem.scene)
         , options_(options)
@@ -105,8 +110,11 @@ namespace crawler
       bool
       is_worth_it() const
       {
-        const double work = 1. * latest_.mesh.n_cells * latest_.time.steps;
-        return more_work * work <= (parameters_.accuracy < accurate ? max_work_if_accurate : max_work);
+        const double work = more_work * latest_.mesh.n_cells * latest_.time.steps;
+        if (work <= (parameters_.accuracy < accurate ? max_work_if_accurate : max_work))
+          return true;
+        const bool is_near = has_order_ && space_error_ / 4. <= (1. - time_part) * wanted(); // one mesh more
+        return work <= max_work_if_near && is_near && !is_for_other_form_();
       }
 
       unsigned int
@@ -476,6 +484,7 @@ namespace crawler
       }
 
       const Problem &problem_;
+      const std::function<bool()> &is_for_other_form_;
       const RunParameters &parameters_;
       const Scene &scene_;
       RecordOptions options_;
@@ -490,9 +499,12 @@ namespace crawler
   } // namespace
 
   Answer
-  answer_of_family(const Problem &problem, const NumericsChoice &choice, const RecordOptions &options)
+  answer_of_family(const Problem &problem,
+                   const NumericsChoice &choice,
+                   const RecordOptions &options,
+                   const std::function<bool()> &is_for_other_form)
   {
-    Answer answer = Family(problem, choice, options).compute();
+    Answer answer = Family(problem, choice, options, is_for_other_form).compute();
     if (!options.energy_balance) // not requested
     {
       answer.result.energy_balance.reset();

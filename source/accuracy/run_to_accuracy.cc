@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/choose_numerics.h>
 #include <crawler/accuracy/error_estimate.h>
+#include <crawler/accuracy/mesh_choices.h>
 #include <crawler/accuracy/mesh_family.h>
 #include <crawler/accuracy/moving_fronts.h>
 #include <crawler/accuracy/pilots.h>
@@ -98,18 +99,40 @@ namespace crawler
       return run_to_accuracy(alone, choice, simulate, own, /*writes=*/false);
     }
 
-    /// Answer of one form where the other one, which the rule chose, has none that is as accurate as wanted. Nothing
-    /// without numerics, or if its mesh would be adaptive.
-    std::optional<Answer>
-    answer_in_form(const FormulationEntry form, const Problem &problem, const RecordOptions &options)
+    /// The form that the rule did not choose, for scenes where the other one has no answer that is as accurate as
+    /// wanted.
+    class OtherForm
     {
-      RunParameters own              = problem.parameters;
-      own.discretization.formulation = form;
-      const Problem other{own, problem.scene, problem.keep_going};
-      const auto choice = choose_numerics(other);
-      return choice && choice->numerics.mesh.tolerance == 0. ? std::optional(answer_with(*choice, other, options))
-                                                             : std::nullopt;
-    }
+    public:
+      OtherForm(const FormulationEntry form, const Problem &problem)
+        : parameters_(problem.parameters)
+        , problem_{parameters_, problem.scene, problem.keep_going}
+      {
+        parameters_.discretization.formulation = form;
+      }
+
+      /// True if a mesh of this form, which is not adaptive, is fine enough as far as pilots can tell.
+      bool
+      has_mesh()
+      {
+        if (!choice_)
+          choice_ = choose_numerics(problem_);
+        return choice_ && choice_->numerics.mesh.tolerance == 0. &&
+               choice_->numerics.n_cells <= mesh_choice::max_uniform_cells;
+      }
+
+      /// Answer, if there is a mesh.
+      std::optional<Answer>
+      answer(const RecordOptions &options)
+      {
+        return has_mesh() ? std::optional(answer_with(*choice_, problem_, options)) : std::nullopt;
+      }
+
+    private:
+      RunParameters parameters_;
+      const Problem problem_;
+      std::optional<NumericsChoice> choice_;
+    };
 
     /// Answer with the files of one more run. Its output times change its steps a little; the numbers are those to
     /// which the bounds belong. Where the body inverts they are those of the last state in the files.
@@ -150,10 +173,12 @@ namespace crawler
     public:
       Tries(const Problem &problem,
             const NumericsChoice &choice,
-            const std::function<SimulationResult(const NumericsChoice &)> &simulate)
+            const std::function<SimulationResult(const NumericsChoice &)> &simulate,
+            const bool sweeps)
         : problem_(problem)
         , first_(choice)
         , simulate_(simulate)
+        , sweeps_(sweeps)
       {
         answer_.choice = choice;
       }
@@ -187,13 +212,16 @@ namespace crawler
         }
         if (!problem_.parameters.error_estimate || result_.time.status != Status::finished)
           return false;
-        const Stopwatch watch;
-        estimate_errors(problem_, answer_.choice, result_);
-        estimate_seconds_ += watch.seconds();
         // Where the energy balance does not close a finer run is tried, too; the self-check judges the last one.
         const bool closes = !result_.energy_balance || result_.energy_balance->residual() <=
                                                          energy_balance_tolerance(result_, problem_.parameters);
-        if (is_good() && (closes || std::isnan(wanted())))
+        const Stopwatch watch;
+        estimate_errors(problem_, answer_.choice, result_);
+        const auto is_settled = [&]() { return is_good() && (closes || std::isnan(wanted())); };
+        if (sweeps_ && is_settled())
+          sweep_error(problem_, answer_.choice, result_);
+        estimate_seconds_ += watch.seconds();
+        if (is_settled())
           return false;
         std::string problem;
         if (has_tries() && first_.min_error <= wanted())
@@ -263,6 +291,7 @@ namespace crawler
       const Problem &problem_;
       const NumericsChoice &first_;
       const std::function<SimulationResult(const NumericsChoice &)> &simulate_;
+      const bool sweeps_; ///< true if the adjoint judges tries that are good by a finer run
       Answer answer_;
       SimulationResult &result_ = answer_.result;
       unsigned int refinements_ = 0;
@@ -275,13 +304,15 @@ namespace crawler
     Answer
     better_of_both_forms(const Problem &problem, const NumericsChoice &choice, const RecordOptions &options)
     {
-      Answer answer = answer_of_family(problem, choice, options);
-      if (answer.result.time.reason != accuracy_not_met ||
-          problem.parameters.discretization.formulation != FormulationEntry::automatic)
+      const bool is_automatic = problem.parameters.discretization.formulation == FormulationEntry::automatic;
+      OtherForm position(FormulationEntry::position, problem);
+      Answer answer =
+        answer_of_family(problem, choice, options, [&]() { return is_automatic && position.has_mesh(); });
+      if (answer.result.time.reason != accuracy_not_met || !is_automatic)
         return answer;
       try
       {
-        auto other = answer_in_form(FormulationEntry::position, problem, options);
+        auto other = position.answer(options);
         if (other && other->result.error && std::isfinite(other->result.error->total) &&
             (other->result.time.status == Status::finished || !answer.result.error ||
              other->result.error->total < answer.result.error->total))
@@ -303,17 +334,25 @@ namespace crawler
                   const RecordOptions &options,
                   const bool writes)
   {
-    const auto in_files = [&](Answer answer) { return writes ? with_files(std::move(answer), simulate) : answer; };
+    const auto in_files = [&](Answer answer) {
+      if (!writes)
+        return answer;
+      answer = with_files(std::move(answer), simulate);
+      const double wanted = answer.choice.wanted_error;
+      if (sweep_error(problem, answer.choice, answer.result) && std::isfinite(wanted)) // of the position form
+        fails_accuracy(answer.result, wanted, "");
+      return answer;
+    };
     if (choice.has_fronts)
       return in_files(
         answer_of_fronts(problem, [&](const Problem &other) { return answer_in_memory(other, options); }));
     if (choice.is_family)
       return in_files(better_of_both_forms(problem, choice, options));
-    Answer answer = Tries(problem, choice, simulate).answer();
+    Answer answer = Tries(problem, choice, simulate, /*sweeps=*/writes).answer();
     // The position form may fail shortly before an end inverts, since the stretch nearby is tiny.
     if (is_for_finer_numerics(answer.result.time) && !choice.is_users && size_of(problem.ranks) == 1 &&
         may_be_stretch_form(problem))
-      if (auto other = answer_in_form(FormulationEntry::stretch, problem, options);
+      if (auto other = OtherForm(FormulationEntry::stretch, problem).answer(options);
           other && other->result.time.status != Status::failed)
         return in_files(std::move(*other));
     return answer;

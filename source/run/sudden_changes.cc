@@ -34,43 +34,38 @@ namespace crawler
     moduli_ = profile_at(scene.profiles.elastic_modulus, places);
     for (double &k : moduli_)
       k *= scene.body.elastic_modulus;
-    m_.resize(places.size());
-    stress_ = scene.active_stress->at(places);
+    initial_ = profile_at(scene.profiles.initial_stretch, places);
+    stress_  = scene.active_stress->at(places);
   }
 
-  SuddenChanges::Stresses
-  SuddenChanges::at(const double t)
+  std::vector<double>
+  SuddenChanges::balanced_at(const double t)
   {
-    stress_->values(t * units_.time, m_);
-    Stresses stresses{{1. - m_[0] / moduli_[0], 1. - m_[1] / moduli_[1]}, {}};
-    for (std::size_t i = 2; i + 1 < m_.size(); i += 2)
-      stresses.jumps.push_back(m_[i + 1] / moduli_[i + 1] - m_[i] / moduli_[i]);
-    return stresses;
+    std::vector<double> w(moduli_.size());
+    stress_->values(t * units_.time, w);
+    std::ranges::transform(w, moduli_, w.begin(), [](const double m, const double k) { return 1. - m / k; });
+    return w;
   }
 
   void
   SuddenChanges::look_at_next_start()
   {
-    const double start   = starts_[next_++];
-    const Stresses after = at(start + beside);
-    Stresses before{{1., 1.}, std::vector<double>(after.jumps.size(), 0.)};
-    if (start > 0.)
-      before = at(start - beside);
-    double largest    = std::max(std::abs(after.end_stretch.first - before.end_stretch.first),
-                              std::abs(after.end_stretch.second - before.end_stretch.second));
-    double resistance = 1.; // largest w^a
-    const auto see    = [&](const double w) {
+    const double start               = starts_[next_++];
+    const std::vector<double> after  = balanced_at(start + beside),
+                              before = start > 0. ? balanced_at(start - beside) : initial_;
+    double largest = 0., resistance = 1.; // largest w^a
+    const auto see = [&](const double change, const double w) {
+      largest = std::max(largest, std::abs(change));
       if (w > 0.)
         resistance = std::max(resistance, std::pow(w, a_));
     };
-    see(after.end_stretch.first);
-    see(after.end_stretch.second);
-    for (std::size_t i = 0; i < after.jumps.size(); ++i)
+    for (std::size_t end = 0; end < 2; ++end)
+      see(after[end] - before[end], after[end]);
+    for (std::size_t i = 2; i < after.size(); i += 2)
     {
-      const double change = std::abs(after.jumps[i] - before.jumps[i]);
-      largest             = std::max(largest, change);
-      see(1. + 0.5 * change);
-      see(1. - 0.5 * change);
+      const double change = (after[i + 1] - after[i]) - (before[i + 1] - before[i]);
+      see(change, 1. + 0.5 * change);
+      see(change, 1. - 0.5 * change);
     }
     if (largest > sudden)
       thin_until_ =
@@ -84,9 +79,9 @@ namespace crawler
       look_at_next_start();
     if (!stress_ || !(t < thin_until_))
       return std::nullopt;
-    const auto [left, right] = at(t).end_stretch;
-    const Extreme at_left{left, 0., t}, at_right{right, 1., t};
-    return left < right ? std::pair(at_left, at_right) : std::pair(at_right, at_left);
+    const std::vector<double> w = balanced_at(t);
+    const Extreme at_left{w[0], 0., t}, at_right{w[1], 1., t};
+    return w[0] < w[1] ? std::pair(at_left, at_right) : std::pair(at_right, at_left);
   }
 
   std::optional<double>
@@ -95,7 +90,6 @@ namespace crawler
     const bool is_left = s <= beside;
     if (!stress_ || (!is_left && s < 1. - beside))
       return std::nullopt;
-    const auto [left, right] = at(std::max(t - beside, 0.)).end_stretch; // before the jump of the stress
-    return is_left ? left : right;
+    return balanced_at(std::max(t - beside, 0.))[is_left ? 0 : 1]; // before the jump of the stress
   }
 } // namespace crawler

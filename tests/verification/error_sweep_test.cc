@@ -5,6 +5,8 @@
 #include "../support/run_text.h"
 #include "../support/test.h"
 
+#include <crawler/accuracy/choose_numerics.h>
+#include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/adjoint/error_sweep.h>
 #include <crawler/studies/core/parameters.h>
 
@@ -106,4 +108,23 @@ TEST(ErrorSweep, CorrectedDisplacementsAreCovered)
   EXPECT_GE(covered, n - n / 100);
   EXPECT_NEAR(quantile(effectivities, 0.5), 1., 0.03);
   EXPECT_GE(quantile(gains, 0.5), 50.);
+}
+
+/// A try whose bound by a finer run meets Accuracy, but whose error by the adjoint does not, is made again, finer.
+TEST(ErrorSweep, JudgesTries)
+{
+  const Parameters parameters = test::parameters_with(
+    test::set("L = 8.0996; k = 0.140817; gamma = 0.719439; p = 2; T = 1.9506; Accuracy = 1e-4; travelling wave; "
+              "Amplitude = 0.098572; Wave number = 0.5; Frequency = 0.205065"));
+  const Scene scene = parameters.create_scene();
+  const Problem problem{parameters, scene};
+  const auto simulate = [&](const NumericsChoice &choice) {
+    return Simulation(MPI_COMM_SELF, scene, parameters.time, choice.numerics).run({}, {});
+  };
+  const auto choice             = choose_numerics(problem);
+  const SimulationResult result = run_to_accuracy(problem, *choice, simulate, {}, /*writes=*/true).result;
+  ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
+  EXPECT_EQ(result.refinements, 1u);
+  ASSERT_TRUE(result.corrected);
+  EXPECT_LE(std::abs(result.corrected->value - result.displacement), result.error->total);
 }

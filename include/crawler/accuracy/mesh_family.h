@@ -3,6 +3,8 @@
 
 #include <crawler/accuracy/answer.h>
 
+#include <functional>
+
 namespace crawler
 {
   /**
@@ -14,8 +16,12 @@ namespace crawler
    * is as accurate as wanted (doc/numerics.md, "Stretch form"). The bound consists of the last change of R, or of D if
    * the observed order is not 2, and of the change with a tenth of the time tolerance on the coarsest mesh. Works and
    * the displacement of the last stride are extrapolated alike; all else is that of the finest mesh. If the body
-   * inverts the time of inversion has to settle. @p options are those of each run, without output times.
+   * inverts the time of inversion has to settle. @p options are those of each run, without output times;
+   * @p is_for_other_form says, before a mesh that takes very long, whether the position form has a mesh that may do.
    */
   Answer
-  answer_of_family(const Problem &problem, const NumericsChoice &choice, const RecordOptions &options);
+  answer_of_family(const Problem &problem,
+                   const NumericsChoice &choice,
+                   const RecordOptions &options,
+                   const std::function<bool()> &is_for_other_form);
 } // namespace crawler

@@ -34,14 +34,9 @@ namespace crawler
     stretch_at_end(double s, double t);
 
   private:
-    struct Stresses
-    {
-      std::pair<double, double> end_stretch; ///< 1 - m/k at both ends
-      std::vector<double> jumps;             ///< jumps of m/k at the breaks in space
-    };
-
-    Stresses
-    at(double t);
+    /// Stretch 1 - m/k that balances the stress at the ends and both sides of the breaks in space, in pairs.
+    std::vector<double>
+    balanced_at(double t);
     void
     look_at_next_start();
 
@@ -50,7 +45,7 @@ namespace crawler
     std::vector<double> starts_, moduli_; ///< times when the stress may jump; k where the stress is
     std::size_t next_  = 0;               ///< index of the next start
     double thin_until_ = 0.;
-    std::vector<double> m_;
-    std::unique_ptr<ActiveStressAtPoints> stress_; ///< stress at the ends and both sides of the breaks in space
+    std::vector<double> initial_;                  ///< stretch at the start there
+    std::unique_ptr<ActiveStressAtPoints> stress_; ///< stress there; nothing with feedback
   };
 } // namespace crawler

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/choose_numerics.h>
-#include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/accuracy/moving_fronts.h>
 #include <crawler/accuracy/run_to_accuracy.h>
@@ -340,12 +339,10 @@ namespace crawler
           stop("after the end of the run, before its error was known");
       }
 
-      /// Adds results of a run that has ended: its error by the adjoint, and sensitivities.
+      /// Adds the sensitivities of a run that has ended.
       void
       add_what_follows()
       {
-        if (is_first_ && !sharing_.is_shared && choice_)
-          sweep_error({input_.parameters, input_.scene, [&]() { return !is_stopped(); }}, *choice_, result_);
         other_runs_.reset();
         if (is_first_ && !input_.sensitivities.empty() && result_.time.status != Status::finished)
           log_.warn("there are no sensitivities, since the run did not end normally");

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/choose_numerics.h>
-#include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/moving_fronts.h>
 #include <crawler/accuracy/run_to_accuracy.h>
 #include <crawler/base/clock.h>
@@ -94,7 +93,6 @@ namespace crawler
         run_to_accuracy({parameters, input.scene, keep_going}, *chosen, simulate, options, /*writes=*/true);
       run.result = std::move(answer.result);
       check_identities(run.result, parameters);
-      sweep_error({parameters, input.scene, keep_going}, answer.choice, run.result);
       if (afterwards && run.result.time.status == Status::finished)
         afterwards(input, answer.choice, run.result);
     }

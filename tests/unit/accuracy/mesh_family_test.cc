@@ -211,7 +211,7 @@ TEST(MeshFamily, CanBeStopped)
   ASSERT_TRUE(choice && choice->is_family);
   unsigned int n_steps  = 0;
   const auto keep_going = [&]() { return ++n_steps < 100; };
-  const Answer answer   = answer_of_family({parameters, scene, keep_going}, *choice, {});
+  const Answer answer   = answer_of_family({parameters, scene, keep_going}, *choice, {}, []() { return false; });
   EXPECT_EQ(answer.result.time.status, Status::stopped);
   EXPECT_EQ(n_steps, 100u);
 }
