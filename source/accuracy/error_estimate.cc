@@ -326,7 +326,8 @@ namespace crawler
     const auto &[parameters, scene, keep_going, ranks] = problem;
     constexpr double max_work                          = 5e4; // steps times cells: about a second
     if (result.time.status != Status::finished || !result.error || !std::isfinite(result.error->total) ||
-        result.cycles || size_of(ranks) > 1 || scene.ground.direction.is_uneven() || // moving kinks have no higher orders
+        result.cycles || size_of(ranks) > 1 ||
+        scene.ground.direction.is_uneven() || // moving kinks have no higher orders
         !RecordedRun::is_possible(scene, parameters.time, choice.numerics) ||
         static_cast<double>(result.time.steps) * result.mesh.most_cells > max_work)
       return false;

@@ -111,14 +111,15 @@ namespace crawler
         parameters_.discretization.formulation = form;
       }
 
-      /// True if a mesh of this form, which is not adaptive, is fine enough as far as pilots can tell.
+      /// True if there is a mesh of this form: not an adaptive one, nor very many cells, to which kinks of a rough
+      /// stress would lead, for hours.
       bool
       has_mesh()
       {
         if (!choice_)
           choice_ = choose_numerics(problem_);
         return choice_ && choice_->numerics.mesh.tolerance == 0. &&
-               choice_->numerics.n_cells <= mesh_choice::max_uniform_cells;
+               !(choice_->is_rough && choice_->numerics.n_cells > mesh_choice::max_uniform_cells);
       }
 
       /// Answer, if there is a mesh.
@@ -306,8 +307,7 @@ namespace crawler
     {
       const bool is_automatic = problem.parameters.discretization.formulation == FormulationEntry::automatic;
       OtherForm position(FormulationEntry::position, problem);
-      Answer answer =
-        answer_of_family(problem, choice, options, [&]() { return is_automatic && position.has_mesh(); });
+      Answer answer = answer_of_family(problem, choice, options, [&]() { return is_automatic && position.has_mesh(); });
       if (answer.result.time.reason != accuracy_not_met || !is_automatic)
         return answer;
       try
@@ -337,7 +337,7 @@ namespace crawler
     const auto in_files = [&](Answer answer) {
       if (!writes)
         return answer;
-      answer = with_files(std::move(answer), simulate);
+      answer              = with_files(std::move(answer), simulate);
       const double wanted = answer.choice.wanted_error;
       if (sweep_error(problem, answer.choice, answer.result) && std::isfinite(wanted)) // of the position form
         fails_accuracy(answer.result, wanted, "");

@@ -65,7 +65,12 @@ TEST(SoftBodies, DisplacementsAreWithinTheirBounds)
      "k = 9.33e-5; p = 4.53; Discretization/Formulation = position; T = 2; standing wave; Amplitude = 0.006706; "
      "Wave number = 2; Phase in space = -1.5707963267948966; Frequency = 0.61; Ramp duration = 0.92",
      -2.69168904e-6,
-     {"1e-3", "6e-4", "3e-4"}}};
+     {"1e-3", "6e-4", "3e-4"}},
+    {"works are of order 1, and displacements, which change sides, of order 2 up to 800 cells (true at 1e-7)",
+     "L = 20.49; k = 12.04; gamma = 13.68; p = 6; T = 52.17; travelling wave; Amplitude = 10.84; Wave number = 0.5; "
+     "Frequency = 0.0575",
+     9.0893491,
+     {"1e-5", "1e-6"}}};
   for (const auto &[why, settings, displacement, accuracies] : bodies)
     for (const std::string &accuracy : accuracies)
       expect_within(answer_to(with(set(settings), {{"Accuracy", accuracy}})),

@@ -35,7 +35,8 @@ namespace crawler
     void
     begin_files(Log &log);
 
-    /// Forgets the fields of a try that is not the answer, and states that would need them, unless the next try resumes.
+    /// Forgets the fields of a try that is not the answer, and states that would need them, unless the next try
+    /// resumes.
     void
     forget_fields();
 
