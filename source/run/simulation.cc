@@ -285,7 +285,6 @@ namespace crawler
       outcome.steps += run_->before.steps;
       outcome.rejected_steps += run_->before.rejected_steps;
       outcome.newton_iterations += run_->before.newton_iterations;
-      outcome.linear_iterations += run_->before.linear_iterations;
       unsigned int &most_cells = result().mesh.most_cells;
       most_cells               = std::max(most_cells, mesh_.discretization->n_cells());
       if (!goes_on_after(ending, outcome))
