@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/lanes/host_laws.h>
+#include <crawler/lanes/lane_stepper.h>
 #include <crawler/run/batch.h>
 #include <crawler/run/lane_extremes.h>
 #include <crawler/run/lane_sampler.h>
@@ -307,12 +308,9 @@ namespace crawler
       SimulationResult
       result_of(Lane &lane, const LaneOutcome &outcome) const
       {
-        SimulationResult &result      = lane.recorder->result;
-        result.time.status            = Status::finished;
-        result.time.step_size         = outcome.progress->next;
-        result.time.steps             = outcome.progress->steps;
-        result.time.rejected_steps    = outcome.progress->rejected;
-        result.time.newton_iterations = outcome.progress->newton;
+        SimulationResult &result   = lane.recorder->result;
+        result.time                = outcome_at(*outcome.progress);
+        result.time.status         = Status::finished;
         const unsigned int n_cells = tables_->setup.n_cells, degree = tables_->setup.degree;
         result.mesh = {.n_cells = n_cells, .degree = degree, .n_unknowns = n_cells * degree + 1, .most_cells = n_cells};
         result.integrator = runs_[lane.run].time->integrator == "automatic" ? runs_[lane.run].numerics->integrator
