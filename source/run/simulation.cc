@@ -454,6 +454,6 @@ namespace crawler
     if (!run_->options.energy_balance || !integrators_.present->stage_places().empty())
       return;
     if (mesh_.velocity->compute(t, 0., y_, v_))
-      run_->quadrature.advance(t, rates(t, mesh_.assembler->integrals(t, y_, v_), y_, v_));
+      run_->quadrature.advance(t, rates_of(mesh_.assembler->integrals(t, y_, v_), (*mesh_.end_power)(t, y_, v_)));
   }
 } // namespace crawler
