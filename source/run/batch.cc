@@ -33,7 +33,7 @@ namespace crawler
 
       EndWatch(const Scene &scene, const double min_event, const unsigned int n_stages)
         : moduli_(scene.end_moduli())
-        , watch_(*scene.active_stress, 1., min_event > 0. ? min_event : HUGE_VAL)
+        , watch_(*scene.active_stress, min_event > 0. ? min_event : HUGE_VAL)
         , in_stages_(n_stages)
       {
         if (const StretchFeedback *feedback = scene.active_stress->feedback())

@@ -185,7 +185,7 @@ namespace crawler
         smallest.add(step.smallest);
         largest.add(step.largest);
       }
-    return measure_wave(stretch, period, 1., std::max(smallest.to - smallest.from, largest.to - largest.from));
+    return measure_wave(stretch, period, std::max(smallest.to - smallest.from, largest.to - largest.from));
   }
 
   std::optional<Gait>
