@@ -161,8 +161,7 @@ namespace crawler
       unsigned int
       estimated_order() const
       {
-        const std::string &name  = pilots_.integrator(choice_.numerics);
-        const Integrator &method = integrator(name.empty() ? "automatic" : name);
+        const Integrator &method = integrator(integrator_of(time_, choice_.numerics));
         return method.petsc_type == "radau" ? method.n_stages : time_.order;
       }
 
@@ -177,7 +176,7 @@ namespace crawler
       double
       superconvergence() const
       {
-        const std::string &name = pilots_.integrator(choice_.numerics);
+        const std::string &name = integrator_of(time_, choice_.numerics);
         if (choice_.numerics.mesh.tolerance > 0. || pilots_.last.min_stretch.value < emptied || kinks_move())
           return 1.;
         const double usual = name == "radau 9"   ? radau_9_superconvergence

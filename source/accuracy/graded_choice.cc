@@ -169,7 +169,7 @@ namespace crawler
       double
       first_tolerance() const
       {
-        const std::string &name = pilots_.integrator(now_);
+        const std::string &name = integrator_of(pilots_.parameters.time, now_);
         return name == "radau 9" ? graded_radau_9 : name == "radau 5" ? graded_radau_5 : graded_others;
       }
 

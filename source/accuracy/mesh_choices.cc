@@ -181,7 +181,7 @@ namespace crawler
     const DiscretizationParameters &own = pilots.parameters.discretization;
     const double L                      = pilots.scene.body.length;
     Numerics &n                         = choice.numerics;
-    n.integrator                        = "";
+    n.integrator                        = "bdf";
     n.degree                            = own.degree.value_or(adaptive_degree);
     n.n_cells                           = own.n_cells.value_or(
       static_cast<unsigned int>(std::clamp(std::ceil(L / pilots.scales.length), 8., 1. * max_cells)));

@@ -149,16 +149,10 @@ namespace crawler
            parameters.accuracy;
   }
 
-  const std::string &
-  Pilots::integrator(const Numerics &numerics) const
-  {
-    const std::string &own = parameters.time.integrator;
-    return own == "automatic" ? numerics.integrator : own;
-  }
-
   double
   Pilots::first_step(const Numerics &numerics) const
   {
-    return (integrator(numerics).starts_with("radau") ? one_step_start : mesh_choice::multistep_start) * scene.end_time;
+    const bool is_one_step = integrator_of(parameters.time, numerics).starts_with("radau");
+    return (is_one_step ? one_step_start : mesh_choice::multistep_start) * scene.end_time;
   }
 } // namespace crawler

@@ -306,8 +306,7 @@ namespace crawler
         result.time.status         = Status::finished;
         const unsigned int n_cells = tables_->setup.n_cells, degree = tables_->setup.degree;
         result.mesh = {.n_cells = n_cells, .degree = degree, .n_unknowns = n_cells * degree + 1, .most_cells = n_cells};
-        result.integrator = runs_[lane.run].time->integrator == "automatic" ? runs_[lane.run].numerics->integrator
-                                                                            : runs_[lane.run].time->integrator;
+        result.integrator = integrator_of(*runs_[lane.run].time, *runs_[lane.run].numerics);
         result.engine     = "fused";
         return lane.recorder->finish();
       }

@@ -15,6 +15,12 @@
 
 namespace crawler
 {
+  const std::string &
+  integrator_of(const TimeParameters &time, const Numerics &numerics)
+  {
+    return time.integrator == "automatic" ? numerics.integrator : time.integrator;
+  }
+
   Numerics
   in_units(Numerics numerics, const Units &units)
   {
@@ -44,9 +50,7 @@ namespace crawler
   std::optional<LaneMethod>
   lane_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
   {
-    const std::string &chosen = time.integrator == "automatic" ? numerics.integrator : time.integrator;
-    const std::string name    = chosen.empty() ? "automatic" : chosen;
-    const Integrator &method  = integrator(name);
+    const Integrator &method  = integrator(integrator_of(time, numerics));
     const bool is_one_of_ours = method.petsc_type == "radau" && time.step_control == StepControl::adaptive;
     const bool is_stretch     = numerics.formulation == Formulation::stretch;
     if (time.engine != Engine::automatic || !is_one_of_ours || numerics.mesh.tolerance != 0. ||
@@ -80,8 +84,7 @@ namespace crawler
     time_.end_time = 1.;
     if (scene_.active_stress->feedback() != nullptr)
       past_.delay = scene_.active_stress->feedback()->facts.delay;
-    if (time_.integrator == "automatic")
-      time_.integrator = numerics_.integrator.empty() ? "bdf" : numerics_.integrator;
+    time_.integrator = integrator_of(time, numerics);
     build_first();
   }
 

@@ -22,7 +22,7 @@ namespace crawler
   integrator(const std::string &name)
   {
     for (const Integrator &entry : integrators())
-      if (entry.name == (name == "automatic" ? "bdf" : name))
+      if (entry.name == name)
         return entry;
     throw std::logic_error("no integrator is called " + name);
   }

@@ -86,10 +86,6 @@ namespace crawler
       return 1e-25 * scene.body.length;
     }
 
-    /// The user's integrator, or that of @p numerics; empty if that is not known yet.
-    const std::string &
-    integrator(const Numerics &numerics) const;
-
     /// The automatic size of the first step.
     double
     first_step(const Numerics &numerics) const;

@@ -99,7 +99,7 @@ namespace crawler
     if (numerics != nullptr && p.discretization.mesh == MeshKind::automatic)
       chosen["Discretization/Mesh"] = numerics->mesh.tolerance > 0. ? "adaptive" : "uniform";
     if (numerics != nullptr && p.time.integrator == "automatic")
-      chosen["Time/Integrator"] = numerics->integrator.empty() ? "bdf" : numerics->integrator;
+      chosen["Time/Integrator"] = numerics->integrator;
     const std::string any_command = "check";
     const auto known              = notes_on_entries(input.file, form.declarations, any_command);
     auto notes                    = notes_on_entries(input.file, form.declarations, any_command, {}, chosen);
