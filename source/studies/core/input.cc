@@ -95,7 +95,7 @@ namespace crawler
     if (p.model == Model::automatic)
       chosen["Model"] = word_of(model);
     if (numerics != nullptr && p.discretization.formulation == FormulationEntry::automatic)
-      chosen["Discretization/Formulation"] = numerics->formulation == Formulation::stretch ? "stretch" : "position";
+      chosen["Discretization/Formulation"] = word_of(numerics->formulation);
     if (numerics != nullptr && p.discretization.mesh == MeshKind::automatic)
       chosen["Discretization/Mesh"] = numerics->mesh.tolerance > 0. ? "adaptive" : "uniform";
     if (numerics != nullptr && p.time.integrator == "automatic")
