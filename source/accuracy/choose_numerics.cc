@@ -220,7 +220,7 @@ namespace crawler
         {
           choice_.space_share  = space_over_time_ / (1. + space_over_time_);
           choice_.wanted_error = accuracy_ * pilots_.size;
-          if (n.mesh.tolerance > 0. && pilots_.stiffness() < very_soft)
+          if (n.mesh.tolerance > 0. && stiffness(pilots_.scene) < very_soft)
             choice_.min_error = soft_error * pilots_.size;
         }
         if (n.jumps_move && predicts)
@@ -293,9 +293,9 @@ namespace crawler
     bool
     may_settle(const RunParameters &parameters, const Scene &scene)
     {
-      const double period   = scene.active_stress->repetition()->period,
-                   softness = scene.body.elastic_modulus / natural_units(scene).force * period / scene.end_time;
-      return cycle_wish(parameters, scene, /*has_pictures=*/false) && softness > min_settling_stiffness;
+      const double period = scene.active_stress->repetition()->period;
+      return cycle_wish(parameters, scene, /*has_pictures=*/false) &&
+             stiffness(scene) * period / scene.end_time > min_settling_stiffness;
     }
   } // namespace
 

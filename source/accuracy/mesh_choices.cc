@@ -165,7 +165,7 @@ namespace crawler
       return nothing_predicted;
     if (!pilots.finished() || pilots.last.size.unresolved() > std::max(resolved, parameters.accuracy))
       return most == max_cells ? std::optional(nothing_predicted) : std::nullopt; // nothing else is left
-    if (most < max_cells && pilots.stiffness() < very_soft)
+    if (most < max_cells && stiffness(pilots.scene) < very_soft)
       return std::nullopt; // a pilot may pass over these layers by luck
     return user_cells ? nothing_predicted : extrapolate_cells(pilots, choice, degree, n_cells, may_be_steep);
   }

@@ -110,23 +110,17 @@ namespace crawler
   }
 
   double
-  Pilots::stiffness() const
-  {
-    return scene.body.elastic_modulus / natural_units(scene).force;
-  }
-
-  double
   Pilots::stiffness_over_friction() const
   {
     const double a = scene.friction_exponent();
-    return stiffness() / std::max(std::pow(last.min_stretch.value, a), std::pow(last.max_stretch.value, a));
+    return stiffness(scene) / std::max(std::pow(last.min_stretch.value, a), std::pow(last.max_stretch.value, a));
   }
 
   bool
   Pilots::is_soft() const
   {
     const double a = scene.friction_exponent();
-    return stiffness() < falling(softest, parameters.accuracy, softness_power) * std::max(1., a * a);
+    return stiffness(scene) < falling(softest, parameters.accuracy, softness_power) * std::max(1., a * a);
   }
 
   bool

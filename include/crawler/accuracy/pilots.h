@@ -59,10 +59,6 @@ namespace crawler
     double
     steps_to_the_end() const;
 
-    /// Stiffness k T/(gamma L^2).
-    double
-    stiffness() const;
-
     /// Stiffness k T/(g L^2) for the largest friction g of the last pilot, which determines thin layers.
     double
     stiffness_over_friction() const;
