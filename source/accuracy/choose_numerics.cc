@@ -161,8 +161,7 @@ namespace crawler
       unsigned int
       estimated_order() const
       {
-        const std::string &name  = pilots_.integrator(choice_.numerics);
-        const Integrator &method = integrator(name.empty() ? "automatic" : name);
+        const Integrator &method = integrator(integrator_of(time_, choice_.numerics));
         return method.petsc_type == "radau" ? method.n_stages : time_.order;
       }
 
@@ -177,7 +176,7 @@ namespace crawler
       double
       superconvergence() const
       {
-        const std::string &name = pilots_.integrator(choice_.numerics);
+        const std::string &name = integrator_of(time_, choice_.numerics);
         if (choice_.numerics.mesh.tolerance > 0. || pilots_.last.min_stretch.value < emptied || kinks_move())
           return 1.;
         const double usual = name == "radau 9"   ? radau_9_superconvergence
@@ -221,7 +220,7 @@ namespace crawler
         {
           choice_.space_share  = space_over_time_ / (1. + space_over_time_);
           choice_.wanted_error = accuracy_ * pilots_.size;
-          if (n.mesh.tolerance > 0. && pilots_.stiffness() < very_soft)
+          if (n.mesh.tolerance > 0. && stiffness(pilots_.scene) < very_soft)
             choice_.min_error = soft_error * pilots_.size;
         }
         if (n.jumps_move && predicts)
@@ -294,9 +293,9 @@ namespace crawler
     bool
     may_settle(const RunParameters &parameters, const Scene &scene)
     {
-      const double period   = scene.active_stress->repetition()->period,
-                   softness = scene.body.elastic_modulus / natural_units(scene).force * period / scene.end_time;
-      return cycle_wish(parameters, scene, /*has_pictures=*/false) && softness > min_settling_stiffness;
+      const double period = scene.active_stress->repetition()->period;
+      return cycle_wish(parameters, scene, /*has_pictures=*/false) &&
+             stiffness(scene) * period / scene.end_time > min_settling_stiffness;
     }
   } // namespace
 

@@ -186,11 +186,10 @@ namespace crawler
                         const SimulationResult &result)
   {
     const bool predicted = is_predicted(choice, scene), is_adaptive = choice.numerics.mesh.tolerance > 0.;
-    const bool is_by_best =
-      (time.integrator == "automatic" ? choice.numerics.integrator : time.integrator) == best_integrator;
+    const bool is_by_best = integrator_of(time, choice.numerics) == best_integrator;
     // Kinks move through cells and steps where the friction switches its direction: errors fall by low powers. A
     // displacement of 0 does not tell the error of the works. Inside soft bodies layers are as thin as at their ends.
-    const double k     = scene.body.elastic_modulus / natural_units(scene).force;
+    const double k     = stiffness(scene);
     const bool is_soft = k < soft;
     const bool much_finer =
       !predicted || choice.is_steep || is_soft || scene.ground.direction.is_uneven() || scene.keeps_its_centre();

@@ -169,7 +169,7 @@ namespace crawler
       double
       first_tolerance() const
       {
-        const std::string &name = pilots_.integrator(now_);
+        const std::string &name = integrator_of(pilots_.parameters.time, now_);
         return name == "radau 9" ? graded_radau_9 : name == "radau 5" ? graded_radau_5 : graded_others;
       }
 
@@ -255,7 +255,7 @@ namespace crawler
   double
   first_step_on_graded_mesh(const Scene &scene, const Numerics &numerics)
   {
-    const double h = smallest_size(scene, numerics), k = scene.body.elastic_modulus / natural_units(scene).force;
+    const double h = smallest_size(scene, numerics), k = stiffness(scene);
     const double size = h * h / k / std::pow(numerics.degree, 4.);
     return std::clamp(size, shortest_first_step, longest_first_step) * scene.end_time;
   }
@@ -290,7 +290,7 @@ namespace crawler
     if (pilots.cycles)
     {
       pilots.cycles->accuracy = accuracy; // the displacements are compared here
-      if (pilots.stiffness() * pilots.cycles->period / pilots.scene.end_time > forgetting_stiffness)
+      if (stiffness(pilots.scene) * pilots.cycles->period / pilots.scene.end_time > forgetting_stiffness)
         pilots.cycles->computed = first_cycles;
     }
     const auto space_over_time = Search(pilots, start).find(choice);

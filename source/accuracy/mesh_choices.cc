@@ -165,7 +165,7 @@ namespace crawler
       return nothing_predicted;
     if (!pilots.finished() || pilots.last.size.unresolved() > std::max(resolved, parameters.accuracy))
       return most == max_cells ? std::optional(nothing_predicted) : std::nullopt; // nothing else is left
-    if (most < max_cells && pilots.stiffness() < very_soft)
+    if (most < max_cells && stiffness(pilots.scene) < very_soft)
       return std::nullopt; // a pilot may pass over these layers by luck
     return user_cells ? nothing_predicted : extrapolate_cells(pilots, choice, degree, n_cells, may_be_steep);
   }
@@ -181,7 +181,7 @@ namespace crawler
     const DiscretizationParameters &own = pilots.parameters.discretization;
     const double L                      = pilots.scene.body.length;
     Numerics &n                         = choice.numerics;
-    n.integrator                        = "";
+    n.integrator                        = "bdf";
     n.degree                            = own.degree.value_or(adaptive_degree);
     n.n_cells                           = own.n_cells.value_or(
       static_cast<unsigned int>(std::clamp(std::ceil(L / pilots.scales.length), 8., 1. * max_cells)));
@@ -305,12 +305,10 @@ namespace crawler
     n.formulation          = Formulation::stretch;
     n.degree               = 1;
     n.mesh                 = {};
-    n.grading              = {};
     n.layer =
       m_s > 0. ? std::min(largest_layer * L, layer_lengths / a * scene.body.elastic_modulus / m_s) : largest_layer * L;
     if (own.discretization.mesh == MeshKind::uniform)
       n.layer = 0.;
-    n.parts            = 1;
     n.integrator       = "radau 5";
     choice.strain      = std::min(pilots.scale / std::min(L, length), 0.3);
     const double first = std::clamp(std::ceil(cells_of_length * L / length), 1. * first_family_cells, 0.25 * max_cells);
@@ -319,9 +317,8 @@ namespace crawler
       std::max(std::min(family_tolerance * own.accuracy, largest_family_tolerance) * choice.strain * L, 1e-13 * L));
     if (!own.time.initial_step)
       n.initial_step = 1e-4 * scene.end_time;
-    choice.is_family    = !user_cells;
-    choice.is_users     = !choice.is_family;
-    choice.wanted_error = choice.space_share = std::numeric_limits<double>::quiet_NaN();
+    choice.is_family = !user_cells;
+    choice.is_users  = !choice.is_family;
     choice.explanation =
       choice.is_family
         ? fmt::format("for Accuracy {:g}: the stretch form, on ever finer meshes until the displacement settles",

@@ -110,23 +110,17 @@ namespace crawler
   }
 
   double
-  Pilots::stiffness() const
-  {
-    return scene.body.elastic_modulus / natural_units(scene).force;
-  }
-
-  double
   Pilots::stiffness_over_friction() const
   {
     const double a = scene.friction_exponent();
-    return stiffness() / std::max(std::pow(last.min_stretch.value, a), std::pow(last.max_stretch.value, a));
+    return stiffness(scene) / std::max(std::pow(last.min_stretch.value, a), std::pow(last.max_stretch.value, a));
   }
 
   bool
   Pilots::is_soft() const
   {
     const double a = scene.friction_exponent();
-    return stiffness() < falling(softest, parameters.accuracy, softness_power) * std::max(1., a * a);
+    return stiffness(scene) < falling(softest, parameters.accuracy, softness_power) * std::max(1., a * a);
   }
 
   bool
@@ -149,16 +143,10 @@ namespace crawler
            parameters.accuracy;
   }
 
-  const std::string &
-  Pilots::integrator(const Numerics &numerics) const
-  {
-    const std::string &own = parameters.time.integrator;
-    return own == "automatic" ? numerics.integrator : own;
-  }
-
   double
   Pilots::first_step(const Numerics &numerics) const
   {
-    return (integrator(numerics).starts_with("radau") ? one_step_start : mesh_choice::multistep_start) * scene.end_time;
+    const bool is_one_step = integrator_of(parameters.time, numerics).starts_with("radau");
+    return (is_one_step ? one_step_start : mesh_choice::multistep_start) * scene.end_time;
   }
 } // namespace crawler

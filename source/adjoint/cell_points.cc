@@ -76,11 +76,11 @@ namespace crawler
       at.w[p] = 1. + at.e[p];
   }
 
-  BackwardStages::BackwardStages(const LaneRecord &steps, const RadauTableau &tableau)
+  BackwardStages::BackwardStages(const LaneRecord &steps, const LaneSetup &setup)
     : u(steps.end)
     , v(steps.end.size())
     , steps_(steps)
-    , tableau_(tableau)
+    , setup_(setup)
     , y_(steps.end)
   {
   }
@@ -91,7 +91,7 @@ namespace crawler
     step_           = step;
     const double *z = steps_.z(step);
     for (std::size_t d = 0; d < y_.size(); ++d)
-      y_[d] -= z[(tableau_.n - 1) * y_.size() + d];
+      y_[d] -= z[(setup_.n_stages - 1) * y_.size() + d];
   }
 
   void
@@ -100,13 +100,13 @@ namespace crawler
     const double *z = steps_.z(step_);
     for (std::size_t d = 0; d < y_.size(); ++d)
       u[d] = y_[d] + z[stage * y_.size() + d];
-    radau::stage_rate(static_cast<int>(tableau_.n),
-                      tableau_.inverse.data(),
+    radau::stage_rate(static_cast<int>(setup_.n_stages),
+                      setup_.method.inverse,
                       static_cast<int>(stage),
                       1. / steps_.sizes[step_],
                       z,
                       static_cast<int>(y_.size()),
                       v.data());
-    time = steps_.times[step_] - (1. - tableau_.c[stage]) * steps_.sizes[step_];
+    time = steps_.times[step_] - (1. - setup_.method.c[stage]) * steps_.sizes[step_];
   }
 } // namespace crawler

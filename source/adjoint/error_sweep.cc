@@ -2,6 +2,7 @@
 #include <crawler/adjoint/error_sweep.h>
 #include <crawler/adjoint/forces_at_points.h>
 #include <crawler/mesh/reference_element.h>
+#include <crawler/time/radau_tableau.h>
 
 #include <algorithm>
 #include <cmath>
@@ -43,16 +44,16 @@ namespace crawler
       explicit ErrorSweep(const RecordedRun &run)
         : adjoint_(run.natural, with_more_stages(run.method))
         , setup_(adjoint_.tables().setup)
-        , tableau_(radau_tableau(setup_.n_stages))
-        , steps_(run.steps.at_places(radau_tableau(run.method.n_stages).c, tableau_.c))
-        , stages_(steps_, tableau_)
+        , c_(radau_tableau(setup_.n_stages).c)
+        , steps_(run.steps.at_places(radau_tableau(run.method.n_stages).c, c_))
+        , stages_(steps_, setup_)
         , cells_(setup_)
         , fine_(setup_, more_points)
         , bubbles_(setup_.degree, fine_.places)
-        , slopes_(interpolation_matrix(tableau_.c, tableau_.c, /*derivative=*/true))
+        , slopes_(interpolation_matrix(c_, c_, /*derivative=*/true))
         , forces_(run.scene, run.scene, cells_.points)
         , fine_forces_(run.scene, run.scene, fine_.points)
-        , fine_at_(tableau_.n, StateAtPoints(fine_.size()))
+        , fine_at_(setup_.n_stages, StateAtPoints(fine_.size()))
       {
       }
 
@@ -95,9 +96,9 @@ namespace crawler
       {
         std::vector<double> of_cells(setup_.n_cells, 0.), mu_at(cells_.size()), mu_s(cells_.size());
         StateAtPoints at(cells_.size());
-        const std::size_t n = mu.size() / tableau_.n;
+        const std::size_t n = mu.size() / setup_.n_stages;
         stages_.go_back(step);
-        for (unsigned int i = 0; i < tableau_.n; ++i)
+        for (unsigned int i = 0; i < setup_.n_stages; ++i)
         {
           stages_.go_to_stage(i);
           cells_.evaluate(stages_, at);
@@ -133,12 +134,12 @@ namespace crawler
       {
         std::vector<StateAtPoints> states = fine_at_;
         std::vector<double> rate(n_bubbles());
-        for (unsigned int i = 0; i < tableau_.n; ++i)
+        for (unsigned int i = 0; i < setup_.n_stages; ++i)
         {
           std::ranges::fill(rate, 0.);
-          for (unsigned int j = 0; j < tableau_.n; ++j)
+          for (unsigned int j = 0; j < setup_.n_stages; ++j)
             for (std::size_t b = 0; b < n_bubbles(); ++b)
-              rate[b] += slopes_[i * tableau_.n + j] / h * c[j * n_bubbles() + b];
+              rate[b] += slopes_[i * setup_.n_stages + j] / h * c[j * n_bubbles() + b];
           add_bubbles(c.data() + i * n_bubbles(), states[i].u, states[i].e);
           add_bubbles(rate.data(), states[i].v, states[i].rate);
           for (std::size_t p = 0; p < states[i].e.size(); ++p)
@@ -172,12 +173,12 @@ namespace crawler
       void
       look_at_bubbles(const std::size_t step, const double *mu, const std::size_t n, const std::vector<double> &without)
       {
-        std::vector<double> c(tableau_.n * n_bubbles(), 0.), mu_at(fine_.size()), mu_s(fine_.size());
+        std::vector<double> c(setup_.n_stages * n_bubbles(), 0.), mu_at(fine_.size()), mu_s(fine_.size());
         for (unsigned int round = 0; round <= rounds; ++round)
         {
           const auto states            = with_bubbles(c, steps_.sizes[step]);
           std::vector<double> of_cells = without;
-          for (unsigned int i = 0; i < tableau_.n; ++i)
+          for (unsigned int i = 0; i < setup_.n_stages; ++i)
           {
             if (*std::ranges::min_element(states[i].w) < least_stretch)
             {
@@ -212,8 +213,8 @@ namespace crawler
 
       LaneAdjoint adjoint_;
       const LaneSetup &setup_;
-      const RadauTableau &tableau_;
-      const LaneRecord steps_; ///< steps with the states at the stages of the method with more of them
+      const std::vector<double> &c_; ///< stages of the method with more of them
+      const LaneRecord steps_;       ///< steps with the states at these stages
       BackwardStages stages_;
       const CellPoints cells_, fine_;
       const Bubbles bubbles_;

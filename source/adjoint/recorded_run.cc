@@ -11,9 +11,7 @@ namespace crawler
   RecordedRun::is_possible(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
   {
     const StretchFeedback *feedback = scene.active_stress->feedback();
-    const bool is_from_here = feedback == nullptr || !(feedback->facts.sees_near() || feedback->facts.delay > 0.);
-    return numerics.formulation == Formulation::position && !numerics.jumps_move && !scene.profiles.initial_stretch &&
-           is_from_here && batch_method(scene, time, numerics) &&
+    return !numerics.jumps_move && batch_method(scene, time, numerics) &&
            (feedback == nullptr || TimeSegments(*scene.active_stress, scene.end_time).breaks().empty());
   }
 

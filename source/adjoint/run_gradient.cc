@@ -108,7 +108,6 @@ namespace crawler
         : run_(run)
         , adjoint_(run.natural, run.method)
         , setup_(adjoint_.tables().setup)
-        , tableau_(radau_tableau(setup_.n_stages))
         , cells_(setup_)
         , own_(run.scene, run.scene, cells_.points)
         , local_{cells_.points, std::vector<double>(cells_.size()), std::vector<double>(cells_.size()), {}, {}}
@@ -136,7 +135,7 @@ namespace crawler
         for (Adjoint &adjoint : adjoints_)
           solve(adjoint);
         look_at_end();
-        BackwardStages stages(run_.steps, tableau_);
+        BackwardStages stages(run_.steps, setup_);
         for (std::size_t step = run_.steps.times.size(); step-- > 0;)
           look(step, stages);
         for (double &s : local_.s)
@@ -243,9 +242,9 @@ namespace crawler
         while (step + 1 < run_.steps.times.size() && run_.steps.times[step] < place.t)
           ++step;
         const double part = 1. + (place.t - run_.steps.times[step]) / run_.steps.sizes[step];
-        StretchInRun stretch{place, step, std::vector<double>(tableau_.n)};
+        StretchInRun stretch{place, step, std::vector<double>(setup_.n_stages)};
         radau::collocation_weights(
-          static_cast<int>(tableau_.n), tableau_.c.data(), std::clamp(part, 0., 1.), stretch.weights.data());
+          static_cast<int>(setup_.n_stages), setup_.method.c, std::clamp(part, 0., 1.), stretch.weights.data());
         return stretch;
       }
 
@@ -293,14 +292,14 @@ namespace crawler
         }
         if (step != stretch.step)
           return;
-        stages.go_to_stage(tableau_.n - 1);
+        stages.go_to_stage(setup_.n_stages - 1);
         std::vector<double> u = stages.u, more(n);
         const double *z       = run_.steps.z(step);
-        radau::combine(static_cast<int>(tableau_.n), stretch.weights.data(), z, static_cast<int>(n), more.data());
+        radau::combine(static_cast<int>(setup_.n_stages), stretch.weights.data(), z, static_cast<int>(n), more.data());
         for (std::size_t d = 0; d < n; ++d)
-          u[d] += more[d] - z[(tableau_.n - 1) * n + d];
+          u[d] += more[d] - z[(setup_.n_stages - 1) * n + d];
         look_up(stretch, u);
-        for (unsigned int i = 0; i < tableau_.n; ++i)
+        for (unsigned int i = 0; i < setup_.n_stages; ++i)
           for (std::size_t j = 0; j < stretch.slopes.size(); ++j)
             sources.by_u[i * n + stretch.cell * setup_.degree + j] += stretch.weights[i] * stretch.slopes[j];
         // Strains of the parts of a body that is longer there are smaller.
@@ -328,11 +327,11 @@ namespace crawler
           std::ranges::fill(gradient, 0.);
         else
           adjoint.value = run_.displacement / run_.units.length;
-        const std::size_t n = gradient.size(), n_mu = tableau_.n * n;
+        const std::size_t n = gradient.size(), n_mu = setup_.n_stages * n;
         adjoint.mu.resize(run_.steps.times.size() * n_mu);
         const LaneRecord steps = // steps after a stretch have no effect on it
           adjoint.stretch ? run_.steps.first_steps(adjoint.stretch->step + 1) : run_.steps;
-        BackwardStages stages(steps, tableau_);
+        BackwardStages stages(steps, setup_);
         const auto see =
           [&](const std::size_t step, const std::span<const double> mu, const std::span<const double> zeta) {
             std::ranges::copy(mu, adjoint.mu.begin() + static_cast<std::ptrdiff_t>(step * n_mu));
@@ -349,7 +348,7 @@ namespace crawler
           {
             if (step != before_stride_)
               return;
-            go_to_stage(stages, tableau_.n - 1);
+            go_to_stage(stages, setup_.n_stages - 1);
             for (std::size_t d = 0; d < n; ++d)
             {
               sources.by_end[d] = -mean[d];
@@ -357,9 +356,9 @@ namespace crawler
             }
             return;
           }
-          for (unsigned int i = 0; i < tableau_.n; ++i)
+          for (unsigned int i = 0; i < setup_.n_stages; ++i)
           {
-            const double weight = run_.steps.sizes[step] * tableau_.b[i];
+            const double weight = run_.steps.sizes[step] * setup_.method.b[i];
             go_to_stage(stages, i);
             own_.evaluate(run_.steps.times[step], at_, at_ends_);
             adjoint.value += weight * work_rate(adjoint.quantity, cells_, own_, at_, at_ends_);
@@ -424,10 +423,10 @@ namespace crawler
       {
         const double end = run_.steps.times[step], h = run_.steps.sizes[step];
         stages.go_back(step);
-        for (unsigned int i = tableau_.n; i-- > 0;)
+        for (unsigned int i = setup_.n_stages; i-- > 0;)
         {
-          const double weight = h * tableau_.b[i];
-          const bool is_last  = i + 1 == tableau_.n;
+          const double weight = h * setup_.method.b[i];
+          const bool is_last  = i + 1 == setup_.n_stages;
           go_to_stage(stages, i);
           if (stride_ && step == before_stride_ && is_last)
             look_at_start_of_stride();
@@ -438,8 +437,8 @@ namespace crawler
           {
             if (adjoint.stretch && step > adjoint.stretch->step)
               continue;
-            const std::size_t n = adjoint.mu.size() / (run_.steps.times.size() * tableau_.n);
-            cells_.evaluate(adjoint.mu.data() + (step * tableau_.n + i) * n, mu_.values, mu_.slopes);
+            const std::size_t n = adjoint.mu.size() / (run_.steps.times.size() * setup_.n_stages);
+            cells_.evaluate(adjoint.mu.data() + (step * setup_.n_stages + i) * n, mu_.values, mu_.slopes);
             if (is_last && !adjoint.zeta[step].empty())
               cells_.evaluate(adjoint.zeta[step].data(), zeta_.values, zeta_.slopes);
             if (adjoint.slot == static_cast<std::size_t>(Quantity::displacement))
@@ -479,7 +478,7 @@ namespace crawler
           local_.elastic_modulus[p] += own_.inside.elastic(p, at_.e[p]) * mu_.slopes[p];
           local_.friction[p] += own_.inside.friction(p) * mu_.values[p];
         }
-        if (run_.steps.times.size() * tableau_.n * cells_.size() > max_samples)
+        if (run_.steps.times.size() * setup_.n_stages * cells_.size() > max_samples)
           return;
         local_.times.push_back(at_.t * run_.units.time);
         for (std::size_t p = cells_.size(); p-- > 0;)
@@ -512,7 +511,6 @@ namespace crawler
       const RecordedRun &run_;
       LaneAdjoint adjoint_;
       const LaneSetup &setup_;
-      const RadauTableau &tableau_;
       const CellPoints cells_;
       ForcesOfScene own_;
       std::deque<OtherScene> others_; ///< [variation][4]

@@ -150,11 +150,8 @@ namespace crawler
     return numbers;
   }
 
-  CsvNumbers
-  read_csv_numbers(const std::string &file,
-                   const std::vector<std::string> &names,
-                   const std::string &expected,
-                   const std::string &entry)
+  std::string
+  read_table_text(const std::string &file, const std::string &expected, const std::string &entry)
   {
     if (const std::string reason = unreadable(file); !reason.empty())
       throw InputError("\"" + file + "\" " + reason + "; " + expected + " is expected", entry);
@@ -162,6 +159,15 @@ namespace crawler
     std::ostringstream text;
     if (!in || !(text << in.rdbuf()))
       throw InputError("cannot read \"" + file + "\", or it is empty; " + expected + " is expected", entry);
-    return csv_numbers(text.str(), names, file, entry);
+    return std::move(text).str();
+  }
+
+  CsvNumbers
+  read_csv_numbers(const std::string &file,
+                   const std::vector<std::string> &names,
+                   const std::string &expected,
+                   const std::string &entry)
+  {
+    return csv_numbers(read_table_text(file, expected, entry), names, file, entry);
   }
 } // namespace crawler

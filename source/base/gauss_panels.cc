@@ -133,15 +133,14 @@ namespace crawler
   }
 
   unsigned int
-  GaussPanels::number_ending_at(const std::vector<double> &places, const unsigned int n, const unsigned int most)
+  GaussPanels::number_ending_at(const std::vector<double> &places, const unsigned int most)
   {
     constexpr double round_off = 1e-9;
-    for (unsigned int factor = 1; factor <= most / n; ++factor)
-      if (std::ranges::all_of(places, [&](const double x) {
-            return std::abs(x * n * factor - std::round(x * n * factor)) < round_off * n * factor;
-          }))
-        return n * factor;
-    return n;
+    for (unsigned int n = 1; n <= most; ++n)
+      if (std::ranges::all_of(places,
+                              [n](const double x) { return std::abs(x * n - std::round(x * n)) < round_off * n; }))
+        return n;
+    return 1;
   }
 
   std::vector<double>

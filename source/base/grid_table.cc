@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/csv_numbers.h>
-#include <crawler/base/files.h>
 #include <crawler/base/grid_table.h>
 #include <crawler/base/told_apart.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 namespace crawler
 {
@@ -127,16 +124,8 @@ namespace crawler
   read_grid_table(const std::string &file, const std::string &name, const std::size_t least, const std::string &entry)
   {
     const Source source{file, name, entry};
-    if (const std::string reason = unreadable(file); !reason.empty())
-      source.refuse("\"{}\" {}; a CSV or HDF5 file is expected", file, reason);
-    std::ostringstream content;
-    std::ifstream in(file, std::ios::binary);
-    if (!in || in.peek() == std::ifstream::traits_type::eof() || !(content << in.rdbuf()))
-      source.refuse("cannot read \"{}\", or it is empty; the name of a CSV file with the header s,t,{} or of "
-                    "an HDF5 file is expected",
-                    file,
-                    name);
-    const std::string text = std::move(content).str();
+    const std::string text =
+      read_table_text(file, "the name of a CSV file with the header s,t," + name + " or of an HDF5 file", entry);
     GridTable grid = text.starts_with("\x89HDF\r\n\x1a\n") ? read_hdf5_grid_table(source) : read_csv(text, source);
     for (const auto &[variable, size] : {std::pair("s", grid.s.size()), std::pair("t", grid.t.size())})
       if (size < least)

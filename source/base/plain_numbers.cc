@@ -84,9 +84,9 @@ namespace crawler
   }
 
   std::string
-  with_short_quotes(const std::string &text, const std::size_t most)
+  with_short_quotes(const std::string &text)
   {
-    constexpr std::size_t shown = 60; // at each end
+    constexpr std::size_t most = 300, shown = 60; // at each end
     std::string result;
     for (std::size_t begin = 0; begin < text.size();)
     {

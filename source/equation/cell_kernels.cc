@@ -21,14 +21,9 @@ namespace crawler
         const FrictionLaw &law;
 
         void
-        operator()(const double *w, double *g) const
+        operator()(const double *w, double *g, double *w_dg = nullptr) const
         {
-          law.values({w, n}, {g, n});
-        }
-        void
-        operator()(const double *w, double *g, double *w_dg) const
-        {
-          law.values({w, n}, {g, n}, {w_dg, n});
+          law.values({w, n}, {g, n}, {w_dg, w_dg != nullptr ? n : 0u});
         }
       };
       using Plain = PlainLaws<n, double, Friction>;

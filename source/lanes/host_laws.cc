@@ -45,25 +45,19 @@ namespace crawler
   {
     const std::size_t n = points_.size();
     bool good           = true;
+    const auto span     = [n](auto *values) { return std::span(values, values != nullptr ? n : 0); };
     if (at.g != nullptr)
     {
-      if (at.w_dg != nullptr)
-        scene_.friction->values({at.w, n}, {at.g, n}, {at.w_dg, n});
-      else
-        scene_.friction->values({at.w, n}, {at.g, n});
-      good = are_positive({at.g, n});
+      scene_.friction->values(span(at.w), span(at.g), span(at.w_dg));
+      good = are_positive(span(at.g));
     }
     if (at.c != nullptr)
     {
       for (std::size_t i = 0; i < n; ++i)
         x_[i] = points_[i] + at.u[i];
-      if (at.c_x != nullptr)
-        scene_.ground.profile->values(x_, {at.c, n}, {at.c_x, n});
-      else
-        scene_.ground.profile->values(x_, {at.c, n});
-      good = good && are_positive({at.c, n});
+      scene_.ground.profile->values(x_, span(at.c), span(at.c_x));
+      good = good && are_positive(span(at.c));
     }
-    const auto span = [n](auto *values) { return std::span(values, values != nullptr ? n : 0); };
     if (at.m != nullptr)
       feedback_->values(
         at.t, {span(at.w), span(at.rate), {}, {}}, {span(at.m), span(at.m_w), span(at.m_rate), std::span<double>()});

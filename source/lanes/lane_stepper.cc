@@ -9,21 +9,17 @@
 
 namespace crawler
 {
-  namespace
+  TimeOutcome
+  outcome_at(const LaneProgress &progress)
   {
-    /// Outcome, without a status, of a body that has come so far.
-    TimeOutcome
-    outcome_at(const LaneProgress &progress)
-    {
-      TimeOutcome outcome;
-      outcome.time              = progress.t;
-      outcome.step_size         = progress.next;
-      outcome.steps             = progress.steps;
-      outcome.rejected_steps    = progress.rejected;
-      outcome.newton_iterations = progress.newton;
-      return outcome;
-    }
-  } // namespace
+    TimeOutcome outcome;
+    outcome.time              = progress.t;
+    outcome.step_size         = progress.next;
+    outcome.steps             = progress.steps;
+    outcome.rejected_steps    = progress.rejected;
+    outcome.newton_iterations = progress.newton;
+    return outcome;
+  }
 
   LaneStepper::LaneStepper(const Scene &scene, const LaneMethod &method)
     : scene_(scene)

@@ -21,10 +21,7 @@ namespace crawler
   {
     const double c = wave.wave().speed, chi = wave.perturbation_parameter();
     const WaveShape &shape = wave.shape();
-    NaturalWave result{c * scene.end_time / scene.body.length,
-                       scene.body.friction_exponent(),
-                       scene.body.elastic_modulus / natural_units(scene).force,
-                       {}};
+    NaturalWave result{c * scene.end_time / scene.body.length, scene.body.friction_exponent(), stiffness(scene), {}};
     for (unsigned int n = 1; n <= shape.a.size(); ++n)
       if (shape.power(n) != 0.)
         result.harmonics.push_back({2. * std::numbers::pi * n, chi * (shape.a[n - 1] / c), chi * (shape.b[n - 1] / c)});

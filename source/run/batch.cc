@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/lanes/host_laws.h>
+#include <crawler/lanes/lane_stepper.h>
 #include <crawler/run/batch.h>
 #include <crawler/run/lane_extremes.h>
 #include <crawler/run/lane_sampler.h>
 #include <crawler/run/recorder.h>
-#include <crawler/time/radau_tableau.h>
 
 #include <algorithm>
 #include <array>
@@ -33,7 +33,7 @@ namespace crawler
 
       EndWatch(const Scene &scene, const double min_event, const unsigned int n_stages)
         : moduli_(scene.end_moduli())
-        , watch_(*scene.active_stress, 1., min_event > 0. ? min_event : HUGE_VAL)
+        , watch_(*scene.active_stress, min_event > 0. ? min_event : HUGE_VAL)
         , in_stages_(n_stages)
       {
         if (const StretchFeedback *feedback = scene.active_stress->feedback())
@@ -114,7 +114,6 @@ namespace crawler
             const std::function<bool()> &keep_going,
             Results &results)
         : tables_(lane_tables(method))
-        , tableau_(radau_tableau(method.n_stages))
         , runs_(runs)
         , members_(members)
         , options_(options)
@@ -179,7 +178,7 @@ namespace crawler
         std::vector<double> points = tables_->points;
         points.insert(points.end(), {0., 1.});
         lane.stress = scene.active_stress->at(points);
-        lane.ends.emplace(scene, numerics.min_event, tableau_.n);
+        lane.ends.emplace(scene, numerics.min_event, tables_->setup.n_stages);
         lane.breaks = scene.breaks_in_space();
         if (!scene.is_plain())
           lane.laws.emplace(scene, tables_->points);
@@ -252,24 +251,17 @@ namespace crawler
       {
         if (!step.is_settled || !lane.ends->is_good(step))
           return false;
-        const unsigned int n = tableau_.n;
+        const unsigned int n = tables_->setup.n_stages;
         const LaneStage &end = step.stages[n - 1];
         for (unsigned int i = options_.energy_balance ? 0 : n - 1; i < n; ++i)
         {
           if (!(step.stages[i].min_stretch > small_stretch))
             return false;
-          const auto [smallest, largest] = lane_extremes(*tables_,
-                                                         step,
-                                                         i,
-                                                         lane.recorder->result.min_stretch.value,
-                                                         lane.recorder->result.max_stretch.value,
-                                                         lane.breaks);
+          const auto [smallest, largest] = lane_extremes(*tables_, step, i, lane.recorder->result, lane.breaks);
           lane.recorder->see_stretch(smallest, largest);
           if (options_.energy_balance)
             add_rates(lane, step, i);
         }
-        if (options_.energy_balance)
-          lane.recorder->result.energy_balance->elastic_energy = end.elastic_energy;
         const auto sample = [&](const double time) { return sampler_.sample(step, time); };
         if (lane.recorder->see_step(step.time, step.is_output_time, end.min_stretch, end.max_stretch, sample) ||
             step.time == lane.output_times.back())
@@ -286,14 +278,16 @@ namespace crawler
       void
       add_rates(Lane &lane, const LaneStep &step, const unsigned int i) const
       {
-        const LaneStage &stage = step.stages[i];
-        const double t         = step.time - (1. - tableau_.c[i]) * step.size;
-        Rates works            = rates_of(stage, lane.ends->power(i, t, stage));
+        const LaneTableau &method = tables_->setup.method;
+        const LaneStage &stage    = step.stages[i];
+        const double t            = step.time - (1. - method.c[i]) * step.size;
+        Rates works               = rates_of(stage, lane.ends->power(i, t, stage));
         for (double &work : works)
-          work *= step.size * tableau_.b[i];
-        lane.recorder->result.energy_balance->add_works(works);
-        if (i + 1 == tableau_.n) // the velocity balances all forces there
-          lane.recorder->see_friction(step.size, stage.abs_friction, std::abs(stage.net_friction));
+          work *= step.size * method.b[i];
+        if (i + 1 == tables_->setup.n_stages) // the velocity balances all forces there
+          lane.recorder->see_works(step.size, works, stage);
+        else
+          lane.recorder->result.energy_balance->add_works(works);
       }
 
       void
@@ -307,22 +301,17 @@ namespace crawler
       SimulationResult
       result_of(Lane &lane, const LaneOutcome &outcome) const
       {
-        SimulationResult &result      = lane.recorder->result;
-        result.time.status            = Status::finished;
-        result.time.step_size         = outcome.progress->next;
-        result.time.steps             = outcome.progress->steps;
-        result.time.rejected_steps    = outcome.progress->rejected;
-        result.time.newton_iterations = outcome.progress->newton;
+        SimulationResult &result   = lane.recorder->result;
+        result.time                = outcome_at(*outcome.progress);
+        result.time.status         = Status::finished;
         const unsigned int n_cells = tables_->setup.n_cells, degree = tables_->setup.degree;
         result.mesh = {.n_cells = n_cells, .degree = degree, .n_unknowns = n_cells * degree + 1, .most_cells = n_cells};
-        result.integrator = runs_[lane.run].time->integrator == "automatic" ? runs_[lane.run].numerics->integrator
-                                                                            : runs_[lane.run].time->integrator;
+        result.integrator = integrator_of(*runs_[lane.run].time, *runs_[lane.run].numerics);
         result.engine     = "fused";
         return lane.recorder->finish();
       }
 
       const std::shared_ptr<const LaneTables> tables_;
-      const RadauTableau &tableau_;
       const std::span<const BatchRun> runs_;
       const std::vector<std::size_t> &members_; ///< numbers of the runs
       const RecordOptions options_;

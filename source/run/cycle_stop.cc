@@ -98,7 +98,7 @@ namespace crawler
   bool
   CycleStop::observe(const std::span<const double> u,
                      const double displacement,
-                     const EnergyBalance *energy_balance,
+                     const std::optional<EnergyBalance> &energy_balance,
                      const double decay)
   {
     double square = 0.;
@@ -114,7 +114,7 @@ namespace crawler
     compare(stretch);
     if (!is_end)
       return false;
-    ends_.push_back({displacement, energy_balance ? *energy_balance : EnergyBalance()});
+    ends_.push_back({displacement, energy_balance.value_or(EnergyBalance())});
     if (ends_.size() >= 3)
       judge(decay);
     if (wish_.computed > 0)
@@ -207,7 +207,7 @@ namespace crawler
   }
 
   Cycles
-  CycleStop::extrapolate(double &displacement, EnergyBalance *energy_balance) const
+  CycleStop::extrapolate(double &displacement, std::optional<EnergyBalance> &energy_balance) const
   {
     const std::size_t n = ends_.size() - 1;
     const auto left     = static_cast<double>(n_cycles_ - n);
@@ -216,7 +216,7 @@ namespace crawler
     if (energy_balance)
       for (double EnergyBalance::*integral : EnergyBalance::energies())
         if (integral != &EnergyBalance::elastic_energy) // that of the last state
-          go_on(energy_balance->*integral, [&](const End &end) { return end.energy_balance.*integral; });
+          go_on((*energy_balance).*integral, [&](const End &end) { return end.energy_balance.*integral; });
     return {wish_.period, static_cast<unsigned int>(n), static_cast<unsigned int>(n_cycles_ - n), bound_};
   }
 

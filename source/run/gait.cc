@@ -164,14 +164,13 @@ namespace crawler
   }
 
   void
-  GaitMeter::see_step(const double time, const double displacement, const EnergyBalance *energy_balance)
+  GaitMeter::see_step(const double time, const double displacement, const std::optional<EnergyBalance> &energy_balance)
   {
     if (!keeps_step(time))
       return;
     if (period_ && steps_.size() >= 2)
       steps_.erase(steps_.begin());
-    steps_.push_back(
-      {time, displacement, energy_balance ? std::optional(*energy_balance) : std::nullopt, smallest_, largest_});
+    steps_.push_back({time, displacement, energy_balance, smallest_, largest_});
     smallest_ = largest_ = {};
   }
 
@@ -186,7 +185,7 @@ namespace crawler
         smallest.add(step.smallest);
         largest.add(step.largest);
       }
-    return measure_wave(stretch, period, 1., std::max(smallest.to - smallest.from, largest.to - largest.from));
+    return measure_wave(stretch, period, std::max(smallest.to - smallest.from, largest.to - largest.from));
   }
 
   std::optional<Gait>

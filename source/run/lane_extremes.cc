@@ -79,8 +79,7 @@ namespace crawler
   lane_extremes(const LaneTables &tables,
                 const LaneStep &step,
                 const unsigned int i,
-                const double least,
-                const double most,
+                const SimulationResult &so_far,
                 const std::vector<double> &breaks)
   {
     const LaneSetup &setup = tables.setup;
@@ -96,6 +95,7 @@ namespace crawler
           sharpen(tables, step, i, sample, now);
         return now;
       };
+    const double least = so_far.min_stretch.value, most = so_far.max_stretch.value;
     return {sharpened(stage.min_stretch, stage.min_sample, stage.min_stretch < least, least),
             sharpened(stage.max_stretch, stage.max_sample, stage.max_stretch > most, most)};
   }

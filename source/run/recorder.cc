@@ -114,21 +114,6 @@ namespace crawler
     largest_.interrupt();
   }
 
-  void
-  Recorder::see_friction(const double duration, const double sum_of_sizes, const double size_of_sum)
-  {
-    friction_impulse_ += duration * sum_of_sizes;
-    net_impulse_ += duration * size_of_sum;
-    if (friction_impulse_ > 0.)
-      result.net_friction = net_impulse_ / friction_impulse_;
-  }
-
-  const EnergyBalance *
-  Recorder::energies() const
-  {
-    return result.energy_balance ? &*result.energy_balance : nullptr;
-  }
-
   bool
   Recorder::see_step(
     const double time, const bool is_step_end, const double smallest, const double largest, const Sampler &sample)
@@ -142,7 +127,7 @@ namespace crawler
       }
       gait_meter_->see_extremes(smallest, largest);
       if (gait_meter_->keeps_step(time))
-        gait_meter_->see_step(time, sample(time).displacement, energies());
+        gait_meter_->see_step(time, sample(time).displacement, result.energy_balance);
     }
     return cycle_stop_ && see_cycles(time, is_step_end, sample);
   }
@@ -159,7 +144,7 @@ namespace crawler
       const BodySample body      = sample(t);
       return cycle_stop_->observe(body.u,
                                   body.displacement,
-                                  energies(),
+                                  result.energy_balance,
                                   scene_.body.elastic_modulus / units_.force /
                                     (std::max(friction[0], friction[1]) / friction_unit));
     };
@@ -175,8 +160,7 @@ namespace crawler
     if (cycles_repeat())
     {
       result.time.status = Status::finished;
-      result.cycles =
-        cycle_stop_->extrapolate(result.displacement, result.energy_balance ? &*result.energy_balance : nullptr);
+      result.cycles      = cycle_stop_->extrapolate(result.displacement, result.energy_balance);
     }
     if (gait_meter_ && result.time.status == Status::finished)
       result.gait = gait_meter_->gait();

@@ -202,7 +202,7 @@ namespace crawler
       meter.see(state.fields.displacement, state.displacement);
       meter.see_extremes(result.min_stretch.value, result.max_stretch.value); // extremes of the whole motion
       meter.see_extremes(state.stretch.min.value, state.stretch.max.value);
-      meter.see_step(t, state.displacement, &state.energy_balance);
+      meter.see_step(t, state.displacement, state.energy_balance);
       return true;
     });
     if (const auto gait = meter.gait())

@@ -181,9 +181,7 @@ namespace crawler
           list.push_back(std::move(error));
         }
       for (ResultEntry &entry : std::vector<ResultEntry>{
-             word("formulation",
-                  "position or stretch",
-                  VALUE(std::string(r.formulation == Formulation::stretch ? "stretch" : "position"))),
+             word("formulation", "position or stretch", VALUE(std::string(word_of(r.formulation)))),
              number("mesh_changes", one, "number of changes of an adaptive mesh", COUNT(r.mesh.changes)),
              number("most_cells",
                     one,

@@ -15,6 +15,12 @@
 
 namespace crawler
 {
+  const std::string &
+  integrator_of(const TimeParameters &time, const Numerics &numerics)
+  {
+    return time.integrator == "automatic" ? numerics.integrator : time.integrator;
+  }
+
   Numerics
   in_units(Numerics numerics, const Units &units)
   {
@@ -44,9 +50,7 @@ namespace crawler
   std::optional<LaneMethod>
   lane_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
   {
-    const std::string &chosen = time.integrator == "automatic" ? numerics.integrator : time.integrator;
-    const std::string name    = chosen.empty() ? "automatic" : chosen;
-    const Integrator &method  = integrator(name);
+    const Integrator &method  = integrator(integrator_of(time, numerics));
     const bool is_one_of_ours = method.petsc_type == "radau" && time.step_control == StepControl::adaptive;
     const bool is_stretch     = numerics.formulation == Formulation::stretch;
     if (time.engine != Engine::automatic || !is_one_of_ours || numerics.mesh.tolerance != 0. ||
@@ -80,8 +84,7 @@ namespace crawler
     time_.end_time = 1.;
     if (scene_.active_stress->feedback() != nullptr)
       past_.delay = scene_.active_stress->feedback()->facts.delay;
-    if (time_.integrator == "automatic")
-      time_.integrator = numerics_.integrator.empty() ? "bdf" : numerics_.integrator;
+    time_.integrator = integrator_of(time, numerics);
     build_first();
   }
 
@@ -285,7 +288,6 @@ namespace crawler
       outcome.steps += run_->before.steps;
       outcome.rejected_steps += run_->before.rejected_steps;
       outcome.newton_iterations += run_->before.newton_iterations;
-      outcome.linear_iterations += run_->before.linear_iterations;
       unsigned int &most_cells = result().mesh.most_cells;
       most_cells               = std::max(most_cells, mesh_.discretization->n_cells());
       if (!goes_on_after(ending, outcome))
@@ -455,6 +457,6 @@ namespace crawler
     if (!run_->options.energy_balance || !integrators_.present->stage_places().empty())
       return;
     if (mesh_.velocity->compute(t, 0., y_, v_))
-      run_->quadrature.advance(t, rates(t, mesh_.assembler->integrals(t, y_, v_), y_, v_));
+      run_->quadrature.advance(t, rates_of(mesh_.assembler->integrals(t, y_, v_), (*mesh_.end_power)(t, y_, v_)));
   }
 } // namespace crawler

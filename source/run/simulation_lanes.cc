@@ -36,10 +36,8 @@ namespace crawler
   void
   Simulation::see_stretch_of_lanes(const unsigned int i)
   {
-    const LaneStepper &lanes       = *integrators_.lanes;
-    const SimulationResult &record = result();
-    auto [smallest, largest] =
-      lane_extremes(lanes.tables(), lanes.lane_step(), i, record.min_stretch.value, record.max_stretch.value, breaks_);
+    const LaneStepper &lanes = *integrators_.lanes;
+    auto [smallest, largest] = lane_extremes(lanes.tables(), lanes.lane_step(), i, result(), breaks_);
     if (!run_->observers.empty() && i + 1 == lanes.tables().setup.n_stages)
     {
       const auto &[min, max] = run_->state.stretch;
@@ -68,14 +66,10 @@ namespace crawler
   void
   Simulation::sample_lanes(const Step &step)
   {
-    const LaneStep &seen    = integrators_.lanes->lane_step();
     const unsigned int last = integrators_.lanes->tables().setup.n_stages - 1;
     run_->quadrature.begin_step(step.size);
     for (unsigned int i = 0; i <= last; ++i)
       take_stage_of_lanes(step, i);
-    EnergyBalance &energies = *result().energy_balance;
-    energies.add_works(run_->quadrature.until(1.));
-    energies.elastic_energy = seen.stages[last].elastic_energy;
-    run_->recorder.see_friction(step.size, seen.stages[last].abs_friction, std::abs(seen.stages[last].net_friction));
+    run_->recorder.see_works(step.size, run_->quadrature.until(1.), integrators_.lanes->lane_step().stages[last]);
   }
 } // namespace crawler

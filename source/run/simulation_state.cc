@@ -148,15 +148,6 @@ namespace crawler
     return true;
   }
 
-  Rates
-  Simulation::rates(const double t,
-                    const CellIntegrals &sums,
-                    const std::span<const double> y,
-                    const std::span<const double> v)
-  {
-    return rates_of(sums, (*mesh_.end_power)(t, y, v));
-  }
-
   /// State within the step that has just been made, from the integrator's dense output; kept in inside_.
   std::span<const double>
   Simulation::state_within(const double t)
@@ -171,7 +162,7 @@ namespace crawler
   Rates
   Simulation::rates_within(const double t)
   {
-    return rates(t, mesh_.assembler->integrals(t, inside_.y, inside_.v), inside_.y, inside_.v);
+    return rates_of(mesh_.assembler->integrals(t, inside_.y, inside_.v), (*mesh_.end_power)(t, inside_.y, inside_.v));
   }
 
   /// Integrates the rates of a step at the stages of the integrator, which uses the same quadrature. The states within
@@ -251,17 +242,15 @@ namespace crawler
     if (!run_->options.energy_balance)
       return true;
     EnergyBalance &energies = *result().energy_balance;
-    const Rates now         = rates(step.time, integrals, y, v_);
+    const Rates now         = rates_of(integrals, (*mesh_.end_power)(step.time, y, v_));
     if (integrators_.present->stage_places().empty())
       run_->quadrature.advance(step.time, now);
     else if (!integrate_step(step, now))
       return false;
-    energies.add_works(run_->quadrature.until(1.));
-    energies.elastic_energy = integrals.elastic_energy;
+    run_->recorder.see_works(step.size, run_->quadrature.until(1.), integrals);
     if (step.number == 0)
       energies.initial_energy = integrals.elastic_energy;
     run_->state.energy_balance = energies;
-    run_->recorder.see_friction(step.size, integrals.abs_friction, std::abs(integrals.net_friction));
     return true;
   }
 } // namespace crawler

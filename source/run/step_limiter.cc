@@ -7,8 +7,8 @@
 
 namespace crawler
 {
-  StressWatch::StressWatch(const ActiveStress &stress, const double length, const double least)
-    : stress_(stress.at({0., length, 0.2837 * length, 0.6142 * length}))
+  StressWatch::StressWatch(const ActiveStress &stress, const double least)
+    : stress_(stress.at({0., 1., 0.2837, 0.6142}))
     , least_(least)
   {
   }
@@ -53,7 +53,7 @@ namespace crawler
                            const ActiveStress &stress,
                            const double min_event)
     : limits_(limits)
-    , watch_(min_event > 0. ? std::optional<StressWatch>(std::in_place, stress, 1., min_event)
+    , watch_(min_event > 0. ? std::optional<StressWatch>(std::in_place, stress, min_event)
                             : std::optional<StressWatch>())
   {
     if (limits_.empty())

@@ -249,10 +249,7 @@ namespace crawler
   } // namespace
 
   std::optional<StretchWave>
-  measure_wave(const std::vector<std::vector<double>> &stretch,
-               const double period,
-               const double length,
-               const double swing)
+  measure_wave(const std::vector<std::vector<double>> &stretch, const double period, const double swing)
   {
     const std::size_t n_t = stretch.size(), n_s = stretch.front().size();
     const auto per_phase = 1. / static_cast<double>(n_t);
@@ -289,6 +286,6 @@ namespace crawler
     if (largest <= nothing || swing > max_swing * largest || squares - 2. * power(E) > max_unresolved * squares)
       return std::nullopt;
     const Largest wave = largest_wave(E, n_s);
-    return StretchWave{length / (period * wave.nu), std::max(wave.S - wave.opposite, 0.)};
+    return StretchWave{1. / (period * wave.nu), std::max(wave.S - wave.opposite, 0.)};
   }
 } // namespace crawler

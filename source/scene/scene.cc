@@ -229,6 +229,12 @@ namespace crawler
     return units;
   }
 
+  double
+  stiffness(const Scene &scene)
+  {
+    return scene.body.elastic_modulus / natural_units(scene).force;
+  }
+
   void
   require_computable_stress(const Scene &scene)
   {

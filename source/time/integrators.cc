@@ -22,7 +22,7 @@ namespace crawler
   integrator(const std::string &name)
   {
     for (const Integrator &entry : integrators())
-      if (entry.name == (name == "automatic" ? "bdf" : name))
+      if (entry.name == name)
         return entry;
     throw std::logic_error("no integrator is called " + name);
   }
@@ -30,24 +30,21 @@ namespace crawler
   std::string
   reason_against(const std::string &petsc_name)
   {
-    static const std::map<std::string, std::string> reasons = {
+    const std::string crank_nicolson  = "Crank-Nicolson is erratic for a mass matrix that depends on the state";
+    const std::string explicit_method = "an explicit method cannot take steps longer than the square of the smallest "
+                                        "cell, and needs the friction matrix inverted";
+    const std::map<std::string, std::string> reasons = {
       {"rosw",
        "Rosenbrock-W methods assume a constant mass matrix; here it depends on the stretch, and the error does not go "
        "to 0"},
       {"irk", "PETSc's irk assumes the identity as mass matrix in its Jacobian; its order here is 0"},
       {"glle", "glle does not control its error for a mass matrix that depends on the state"},
       {"glee", "glee is explicit, and the friction matrix must be inverted implicitly"},
-      {"cn", "Crank-Nicolson is erratic for a mass matrix that depends on the state"},
-      {"crank nicolson", "Crank-Nicolson is erratic for a mass matrix that depends on the state"},
-      {"euler",
-       "an explicit method cannot take steps longer than the square of the smallest cell, and needs the friction "
-       "matrix inverted"},
-      {"rk",
-       "an explicit method cannot take steps longer than the square of the smallest cell, and needs the friction "
-       "matrix inverted"},
-      {"ssp",
-       "an explicit method cannot take steps longer than the square of the smallest cell, and needs the friction "
-       "matrix inverted"},
+      {"cn", crank_nicolson},
+      {"crank nicolson", crank_nicolson},
+      {"euler", explicit_method},
+      {"rk", explicit_method},
+      {"ssp", explicit_method},
       {"sundials", "PETSc's interface to SUNDIALS takes no mass matrix"},
       {"mimex", "mimex splits off an explicit part that this equation does not have"},
     };

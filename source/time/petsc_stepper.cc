@@ -477,7 +477,6 @@ namespace crawler
         result.steps             = static_cast<unsigned int>(ts_->steps);
         result.rejected_steps    = static_cast<unsigned int>(ts_->reject);
         result.newton_iterations = static_cast<unsigned long>(ts_->snes_its);
-        result.linear_iterations = static_cast<unsigned long>(ts_->ksp_its);
         return result;
       }
 

@@ -152,12 +152,6 @@ namespace crawler
     }
 
     PetscErrorCode
-    roll_back(TS ts)
-    {
-      return VecCopy(radau_data(ts).start.get(), ts->vec_sol);
-    }
-
-    PetscErrorCode
     set_up(TS ts)
     {
       Radau &radau        = radau_data(ts);
@@ -218,7 +212,6 @@ namespace crawler
       ts->ops->step           = step;
       ts->ops->interpolate    = interpolate;
       ts->ops->evaluatewlte   = weighted_error;
-      ts->ops->rollback       = roll_back;
       ts->ops->snesfunction   = radau_stage_function;
       ts->ops->snesjacobian   = radau_stage_jacobian;
       ts->ops->setfromoptions = set_from_options;

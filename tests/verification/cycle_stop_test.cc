@@ -195,7 +195,7 @@ TEST(CycleStop, DriftOfTheStretchIsSeen)
         u[i]           = 0.01 * t +
                (0.03 * std::sin(2. * std::numbers::pi * t) - drift) * std::sin(std::numbers::pi * s) / std::numbers::pi;
       }
-      stop.observe(u, 0.01 * t, nullptr, /*decay=*/1e3);
+      stop.observe(u, 0.01 * t, std::nullopt, /*decay=*/1e3);
       n = static_cast<unsigned int>(std::floor(t));
     }
     return stop.repeats() ? n : 0;

@@ -59,10 +59,6 @@ namespace crawler
     double
     steps_to_the_end() const;
 
-    /// Stiffness k T/(gamma L^2).
-    double
-    stiffness() const;
-
     /// Stiffness k T/(g L^2) for the largest friction g of the last pilot, which determines thin layers.
     double
     stiffness_over_friction() const;
@@ -85,10 +81,6 @@ namespace crawler
     {
       return 1e-25 * scene.body.length;
     }
-
-    /// The user's integrator, or that of @p numerics; empty if that is not known yet.
-    const std::string &
-    integrator(const Numerics &numerics) const;
 
     /// The automatic size of the first step.
     double

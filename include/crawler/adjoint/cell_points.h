@@ -2,7 +2,6 @@
 #pragma once
 
 #include <crawler/lanes/lane_adjoint.h>
-#include <crawler/time/radau_tableau.h>
 
 #include <cstddef>
 #include <vector>
@@ -22,7 +21,7 @@ namespace crawler
   class BackwardStages
   {
   public:
-    BackwardStages(const LaneRecord &steps, const RadauTableau &tableau);
+    BackwardStages(const LaneRecord &steps, const LaneSetup &setup);
 
     /// Goes to the step before the present one, which is the last one at first.
     void
@@ -37,7 +36,7 @@ namespace crawler
 
   private:
     const LaneRecord &steps_;
-    const RadauTableau &tableau_;
+    const LaneSetup &setup_;
     std::size_t step_ = 0;
     std::vector<double> y_; ///< state at the start of the step
   };

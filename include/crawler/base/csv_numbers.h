@@ -44,7 +44,12 @@ namespace crawler
               const std::string &file,
               const std::string &entry);
 
-  /// Version for the file @p file; @p expected says in messages what belongs there.
+  /// Text of a file with numbers; @p expected says in messages what belongs there. Throws InputError for @p entry if it
+  /// is empty or cannot be read.
+  std::string
+  read_table_text(const std::string &file, const std::string &expected, const std::string &entry);
+
+  /// Both for the file @p file.
   CsvNumbers
   read_csv_numbers(const std::string &file,
                    const std::vector<std::string> &names,

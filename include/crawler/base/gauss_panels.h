@@ -55,10 +55,10 @@ namespace crawler
     void
     running_integral_transposed(std::span<const double> x, std::span<double> result) const;
 
-    /// The smallest number of equal panels on [0, 1], a multiple of @p n, for which each of the places is an end of a
-    /// panel; @p n if that would exceed @p most.
+    /// The smallest number of equal panels on [0, 1] for which each of the places is an end of a panel; 1 if that would
+    /// exceed @p most.
     static unsigned int
-    number_ending_at(const std::vector<double> &places, unsigned int n, unsigned int most);
+    number_ending_at(const std::vector<double> &places, unsigned int most);
 
     /// Ends of @p n panels of about equal size from 0 to @p length, or of some more, so that they end at all of the
     /// @p breaks in between, ascending.

@@ -24,9 +24,9 @@ namespace crawler
   std::string
   shortened(const std::string &text, std::size_t width);
 
-  /// The text with quotations longer than @p most bytes cut in the middle.
+  /// The text with long quotations cut in the middle.
   std::string
-  with_short_quotes(const std::string &text, std::size_t most = 300);
+  with_short_quotes(const std::string &text);
 
   /// Number with its noun: "1 cell", "2 cells".
   std::string

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/words.h>
 #include <crawler/equation/cell_kernels.h>
 #include <crawler/equation/general_laws.h>
 #include <crawler/mesh/discretization.h>
@@ -34,6 +35,8 @@ namespace crawler
     position, ///< the displacement u = zeta - s
     stretch   ///< the stretch w in each cell: for layers, and for bodies that collapse
   };
+  template <>
+  inline constexpr const char *words_of<Formulation>[] = {"position", "stretch"};
 
   /**
    * Semi-discrete crawler in one of its formulations: the part that evaluates states, i.e. the meaning of the unknowns

@@ -26,16 +26,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       const LaneFriction<Value> &law;
 
       void
-      operator()(const Value *w, Value *g) const
+      operator()(const Value *w, Value *g, Value *w_dg = nullptr) const
       {
         law(w, g, n);
-      }
-
-      void
-      operator()(const Value *w, Value *g, Value *w_dg) const
-      {
-        law(w, g, n);
-        for (int p = 0; p < n; ++p)
+        for (int p = 0; p < n && w_dg != nullptr; ++p)
           w_dg[p] = law.a * g[p];
       }
     };

@@ -7,6 +7,10 @@
 
 namespace crawler
 {
+  /// Outcome, without a status, of a body that has come so far.
+  TimeOutcome
+  outcome_at(const LaneProgress &progress);
+
   /**
    * One body by the fused engine (lane_engine.h): the method of the PETSc type "radau", without its objects. A problem
    * that it cannot solve it gives up, with the reason `gave_up` and the last accepted state: then the time stepper of

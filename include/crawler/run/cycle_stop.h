@@ -81,11 +81,13 @@ namespace crawler
     bool
     next_is_end() const;
 
-    /// Observes that state: @p u is the displacement at the ends of all pieces, @p displacement its mean, @p energy
-    /// balance may be null. @p decay is k/(g L^2) with the largest friction g of the run. Returns true if the run may
-    /// end here.
+    /// Observes that state: @p u is the displacement at the ends of all pieces, @p displacement its mean. @p decay is
+    /// k/(g L^2) with the largest friction g of the run. Returns true if the run may end here.
     bool
-    observe(std::span<const double> u, double displacement, const EnergyBalance *energy_balance, double decay);
+    observe(std::span<const double> u,
+            double displacement,
+            const std::optional<EnergyBalance> &energy_balance,
+            double decay);
 
     /// True if observe() has said so.
     bool
@@ -94,10 +96,10 @@ namespace crawler
       return repeats_;
     }
 
-    /// Extrapolates displacement and, if it is not null, the energy balance from the state at which the run ended to
-    /// its end. The period is in units of the duration.
+    /// Extrapolates displacement and energy balance, if there is one, from the state at which the run ended to its end.
+    /// The period is in units of the duration.
     Cycles
-    extrapolate(double &displacement, EnergyBalance *energy_balance) const;
+    extrapolate(double &displacement, std::optional<EnergyBalance> &energy_balance) const;
 
     void
     exchange(Archive &archive);

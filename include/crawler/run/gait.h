@@ -107,9 +107,9 @@ namespace crawler
     bool
     keeps_step(double time) const;
 
-    /// Observes the end of a step; @p energy_balance may be null.
+    /// Observes the end of a step, with its energy balance if there is one.
     void
-    see_step(double time, double displacement, const EnergyBalance *energy_balance);
+    see_step(double time, double displacement, const std::optional<EnergyBalance> &energy_balance);
 
     /// Last stride, in natural units; nothing if there was none.
     std::optional<Gait>

@@ -24,7 +24,7 @@ namespace crawler
                            ///< repeated; 0: events are not looked for
     Formulation formulation = Formulation::position;
     MeshLimits mesh         = {};    ///< limits of an adaptive mesh
-    std::string integrator  = "";    ///< integrator that replaces an automatic one (time/integrators.h); empty: bdf
+    std::string integrator  = "bdf"; ///< integrator that replaces an automatic one (time/integrators.h)
     Grading grading         = {};    ///< grading of the first mesh, which has n_cells cells without it
     double layer            = 0.;    ///< size of layers in the stretch form, see layered_cell_ends() [length]; 0: none
     unsigned int parts      = 1;     ///< cells of the stretch form into which each of n_cells is divided
@@ -40,6 +40,12 @@ namespace crawler
       archive(parts, other_rule, jumps_move);
     }
   };
+
+  struct TimeParameters;
+
+  /// Name of the integrator: that of the entry, or if this is automatic that of the @p numerics.
+  const std::string &
+  integrator_of(const TimeParameters &time, const Numerics &numerics);
 
   /// Converts numerics to natural units.
   Numerics

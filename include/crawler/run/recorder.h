@@ -8,6 +8,7 @@
 #include <crawler/run/simulation_result.h>
 #include <crawler/run/sudden_changes.h>
 
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <span>
@@ -88,9 +89,19 @@ namespace crawler
     /// Observes the extreme stretches of a state within or at the end of the step; the first call starts the run.
     void
     see_stretch(Extreme smallest, Extreme largest);
-    /// Observes int |g v| ds and |int g v ds| at the end of a step of this duration.
+    /// Observes the works in a step of this duration, and its end, with these integrals (CellIntegrals, or those of a
+    /// stage of the lanes).
+    template <typename Integrals>
     void
-    see_friction(double duration, double sum_of_sizes, double size_of_sum);
+    see_works(const double duration, const Rates &works, const Integrals &end)
+    {
+      result.energy_balance->add_works(works);
+      result.energy_balance->elastic_energy = end.elastic_energy;
+      friction_impulse_ += duration * end.abs_friction;
+      net_impulse_ += duration * std::abs(end.net_friction);
+      if (friction_impulse_ > 0.)
+        result.net_friction = net_impulse_ / friction_impulse_;
+    }
     /// Observes the end of the step, with the extreme stretches there; @p is_step_end: it is an output time or one of
     /// step_ends(). Returns true if the run may end here, since its cycles repeat.
     bool
@@ -128,8 +139,6 @@ namespace crawler
     compare_with_end(Extreme &now, const ExtremeHistory &history);
     bool
     see_cycles(double time, bool is_step_end, const Sampler &sample);
-    const EnergyBalance *
-    energies() const;
 
     const Scene &scene_;
     const Units units_;

@@ -88,8 +88,6 @@ namespace crawler
     mesh_is_good(const Step &step, std::span<const double> y);
     bool
     compute_integrals(const Step &step, std::span<const double> y);
-    Rates
-    rates(double t, const CellIntegrals &sums, std::span<const double> y, std::span<const double> v);
     std::span<const double>
     state_within(double t);
     Rates

@@ -25,11 +25,11 @@ namespace crawler
   public:
     static constexpr unsigned int n_places = 4, n_inside = 3;
 
-    /// Values of m at places along the body, the ends first, at one time.
+    /// Values of m at places along the body, of length 1, the ends first, at one time.
     using Values = std::array<double, n_places>;
 
     /// Deviations below @p least [force], or below a part of the largest |m| seen, are no events.
-    StressWatch(const ActiveStress &stress, double length, double least);
+    StressWatch(const ActiveStress &stress, double least);
 
     /// Restarts after a jump of the active stress: m at the last time does not predict what follows.
     void

@@ -21,9 +21,9 @@ namespace crawler
   };
 
   /**
-   * Wave in the samples @p stretch [phase][piece] of one period, equally spaced in time and along the body, an even
-   * number of pieces. With e the stretch without its mean over time, E_n its Fourier coefficients in time, w = 2 pi/P
-   * and q = 1/c a slowness,
+   * Wave in the samples @p stretch [phase][piece] of one period, equally spaced in time and along a body of length 1,
+   * an even number of pieces. With e the stretch without its mean over time, E_n its Fourier coefficients in time, w =
+   * 2 pi/P and q = 1/c a slowness,
    *
    *   S(q) = sum_n |int E_n e^(i n w q s) ds|^2 / (L sum_n int |E_n|^2 ds),   n = 1 ... 8,
    *
@@ -34,5 +34,5 @@ namespace crawler
    * between the samples, too. Nothing if the stretch hardly changes, or if it changes faster than the samples tell.
    */
   std::optional<StretchWave>
-  measure_wave(const std::vector<std::vector<double>> &stretch, double period, double length, double swing = 0.);
+  measure_wave(const std::vector<std::vector<double>> &stretch, double period, double swing = 0.);
 } // namespace crawler

@@ -97,6 +97,10 @@ namespace crawler
   Units
   natural_units(const Scene &scene);
 
+  /// That stiffness, the elastic modulus in these units.
+  double
+  stiffness(const Scene &scene);
+
   /// Throws InputError if the active stress is not finite, or would strain the body by more than 1e20 or, unless it is
   /// 0, by less than 1e-20.
   void

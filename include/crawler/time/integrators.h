@@ -18,8 +18,7 @@ namespace crawler
   const std::vector<Integrator> &
   integrators();
 
-  /// Integrator of this name. "automatic" is bdf unless another is chosen (accuracy/choose_numerics.h). Throws
-  /// std::logic_error if there is none.
+  /// Integrator of this name. Throws std::logic_error if there is none.
   const Integrator &
   integrator(const std::string &name);
 

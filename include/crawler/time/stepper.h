@@ -51,13 +51,12 @@ namespace crawler
     double time        = 0.;    ///< of the last accepted state
     double step_size   = 0.;    ///< last attempted; without a status: the next one
     unsigned int steps = 0, rejected_steps = 0;
-    unsigned long newton_iterations = 0, linear_iterations = 0;
+    unsigned long newton_iterations = 0;
 
     void
     exchange(Archive &archive)
     {
-      archive(status, reason, message, domain_error, time, step_size);
-      archive(steps, rejected_steps, newton_iterations, linear_iterations);
+      archive(status, reason, message, domain_error, time, step_size, steps, rejected_steps, newton_iterations);
     }
   };
 

@@ -95,11 +95,11 @@ namespace crawler
     if (p.model == Model::automatic)
       chosen["Model"] = word_of(model);
     if (numerics != nullptr && p.discretization.formulation == FormulationEntry::automatic)
-      chosen["Discretization/Formulation"] = numerics->formulation == Formulation::stretch ? "stretch" : "position";
+      chosen["Discretization/Formulation"] = word_of(numerics->formulation);
     if (numerics != nullptr && p.discretization.mesh == MeshKind::automatic)
       chosen["Discretization/Mesh"] = numerics->mesh.tolerance > 0. ? "adaptive" : "uniform";
     if (numerics != nullptr && p.time.integrator == "automatic")
-      chosen["Time/Integrator"] = numerics->integrator.empty() ? "bdf" : numerics->integrator;
+      chosen["Time/Integrator"] = numerics->integrator;
     const std::string any_command = "check";
     const auto known              = notes_on_entries(input.file, form.declarations, any_command);
     auto notes                    = notes_on_entries(input.file, form.declarations, any_command, {}, chosen);

@@ -41,8 +41,8 @@ namespace crawler
         constexpr unsigned int most = 128;
         const State state(family.parameters(start));
         const ActiveStress &stress = *state.reduced.scene.active_stress;
-        n_space_                   = GaussPanels::number_ending_at(state.reduced.scene.breaks_in_space(), 1, most);
-        n_time_                    = GaussPanels::number_ending_at(stress.breaks_in_time(), 1, most);
+        n_space_                   = GaussPanels::number_ending_at(state.reduced.scene.breaks_in_space(), most);
+        n_time_                    = GaussPanels::number_ending_at(stress.breaks_in_time(), most);
         grid_.emplace(n_space_, n_time_);
         while (refine(start))
           ;

@@ -45,9 +45,7 @@ namespace crawler
   in_words(const Numerics &n, const Input &input)
   {
     const TimeParameters &time   = input.parameters.time;
-    const std::string integrator = time.integrator != "automatic" ? time.integrator
-                                   : n.integrator.empty()         ? "bdf"
-                                                                  : n.integrator;
+    const std::string integrator = integrator_of(time, n);
     const std::size_t ends       = first_cell_ends(input.scene, n).size();
     const std::size_t cells      = ends > 0 ? ends - 1 : n.n_cells;
     return fmt::format("Mesh: {} cells of degree {}, {} unknowns. Time: {}{}, tolerance {:.3g}.",

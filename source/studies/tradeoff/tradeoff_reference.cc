@@ -43,7 +43,7 @@ namespace crawler
         const PointStatus outcome    = status_of(task);
         if (outcome.status == "finished" && result.error && std::isfinite(result.error->total))
           return {fmt::format("{}, {}, {}, degree {}, Accuracy {:.0e}",
-                              choice.numerics.formulation == Formulation::stretch ? "stretch" : "position",
+                              word_of(choice.numerics.formulation),
                               result.engine,
                               result.integrator,
                               choice.numerics.degree,

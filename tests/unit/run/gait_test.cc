@@ -31,7 +31,7 @@ namespace
         sample(meter.next_time());
       EnergyBalance energy_balance;
       energy_balance.stress_work = work(t);
-      meter.see_step(t, D(t), &energy_balance);
+      meter.see_step(t, D(t), energy_balance);
     }
   }
 

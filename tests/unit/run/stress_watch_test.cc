@@ -18,7 +18,7 @@ namespace
 TEST(StressWatch, IsCalmWhereStepsAreFineEnough)
 {
   const Scene scene = formula("0.3*sin(2*pi*(s+t))+0.1*s");
-  StressWatch watch(*scene.active_stress, 1., 0.03);
+  StressWatch watch(*scene.active_stress, 0.03);
   for (unsigned int i = 0; i < 20; ++i)
     EXPECT_TRUE(watch.is_calm(0.3 * i, 0.3 * (i + 1)));
 }
@@ -30,7 +30,7 @@ TEST(StressWatch, SeesEvents)
   const Scene scene = formula("0.5*exp(-((t-0.5)/0.01)^2)");
   for (const auto &[half, least] : {std::pair{0.03, 95u}, {0.1, 30u}, {0.5, 4u}})
   {
-    StressWatch watch(*scene.active_stress, 1., 0.05);
+    StressWatch watch(*scene.active_stress, 0.05);
     unsigned int n_seen = 0;
     for (unsigned int i = 0; i < 100; ++i)
       n_seen += !watch.is_calm(0.5 - half, 0.5 + half);

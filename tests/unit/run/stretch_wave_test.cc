@@ -20,7 +20,7 @@ namespace
       for (unsigned int i = 0; i < n_s; ++i)
         for (unsigned int part = 0; part < n_parts; ++part)
           stretch[j][i] += e((i + (part + 0.5) / n_parts) / n_s, start + period * j / n_t) / n_parts;
-    return measure_wave(stretch, period, 1.);
+    return measure_wave(stretch, period);
   }
 
   double
