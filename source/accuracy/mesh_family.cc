@@ -47,8 +47,8 @@ namespace crawler
     /// Deviation of the order from 2 up to which that is accepted; else a first change counts unclean_factor times.
     /// Two orders in a row that deviate by at most regular are no chance.
     constexpr double clean = 0.25, unclean_factor = 2., regular = 0.1;
-    /// Factor on changes of the extrapolated displacement if works are of order 1: then errors are as large as those.
-    constexpr double slow_works_factor = 2.;
+    /// Relative error of the displacement, as a part of the relative change of the extrapolated work, at least.
+    constexpr double part_like_work = 0.03;
 
     class Family
     {
@@ -137,20 +137,7 @@ namespace crawler
       run(const Numerics &numerics)
       {
         ++n_runs_;
-        SimulationResult r =
-          Simulation(MPI_COMM_SELF, scene_, parameters_.time, numerics).run({}, options_, {}, problem_.keep_going);
-        if (getenv("TRACE"))
-          fmt::print(stderr,
-                     "cells {} tol {:.2g} steps {} D {:.15g} cyc {} nl {} work {:.12g} space {:.3g}\n",
-                     r.mesh.n_cells,
-                     numerics.tolerance,
-                     r.time.steps,
-                     r.displacement,
-                     r.cycles ? r.cycles->bound : 0.,
-                     r.time.reason,
-                     work_of(r),
-                     space_error_);
-        return r;
+        return Simulation(MPI_COMM_SELF, scene_, parameters_.time, numerics).run({}, options_, {}, problem_.keep_going);
       }
 
       static bool
@@ -314,11 +301,10 @@ namespace crawler
           const double change = *value(result) - *value(before.result);
           if (!inverts_slowly())
             extrapolate(before.result);
-          now.value       = *value(extrapolated_);
-          now.work        = work_of(extrapolated_);
-          now.work_change = std::abs(work_of(result) - work_of(before.result));
-          now.change      = change;
-          now.settled     = now.value - before.value;
+          now.value   = *value(extrapolated_);
+          now.work    = work_of(extrapolated_);
+          now.change  = change;
+          now.settled = now.value - before.value;
           // Displacements of two meshes may agree by chance; times that have changed by much show no order yet.
           const bool inverts_elsewhere =
             latest_.inversion && std::abs(before.change) > largest_change_of_inversion * latest_.inversion->t;
@@ -334,12 +320,11 @@ namespace crawler
       struct Level
       {
         SimulationResult result;
-        double value;            ///< extrapolated value
-        double work        = 0.; ///< extrapolated work of the active stress; 0 if it was not computed
-        double work_change = 0.; ///< size of the change of the work itself since the last level
-        double change      = 0.,
-               settled     = HUGE_VAL; ///< changes of the value itself and of the extrapolated one since the last level
-        double order       = 0.;       ///< observed order of the value; 0 if there is none
+        double value;        ///< extrapolated value
+        double work    = 0.; ///< extrapolated work of the active stress; 0 if it was not computed
+        double change  = 0.,
+               settled = HUGE_VAL; ///< changes of the value itself and of the extrapolated one since the last level
+        double order   = 0.;       ///< observed order of the value; 0 if there is none
       };
 
       /// Error by thin features: diffusion smooths the stretch over `length` in a stride, and the displacements of
@@ -383,13 +368,12 @@ namespace crawler
           return 5. * change;
         if (order < min_order)
           return std::max(std::abs(now.settled), change / (std::exp2(order) - 1.));
-        const bool is_slow                  = works_are_slow(before, now);
-        const double change_of_extrapolated = (is_slow ? slow_works_factor : 1.) * std::abs(now.settled);
+        const double settled_like_work = std::max(std::abs(now.settled), error_like_work(before, now));
         if (order > largest_order)
-          return std::max(change_of_extrapolated, change / 3.);
+          return std::max(settled_like_work, change / 3.);
         // Displacements may agree by chance; their works rarely do at the same time, nor do three changes in a row.
-        const bool is_regular = std::abs(order - 2.) < regular && std::abs(before.order - 2.) < regular && !is_slow;
-        const double settled = std::max(change_of_extrapolated, is_regular ? 0. : unsettled_work(before, now) * change);
+        const bool is_regular = std::abs(order - 2.) < regular && std::abs(before.order - 2.) < regular;
+        const double settled  = std::max(settled_like_work, is_regular ? 0. : unsettled_work(before, now) * change);
         if (levels_.size() == 2) // one change of the extrapolated value alone
           return is_clean ? settled : unclean_factor * settled;
         const double settled_before = std::abs(before.settled);
@@ -404,19 +388,20 @@ namespace crawler
         return result.energy_balance ? result.energy_balance->stress_work : 0.;
       }
 
-      /// True if works change by more than Accuracy and with an order near 1, which displacements show only late.
-      bool
-      works_are_slow(const Level &before, const Level &now) const
+      /// Part of the error of order 1, if works have one, in the displacement: changes of order 2 hide it for long.
+      double
+      error_like_work(const Level &before, const Level &now) const
       {
-        return finished(now.result) && now.work_change > parameters_.accuracy * std::abs(now.work) &&
-               std::log2(before.work_change / now.work_change) < min_order;
+        return finished(now.result) && now.work != 0. ? part_like_work * size_ * std::abs(1. - before.work / now.work)
+                                                      : 0.;
       }
 
       /// Change of the extrapolated work since the level before, relative to that of the work itself.
       double
       unsettled_work(const Level &before, const Level &now) const
       {
-        return finished(now.result) && now.work_change > 0. ? std::abs(now.work - before.work) / now.work_change : 0.;
+        const double change = std::abs(work_of(now.result) - work_of(before.result));
+        return finished(now.result) && change > 0. ? std::abs(now.work - before.work) / change : 0.;
       }
 
       /// Checks an inversion: near it the last of the stretch may be fed by tiny flows, and the time converges slowly;
