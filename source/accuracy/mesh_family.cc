@@ -48,7 +48,7 @@ namespace crawler
     /// Two orders in a row that deviate by at most regular are no chance.
     constexpr double clean = 0.25, unclean_factor = 2., regular = 0.1;
     /// Relative error of the displacement, as a part of the relative change of the extrapolated work, at least.
-    constexpr double part_like_work = 0.03;
+    constexpr double part_like_work = 0.04;
 
     class Family
     {
@@ -389,11 +389,14 @@ namespace crawler
       }
 
       /// Part of the error of order 1, if works have one, in the displacement: changes of order 2 hide it for long.
+      /// Works of stiff bodies, which are small, are compared with the elastic energy, whose errors they share.
       double
       error_like_work(const Level &before, const Level &now) const
       {
-        return finished(now.result) && now.work != 0. ? part_like_work * size_ * std::abs(1. - before.work / now.work)
-                                                      : 0.;
+        const Body &body     = scene_.body;
+        const double largest = strain(now.result),
+                     energy  = std::abs(now.work) + body.elastic_modulus * body.length * largest * largest / 2.;
+        return finished(now.result) ? part_like_work * size_ * std::abs(now.work - before.work) / energy : 0.;
       }
 
       /// Change of the extrapolated work since the level before, relative to that of the work itself.
