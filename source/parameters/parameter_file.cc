@@ -317,7 +317,10 @@ namespace crawler
   InputError
   ParameterFile::with_place(const InputError &error) const
   {
-    const Assignment *const assignment = assignment_of(error.entry);
-    return assignment != nullptr ? at_place(*assignment, error) : InputError(name_ + ": " + error.what(), error.entry);
+    const auto sets = [&](const Assignment &one) {
+      return one.path == error.entry || one.path.starts_with(error.entry + "["); // or one number of a list
+    };
+    const auto last = std::find_if(assignments_.rbegin(), assignments_.rend(), sets);
+    return last != assignments_.rend() ? at_place(*last, error) : InputError(name_ + ": " + error.what(), error.entry);
   }
 } // namespace crawler
