@@ -125,8 +125,6 @@ namespace crawler
       if (const std::string found = foreign_format(text); !found.empty())
         throw InputError(
           fmt::format("{}: this is {}, but a text file of parameters in UTF-8 is expected", name, found));
-      if (std::any_of(text.begin(), text.end(), [](const char c) { return static_cast<unsigned char>(c) < 9; }))
-        throw InputError(fmt::format("{}: this is a binary file; a text file of parameters is expected", name));
     }
   } // namespace
 

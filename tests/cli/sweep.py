@@ -443,7 +443,7 @@ def test_bad_input(folder):
     """Wrong names and values are found before the first solve."""
     for name, text in {"empty": "", "good": "# a remark\np,chi\n2,0.1\n# another\n2.0,0.2\n", "short": "p,q\n1,2\n\n3\n",
                        "long": "p,q\n1,2,3\n", "remarks": "# nothing but a remark\n", "names": "p,chi\n", "quote": 'p,q\n1,"a\nb"\n',
-                       "wide": ",".join(f"name{i}" for i in range(40)) + "\n", "twice": "p,q,p\n1,2,3\n"}.items():
+                       "wide": ",".join(f"name{i}" for i in range(40)) + "\n", "twice": "p,q,p\n1,2,3\n", "mac": "p,q\r1,2\r"}.items():
         (folder / f"{name}.csv").write_text(text, encoding="utf-8")
     (folder / "utf16.csv").write_text("p,q\n1,2\n", encoding="utf-16")
     (folder / "a_folder").mkdir()
@@ -461,6 +461,7 @@ def test_bad_input(folder):
         f"{P} : column(good.csv, chj)": ('"p" or "chi"', 'nearest is "chi"'),
         f"{P} : column(short.csv, p)": ("row 4", "1 value,"),
         f"{P} : column(utf16.csv, p)": ("row 1", "not text"),
+        f"{P} : column(mac.csv, p)": ("row 1", "has a CR in it"),
         f"{P} : column(nothing.csv, p)": ("nothing.csv", "No such file or directory", "CSV file"),
         f"{P} : column(a_folder, p)": ("a_folder", "is a folder"),
         f"{P} : column(remarks.csv, p)": ("remarks.csv", "is empty"),
