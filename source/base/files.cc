@@ -6,6 +6,7 @@
 #include <boost/crc.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -138,6 +139,11 @@ namespace crawler
     if (text.starts_with("PK\x03\x04"))
       return "a zip archive, as .xlsx, .ods and .docx files are";
     const bool has_zeros = text.size() > 3 && ((text[0] == 0 && text[2] == 0) || (text[1] == 0 && text[3] == 0));
-    return text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff") || has_zeros ? "text in UTF-16" : "";
+    if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff") || has_zeros)
+      return "text in UTF-16";
+    if (std::ranges::any_of(text, [](const char c) { return static_cast<unsigned char>(c) < 9; }))
+      return "a binary file";
+    const auto ends_line = [](const char c, const char next) { return c == '\r' && next != '\r' && next != '\n'; };
+    return std::ranges::adjacent_find(text, ends_line) != text.end() ? "text with old Mac line ends (CR alone)" : "";
   }
 } // namespace crawler

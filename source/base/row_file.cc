@@ -168,20 +168,6 @@ namespace crawler
       boost::crc_32_type crc_;
     };
 
-    /// Size of a file of rows, without its compression.
-    double
-    bytes_of(const std::vector<RowFile::Column> &columns,
-             const unsigned long n_rows,
-             const std::map<std::string, std::string> &attributes)
-    {
-      double bytes = 4e3 * static_cast<double>(columns.size());
-      for (const RowFile::Column &column : columns)
-        bytes += static_cast<double>(n_rows) * (column.width == 0 ? sizeof(double) : column.width);
-      for (const auto &[name, text] : attributes)
-        bytes += static_cast<double>(text.size());
-      return bytes;
-    }
-
     /// Creates the dataset of a column, with its values if they are known.
     void
     create_column(const std::filesystem::path &path,
@@ -211,6 +197,20 @@ namespace crawler
           path);
     }
   } // namespace
+
+  double
+  RowFile::bytes_of(const std::vector<Column> &columns,
+                    const unsigned long n_rows,
+                    const std::map<std::string, std::string> &attributes)
+  {
+    constexpr double bytes_of_column = 540.; // measured: structure, name, unit and description
+    double bytes                     = static_cast<double>(n_rows * sizeof(double)); // checksums
+    for (const Column &column : columns)
+      bytes += bytes_of_column + static_cast<double>(n_rows * (column.width == 0 ? sizeof(double) : column.width));
+    for (const auto &[name, text] : attributes)
+      bytes += static_cast<double>(text.size());
+    return bytes;
+  }
 
   void
   RowFile::create(const std::filesystem::path &path,

@@ -200,7 +200,10 @@ namespace crawler
   Declarations::whole_number(const std::string &, std::optional<unsigned int> &, unsigned int, unsigned int);
 
   Declarations::Entry
-  Declarations::numbers(const std::string &name, std::vector<double> &value, const std::string &unit)
+  Declarations::numbers(const std::string &name,
+                        std::vector<double> &value,
+                        const std::string &unit,
+                        const bool one_is_all)
   {
     const bool may_be_empty    = value.empty();
     const std::string expected = "a list of numbers separated by commas";
@@ -208,7 +211,7 @@ namespace crawler
                  value,
                  may_be_empty ? expected + ", or nothing" : expected,
                  unit,
-                 {.kind = EntryKind::numbers, .may_be_empty = may_be_empty},
+                 {.kind = EntryKind::numbers, .may_be_empty = may_be_empty, .one_is_all = one_is_all},
                  [may_be_empty](const std::string &text) {
                    return may_be_empty && text.empty() ? std::optional(std::vector<double>()) : to_numbers(text);
                  });

@@ -52,7 +52,7 @@ namespace crawler
       std::vector<std::string> names, near;
       for (const ListedNumber &one : list)
         names.push_back(one.key);
-      switch (entry.values.kind)
+      switch (entry.values.one_is_all ? EntryKind::profile : entry.values.kind)
       {
         case EntryKind::constants:
           near = nearest_names(key, names, 1);
@@ -90,13 +90,14 @@ namespace crawler
       }
     }
 
-    /// The numbers of the entry, and the index that the key names; a list is extended to it.
+    /// The numbers of the entry, and the index that the key names; a list of any length is extended to it.
     std::pair<std::vector<ListedNumber>, std::size_t>
     numbers_with(const EntryInfo &entry, const std::string &text, const std::string &key)
     {
       std::vector<ListedNumber> list = listed_numbers(entry, text);
       const auto number              = to_number(key);
-      if (entry.values.kind == EntryKind::numbers && number && *number >= 1. && *number <= longest_list)
+      const bool may_grow            = entry.values.kind == EntryKind::numbers && !entry.values.one_is_all;
+      if (may_grow && number && *number >= 1. && *number <= longest_list)
         for (std::size_t n = list.size() + 1; static_cast<double>(n) <= *number; ++n)
           list.push_back({std::to_string(n), 0.});
       const auto found = std::ranges::find(list, key, &ListedNumber::key);
@@ -114,8 +115,8 @@ namespace crawler
   {
     if (entry.values.kind == EntryKind::constants)
       return constants_of(text);
-    const bool is_list = entry.values.kind == EntryKind::numbers ||
-                         (entry.values.kind == EntryKind::profile && text.find(',') != std::string::npos);
+    const bool may_be_one = entry.values.kind == EntryKind::profile || entry.values.one_is_all;
+    const bool is_list    = may_be_one ? text.find(',') != std::string::npos : entry.values.kind == EntryKind::numbers;
     return is_list ? in_places(to_numbers(text).value_or(std::vector<double>())) : std::vector<ListedNumber>();
   }
 

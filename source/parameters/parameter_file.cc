@@ -125,8 +125,6 @@ namespace crawler
       if (const std::string found = foreign_format(text); !found.empty())
         throw InputError(
           fmt::format("{}: this is {}, but a text file of parameters in UTF-8 is expected", name, found));
-      if (std::any_of(text.begin(), text.end(), [](const char c) { return static_cast<unsigned char>(c) < 9; }))
-        throw InputError(fmt::format("{}: this is a binary file; a text file of parameters is expected", name));
     }
   } // namespace
 
@@ -317,7 +315,10 @@ namespace crawler
   InputError
   ParameterFile::with_place(const InputError &error) const
   {
-    const Assignment *const assignment = assignment_of(error.entry);
-    return assignment != nullptr ? at_place(*assignment, error) : InputError(name_ + ": " + error.what(), error.entry);
+    const auto sets = [&](const Assignment &one) {
+      return one.path == error.entry || one.path.starts_with(error.entry + "["); // or one number of a list
+    };
+    const auto last = std::find_if(assignments_.rbegin(), assignments_.rend(), sets);
+    return last != assignments_.rend() ? at_place(*last, error) : InputError(name_ + ": " + error.what(), error.entry);
   }
 } // namespace crawler

@@ -8,6 +8,7 @@ Kills at random places, and what needs many ranks, points or little memory: test
 """
 import math
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -109,6 +110,9 @@ def test_designs(folder):
     rows = table(folder / "files")
     expect(result.returncode == 0 and abs(rows["displacement"][0] - 4.764510e-2) < 1e-5 and
            abs(rows["displacement"][1] - 4.8552305987e-2) < 1e-5, "parameter files are an axis")
+    told = re.search(r"results.h5 will have about (\S+) kB", call([PROGRAM, "check", "sweep.prm"], folder).stdout)
+    size = (folder / "files/results.h5").stat().st_size
+    expect(told and abs(1e3 * float(told[1]) / size - 1) < 0.1, f"check tells the size of the table, {size} bytes {told}")
     result = sweep(folder, "set", "--set", "Body/Elastic modulus=10")
     expect(result.returncode == 0 and list(table(folder / "set")["displacement"]) == [rows["displacement"][1]] * 2,
            f"--set is stronger than the files of an axis {result.stderr}")
@@ -443,7 +447,7 @@ def test_bad_input(folder):
     """Wrong names and values are found before the first solve."""
     for name, text in {"empty": "", "good": "# a remark\np,chi\n2,0.1\n# another\n2.0,0.2\n", "short": "p,q\n1,2\n\n3\n",
                        "long": "p,q\n1,2,3\n", "remarks": "# nothing but a remark\n", "names": "p,chi\n", "quote": 'p,q\n1,"a\nb"\n',
-                       "wide": ",".join(f"name{i}" for i in range(40)) + "\n", "twice": "p,q,p\n1,2,3\n"}.items():
+                       "wide": ",".join(f"name{i}" for i in range(40)) + "\n", "twice": "p,q,p\n1,2,3\n", "mac": "p,q\r1,2\r"}.items():
         (folder / f"{name}.csv").write_text(text, encoding="utf-8")
     (folder / "utf16.csv").write_text("p,q\n1,2\n", encoding="utf-16")
     (folder / "a_folder").mkdir()
@@ -461,6 +465,7 @@ def test_bad_input(folder):
         f"{P} : column(good.csv, chj)": ('"p" or "chi"', 'nearest is "chi"'),
         f"{P} : column(short.csv, p)": ("row 4", "1 value,"),
         f"{P} : column(utf16.csv, p)": ("row 1", "not text"),
+        f"{P} : column(mac.csv, p)": ("row 1", "has a CR in it"),
         f"{P} : column(nothing.csv, p)": ("nothing.csv", "No such file or directory", "CSV file"),
         f"{P} : column(a_folder, p)": ("a_folder", "is a folder"),
         f"{P} : column(remarks.csv, p)": ("remarks.csv", "is empty"),

@@ -47,8 +47,8 @@ namespace crawler
   std::string_view
   without_byte_order_mark(std::string_view text);
 
-  /// Name of the foreign format ("text in UTF-16") if @p text is not text in UTF-8 but another program's usual output;
-  /// else empty.
+  /// Name of the foreign format ("text in UTF-16") if @p text is not lines of text in UTF-8 but what other programs
+  /// write; else empty.
   std::string
   foreign_format(std::string_view text);
 } // namespace crawler

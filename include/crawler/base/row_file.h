@@ -52,6 +52,12 @@ namespace crawler
            const std::map<std::string, std::string> &attributes,
            const Known &known = {});
 
+    /// Size of the file that create() makes.
+    static double
+    bytes_of(const std::vector<Column> &columns,
+             unsigned long n_rows,
+             const std::map<std::string, std::string> &attributes);
+
     /// Opens a file made by create() for writing into the given columns (collective, as is the destructor). Throws
     /// FileError.
     RowFile(MPI_Comm communicator,

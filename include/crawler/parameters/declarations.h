@@ -75,9 +75,9 @@ namespace crawler
     template <typename Value>
     Entry
     whole_number(const std::string &name, Value &value, unsigned int lower, unsigned int upper);
-    /// A list of numbers; it may be empty if the default is.
+    /// A list of numbers; it may be empty if the default is. @p one_is_all: one for each part, or one for all.
     Entry
-    numbers(const std::string &name, std::vector<double> &value, const std::string &unit);
+    numbers(const std::string &name, std::vector<double> &value, const std::string &unit, bool one_is_all = false);
     Entry
     choice(const std::string &name, std::string &value, const std::vector<std::string> &words);
     /// A choice among the words of an enum (base/words.h).

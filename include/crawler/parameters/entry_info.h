@@ -62,6 +62,7 @@ namespace crawler
     std::vector<std::string> words = {};    ///< of a choice; of constants, the entries with formulas that may use them
     bool may_be_automatic          = false; ///< the word "automatic" is admissible
     bool may_be_empty              = false; ///< of a list
+    bool one_is_all                = false; ///< a list with numbers of all parts, or one for all
   };
 
   /// Description of one entry of the parameter file for the user.

@@ -16,8 +16,8 @@ namespace crawler
     double value;
   };
 
-  /// The numbers of an entry whose value is @p text; none for a single number or another kind of value, including a
-  /// profile that is a formula or a file.
+  /// The numbers of an entry whose value is @p text; none for a single number that stands for all or another kind of
+  /// value, including a profile that is a formula or a file.
   std::vector<ListedNumber>
   listed_numbers(const EntryInfo &entry, const std::string &text);
 
@@ -25,7 +25,8 @@ namespace crawler
   double
   listed_number(const EntryInfo &entry, const std::string &text, const std::string &key);
 
-  /// The value @p text of the entry with the number @p key replaced; a list is padded with zeros. Throws InputError.
+  /// The value @p text of the entry with the number @p key replaced; a list of any length is padded with zeros.
+  /// Throws InputError.
   std::string
   with_listed_number(const EntryInfo &entry, const std::string &text, const std::string &key, double value);
 

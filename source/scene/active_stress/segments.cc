@@ -56,7 +56,7 @@ namespace crawler
   {
     declarations.whole_number("Number of segments", number, 1, 1000)
       .means("Number N of actuated segments, all of the same length.");
-    declarations.numbers("Amplitude", amplitude, "force")
+    declarations.numbers("Amplitude", amplitude, "force", /*one_is_all=*/true)
       .means("Active stress of a segment that is on, positive for a contraction: one number for all segments, or N "
              "from s = 0 to s = L.");
     declarations.number("Frequency", frequency, positive(), "1/time").means("Frequency f of the switching.");

@@ -172,13 +172,20 @@ namespace crawler
             }};
   }
 
+  std::map<std::string, std::string>
+  PointTable::attributes(const std::string &command_line) const
+  {
+    auto result         = provenance(effective, command_line);
+    result["not known"] = "NaN in numbers, an empty text in texts, also of the status of what is not computed yet";
+    result.insert(inputs.begin(), inputs.end());
+    result.insert(others.begin(), others.end());
+    return result;
+  }
+
   void
   create_table(const StudyFolder &folder, const PointTable &table)
   {
-    auto attributes         = provenance(table.effective, folder.options.command_line);
-    attributes["not known"] = "NaN in numbers, an empty text in texts, also of the status of what is not computed yet";
-    attributes.insert(table.inputs.begin(), table.inputs.end());
-    attributes.insert(table.others.begin(), table.others.end());
+    const auto attributes = table.attributes(folder.options.command_line);
     RowFile::create(folder.path / table.file, table.group, table.columns, table.n_rows, attributes, table.known);
   }
 

@@ -252,9 +252,7 @@ namespace crawler
     SweepPoints points(communicator, file);
     points.require_checkable();
     const SweepDesign &design = points.design();
-    std::size_t bytes         = 0;
-    for (const RowFile::Column &column : sweep_columns(points))
-      bytes += column.width == 0 ? sizeof(double) : column.width;
+    const PointTable table    = table_of(points);
     // Measured time of some parts, spread over the sweep.
     constexpr unsigned long max_samples = 32;
     constexpr double long_enough        = 0.5; // [s]
@@ -276,15 +274,15 @@ namespace crawler
       log.line(note);
     const double all = each * static_cast<double>(design.n_points());
     log.line(
-      fmt::format("  About {} per point (measured on {} of them): {} on one rank{}; results.h5 will have {}, "
-                  "results.csv somewhat less.",
+      fmt::format("  About {} per point (measured on {} of them): {} on one rank{}; results.h5 will have about {}, "
+                  "results.csv less.",
                   duration_in_words(each),
                   n_computed,
                   duration_in_words(all),
                   size_of(communicator) > 1
                     ? fmt::format(", {} on {}", duration_in_words(all / size_of(communicator)), size_of(communicator))
                     : "",
-                  size_in_words(static_cast<double>(bytes * design.n_points()))));
+                  size_in_words(RowFile::bytes_of(table.columns, table.n_rows, table.attributes("")))));
     log.line(file.name() + " is valid: all swept names and values are admissible. Nothing was written.");
     return true;
   }

@@ -60,13 +60,12 @@ namespace crawler
              near.empty() ? "" : "; the nearest name is " + quoted_list(near));
     }
 
-    /// True if it can be shown on a terminal: not UTF-16, compressed or a picture.
+    /// True if it can be shown on a terminal: not UTF-16, compressed, a picture or lines that end with CR alone.
     bool
     is_text(const std::string &line)
     {
-      if (std::any_of(line.begin(), line.end(), [](const unsigned char c) {
-            return (c < ' ' && c != '\t' && c != '\r') || c == 0x7f;
-          }))
+      if (std::any_of(
+            line.begin(), line.end(), [](const unsigned char c) { return (c < ' ' && c != '\t') || c == 0x7f; }))
         return false;
       try
       {
@@ -147,9 +146,9 @@ namespace crawler
       {
         if (row == 1 && line.starts_with("\xef\xbb\xbf"))
           line.erase(0, 3);
-        if (!is_text(line))
-          refuse("row {} of \"{}\" is not text, but a CSV file in UTF-8 is expected", row, file);
         line = trimmed(line);
+        if (!is_text(line))
+          refuse("row {} of \"{}\" is not text or has a CR in it, but a CSV file in UTF-8 is expected", row, file);
         if (line.empty() || line[0] == '#')
           continue;
         const auto cells = csv_cells(line);

@@ -47,13 +47,14 @@ TEST(Declarations, MembersFollowEntries)
 TEST(Declarations, NumbersOfAnEntryHaveNames)
 {
   std::string constants = "a = 1, rate=-2e-3", profile = "1, 2", formula = "1+s";
-  std::vector<double> list = {1.};
+  std::vector<double> list = {1.}, parts = {0.3};
   Declarations declarations;
   declarations.enter("X");
   declarations.constants("Constants", constants, {"Formula"}).means("C.");
   declarations.profile("Profile", profile).means("P.");
   declarations.profile("Formula", formula).means("F.");
   declarations.numbers("List", list, "1").means("L.");
+  declarations.numbers("Parts", parts, "1", /*one_is_all=*/true).means("P.");
   declarations.leave();
   EXPECT_EQ(declarations.value("X/Constants[rate]"), "-0.002");
   declarations.set("X/Constants[ rate ]", "0.5");
@@ -67,6 +68,7 @@ TEST(Declarations, NumbersOfAnEntryHaveNames)
                                    std::pair("X/Constants[1]", "\"a\" or \"rate\" is expected"),
                                    std::pair("X/Profile[3]", "has 2 of them, so [1] to [2] are expected"),
                                    std::pair("X/Formula[1]", "is \"1+s\"; numbers at equally spaced places"),
+                                   std::pair("X/Parts[2]", "is \"0.3\"; numbers at equally spaced places"),
                                    std::pair("X/List[0]", "a whole number from 1 to 10000")})
     EXPECT_NE(test::complaint_of([&, &path = path]() { declarations.value(path); }).find(part), std::string::npos)
       << path;

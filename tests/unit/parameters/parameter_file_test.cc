@@ -68,6 +68,8 @@ TEST(ParameterFile, KnowsWhatStandsAboveFiles)
   EXPECT_FALSE(file.assignment_of("Body/Length")->is_override);
   file.add_override(" Body / Length = 4");
   EXPECT_TRUE(file.assignment_of("Body/Length")->is_override);
+  file.add_override("List[7] = 1"); // which makes a list too long
+  EXPECT_EQ(file.with_place(InputError("too long", "List")).what(), std::string("--set \"List[7] = 1\": too long"));
   EXPECT_EQ(file.assignment_of("Body/Length")->value, "4");
   EXPECT_EQ(file.assignment_of("Body/Elastic modulus"), nullptr);
   const InputError error = file.with_place(InputError("too long", "Body/Length"));

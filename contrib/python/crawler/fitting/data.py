@@ -270,8 +270,7 @@ def _require_sound(samples, name):
         raise InputError(f"{name} have the time {where}, but increasing times are expected")
     if np.any(np.isinf(values)):
         j, i = np.argwhere(np.isinf(values))[0]
-        place = f"marker {samples.names[i] if samples.names else i + 1}, " if samples.quantity == "x" else f"s = {samples.s[i]:g}, " if values.shape[1] > 1 else ""
-        raise InputError(f"{name} have {values[j, i]:g} at {place}t = {t[j]:g}, but finite numbers, or NaN for a gap, are expected")
+        raise InputError(f"{name} have {values[j, i]:g} at {samples.point(j, i)}, but finite numbers, or NaN for a gap, are expected")
 
 
 def _places_of_markers(samples, parameters, length, name):

@@ -46,6 +46,11 @@ class Samples:
     notes: list = dataclasses.field(default_factory=list)
     deviation: np.ndarray = None
 
+    def point(self, j, i):
+        """Words for the point of values[j, i]; markers have the names of the file."""
+        place = f"marker {self.names[i] if self.names else i + 1}, " if self.quantity == "x" else f"s = {self.s[i]:g}, " if len(self.s) > 1 else ""
+        return f"{place}t = {self.t[j]:g}"
+
 
 @checked
 def read_samples(path: str | os.PathLike, *, quantity: str = "", columns: str = "", unit_of_s: str | float = "", unit_of_t: str | float = "",
@@ -161,8 +166,8 @@ def _require_possible(samples, name):
         wrong = (samples.values <= low) | (samples.values >= LARGEST)
     if np.any(wrong):
         j, i = np.argwhere(wrong)[0]
-        raise InputError(f'"{name}" has {samples.quantity} = {samples.values[j, i]:g} at {"marker" if samples.quantity == "x" else "s"} = '
-                         f'{samples.s[i]:g}, t = {samples.t[j]:g}, but {what} is expected; see "--unit-of-m" and "--quantity"')
+        see = '"--unit-of-m" and "--quantity"' if samples.quantity in ("m", "strain") else '"--unit-of-s"'
+        raise InputError(f'"{name}" has {samples.quantity} = {samples.values[j, i]:g} at {samples.point(j, i)}, but {what} is expected; see {see}')
 
 
 def _converted(values, name, factor, shift, words):
@@ -268,7 +273,7 @@ def _wide(sheet, quantity, first):
     values = np.array([sheet.column(i) for i in columns]).T
     repeated = [np.repeat(along, len(across)), np.tile(across, len(along))]
     s, t = repeated if first == "s" else repeated[::-1]
-    s, t, values = _on_grid(sheet, s, t, values.ravel(), np.repeat(sheet.lines, len(across)), "marker" if is_tracked else "s")
+    s, t, values = _on_grid(sheet, s, t, values.ravel(), np.repeat(sheet.lines, len(across)), *(("marker", names[1:]) if is_tracked else ("s",)))
     wide_units = (units[1] if is_tracked else "", units[0], units[1]) if first == "t" else (units[0], "", units[1])
     if is_tracked:
         counted = names[0].lower() in FRAMES

@@ -40,6 +40,10 @@ namespace crawler
     /// Columns that are written when a point is computed; the last one is the status, which is empty before.
     std::vector<RowFile::Column>
     written_columns() const;
+
+    /// Attributes of the table in its file.
+    std::map<std::string, std::string>
+    attributes(const std::string &command_line) const;
   };
 
   /// Value in a row of a number or word of a run; not a number or empty where it is unknown.
