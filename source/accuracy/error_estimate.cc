@@ -352,8 +352,10 @@ namespace crawler
         error.time  = error.total - error.space;
       }
     }
-    catch (const std::runtime_error &) // the answer and its bound stay
+    catch (const std::runtime_error &) // the answer and its bound stay, but one that is not judged is none
     {
+      if (!keep_going())
+        error = DisplacementError();
     }
     return error.total > known;
   }

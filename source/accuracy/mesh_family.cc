@@ -47,7 +47,7 @@ namespace crawler
     /// Deviation of the order from 2 up to which that is accepted; else a first change counts unclean_factor times.
     /// Two orders in a row that deviate by at most regular are no chance.
     constexpr double clean = 0.25, unclean_factor = 2., regular = 0.1;
-    /// Relative error of the displacement, as a part of the relative change of the extrapolated work, at least.
+    /// Least relative error of the displacement, as a part of the relative change of the extrapolated work.
     constexpr double part_like_work = 0.04;
 
     class Family
@@ -388,7 +388,7 @@ namespace crawler
         return result.energy_balance ? result.energy_balance->stress_work : 0.;
       }
 
-      /// Part of the error of order 1, if works have one, in the displacement: changes of order 2 hide it for long.
+      /// Bound for an error of order 1 in the displacement, which shows in the work first: changes of order 2 hide it.
       /// Works of stiff bodies, which are small, are compared with the elastic energy, whose errors they share.
       double
       error_like_work(const Level &before, const Level &now) const

@@ -150,7 +150,6 @@ namespace crawler
         before_       = result.displacement;
         result.errors = number_errors(result, other, factor, parameters_.accuracy);
         add_errors_of_cycles(result, std::abs(result.displacement));
-        result.corrected.reset();
         result.time                 = steepest.time;
         answer_.result              = std::move(result);
         answer_.choice.wanted_error = wanted();

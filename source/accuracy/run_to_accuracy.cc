@@ -104,6 +104,7 @@ namespace crawler
     class OtherForm
     {
     public:
+      OtherForm(const OtherForm &) = delete; // its problem refers to its parameters
       OtherForm(const FormulationEntry form, const Problem &problem)
         : parameters_(problem.parameters)
         , problem_{parameters_, problem.scene, problem.keep_going}
@@ -219,7 +220,7 @@ namespace crawler
         const Stopwatch watch;
         estimate_errors(problem_, answer_.choice, result_);
         const auto is_settled = [&]() { return is_good() && (closes || std::isnan(wanted())); };
-        if (sweeps_ && is_settled())
+        if (sweeps_ && is_good())
           sweep_error(problem_, answer_.choice, result_);
         estimate_seconds_ += watch.seconds();
         if (is_settled())
@@ -307,7 +308,16 @@ namespace crawler
     {
       const bool is_automatic = problem.parameters.discretization.formulation == FormulationEntry::automatic;
       OtherForm position(FormulationEntry::position, problem);
-      Answer answer = answer_of_family(problem, choice, options, [&]() { return is_automatic && position.has_mesh(); });
+      Answer answer = answer_of_family(problem, choice, options, [&]() {
+        try
+        {
+          return is_automatic && position.has_mesh();
+        }
+        catch (const std::exception &) // said below, if it matters
+        {
+          return false;
+        }
+      });
       if (answer.result.time.reason != accuracy_not_met || !is_automatic)
         return answer;
       try
@@ -339,7 +349,8 @@ namespace crawler
         return answer;
       answer              = with_files(std::move(answer), simulate);
       const double wanted = answer.choice.wanted_error;
-      if (sweep_error(problem, answer.choice, answer.result) && std::isfinite(wanted)) // of the position form
+      if (sweep_error(problem, answer.choice, answer.result) &&
+          std::isfinite(wanted)) // sweeps those of the position form
         fails_accuracy(answer.result, wanted, "");
       return answer;
     };

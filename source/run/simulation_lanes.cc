@@ -6,7 +6,6 @@
 #include <crawler/run/simulation.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace crawler
 {

@@ -59,6 +59,9 @@ namespace crawler
       if (w > 0.)
         resistance = std::max(resistance, std::pow(w, a_));
     };
+    if (start == 0.)
+      for (const double w : before)
+        see(0., w);
     for (std::size_t end = 0; end < 2; ++end)
       see(after[end] - before[end], after[end]);
     for (std::size_t i = 2; i < after.size(); i += 2)

@@ -110,21 +110,32 @@ TEST(ErrorSweep, CorrectedDisplacementsAreCovered)
   EXPECT_GE(quantile(gains, 0.5), 50.);
 }
 
-/// A try whose bound by a finer run meets Accuracy, but whose error by the adjoint does not, is made again, finer.
+/// A try whose bound by a finer run meets Accuracy, but whose error by the adjoint does not, is made again, finer. One
+/// whose sweep is stopped has no error, and is no answer.
 TEST(ErrorSweep, JudgesTries)
 {
   const Parameters parameters = test::parameters_with(
     test::set("L = 8.0996; k = 0.140817; gamma = 0.719439; p = 2; T = 1.9506; Accuracy = 1e-4; travelling wave; "
               "Amplitude = 0.098572; Wave number = 0.5; Frequency = 0.205065"));
-  const Scene scene = parameters.create_scene();
-  const Problem problem{parameters, scene};
+  const Scene scene    = parameters.create_scene();
+  unsigned int n_steps = 0, n_most = std::numeric_limits<unsigned int>::max();
+  const auto keep_going = [&]() { return ++n_steps <= n_most; };
+  const Problem problem{parameters, scene, keep_going};
+  std::vector<unsigned int> begins; ///< of tries
   const auto simulate = [&](const NumericsChoice &choice) {
-    return Simulation(MPI_COMM_SELF, scene, parameters.time, choice.numerics).run({}, {});
+    begins.push_back(n_steps);
+    return Simulation(MPI_COMM_SELF, scene, parameters.time, choice.numerics).run({}, {}, {}, keep_going);
   };
-  const auto choice             = choose_numerics(problem);
-  const SimulationResult result = run_to_accuracy(problem, *choice, simulate, {}, /*writes=*/true).result;
+  const auto choice = choose_numerics(problem);
+  const auto answer = [&]() { return run_to_accuracy(problem, *choice, simulate, {}, /*writes=*/true).result; };
+  const SimulationResult result = answer();
   ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
   EXPECT_EQ(result.refinements, 1u);
+  EXPECT_NEAR(result.displacement, 9.340023374e-4, result.error->total); // at 1e-8
   ASSERT_TRUE(result.corrected);
-  EXPECT_LE(std::abs(result.corrected->value - result.displacement), result.error->total);
+  EXPECT_NEAR(result.corrected->value, 9.340023374e-4, result.corrected->error);
+  ASSERT_EQ(begins.size(), 2u);
+  n_most  = begins[1] - 3; // near the end of the sweep
+  n_steps = begins[0];
+  EXPECT_TRUE(std::isnan(answer().error->total));
 }

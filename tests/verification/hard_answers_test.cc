@@ -290,23 +290,6 @@ TEST(HardAnswers, FrictionBalancesAfterAnInitialStretch)
   EXPECT_LT(result.net_friction, 1e-12);
 }
 
-/// A body that starts compressed meets free ends: layers there are thinner than cells, whose polynomials overshoot. By
-/// the maximum principle the stretch lies between the initial one and that of the ends.
-TEST(HardAnswers, ExtremesAfterAnInitialStretch)
-{
-  for (const char *const accuracy : {"1e-2", "1e-4"})
-  {
-    const SimulationResult result =
-      answer_to(test::set("k = 0.05; p = 2; T = 1; Body/Initial stretch = 0.7; Accuracy = {}; expression; "
-                          "Active stress = 0.001*sin(2*pi*t)*s",
-                          accuracy));
-    ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
-    EXPECT_NEAR(result.min_stretch.value, 0.7, error_bound(result, "min_stretch.value").value()) << accuracy;
-    EXPECT_NEAR(result.max_stretch.value, 1.02, error_bound(result, "max_stretch.value").value()) << accuracy;
-    EXPECT_NEAR(result.max_stretch.value, 1.02, 1e-4) << accuracy;
-  }
-}
-
 /// At a = 14 friction underflows where the stretch is lost: that is an inversion, not a friction law that fails.
 TEST(HardAnswers, LostStretchOfASteepPowerLawIsAnInversion)
 {

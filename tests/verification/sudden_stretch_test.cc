@@ -142,6 +142,21 @@ TEST(SuddenStretch, ConstantStress)
     expect_stretch(test::set("p = 1; T = 2; expression; Active stress = 0.3; Accuracy = {}", accuracy), 0.7, 1., 2e-3);
 }
 
+/// A body that starts compressed or stretched meets its ends, where the stretch is 1 - m/k: between both it stays.
+TEST(SuddenStretch, InitialStretch)
+{
+  for (const char *const accuracy : {"1e-4", "1e-6"})
+    for (const auto &[p, initial] : {std::pair("2", "0.7"), {"-1", "2.5"}})
+      expect_stretch(test::set("k = 0.05; p = {}; T = 1; Body/Initial stretch = {}; Accuracy = {}; expression; "
+                               "Active stress = 0.001*sin(2*pi*t)*s",
+                               p,
+                               initial,
+                               accuracy),
+                     std::min(std::stod(initial), 0.98),
+                     std::max(std::stod(initial), 1.02),
+                     0.03);
+}
+
 TEST(SuddenStretch, RobotsWithoutAnchoring)
 {
   for (const unsigned int n : {2u, 4u, 8u})

@@ -53,7 +53,8 @@ namespace crawler
    * Measures the error of a finished @p result, whose bound is known, once more by the adjoint (adjoint/error_sweep.h):
    * its parts in space and time, which were those that the rule of the numerics expects, and the corrected displacement
    * with its bound. A bound below the error found by the sweep is raised to it: then this returns true. Nothing is done
-   * where there is no adjoint, and for runs of so many steps and cells that it would take long.
+   * where there is no adjoint, cycles were extrapolated, ranks share the cells or friction depends on the direction,
+   * and for runs of so many steps and cells that it would take long. If it is stopped the error is unknown.
    */
   bool
   sweep_error(const Problem &problem, const NumericsChoice &choice, SimulationResult &result);

@@ -5,7 +5,6 @@
 #include <crawler/accuracy/stress_scales.h>
 
 #include <optional>
-#include <string>
 
 namespace crawler
 {

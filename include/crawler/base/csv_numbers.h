@@ -49,7 +49,7 @@ namespace crawler
   std::string
   read_table_text(const std::string &file, const std::string &expected, const std::string &entry);
 
-  /// Both for the file @p file.
+  /// Reads the text of @p file and its numbers.
   CsvNumbers
   read_csv_numbers(const std::string &file,
                    const std::vector<std::string> &names,

@@ -42,7 +42,7 @@ namespace crawler
       return state_.empty() ? nullptr : &state_;
     }
 
-    /// True if the next run to begin has ended before, or has a state.
+    /// True if the next run to begin has ended before, or has a state; unless begin() finds it to be another one.
     bool
     knows_next() const
     {

@@ -25,7 +25,7 @@ namespace crawler
    * an even number of pieces. With e the stretch without its mean over time, E_n its Fourier coefficients in time, w =
    * 2 pi/P and q = 1/c a slowness,
    *
-   *   S(q) = sum_n |int E_n e^(i n w q s) ds|^2 / (L sum_n int |E_n|^2 ds),   n = 1 ... 8,
+   *   S(q) = sum_n |int E_n e^(i n w q s) ds|^2 / (sum_n int |E_n|^2 ds),   n = 1 ... 8,
    *
    * is 1 if and only if e = e(s - c t). The wave is that of the largest S, its coherence S(q) - S(-q). No derivative is
    * taken, so stretches may have steps along the body and in time.

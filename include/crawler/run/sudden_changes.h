@@ -12,11 +12,12 @@
 namespace crawler
 {
   /**
-   * Stretch after the active stress starts or jumps suddenly. From the ends of the body, and from the jumps in space,
-   * layers grow like sqrt(D t) with D = k/(gamma w^a): at first they are thinner than the cells, and the polynomials
-   * there overshoot by some per cent of the jump, on any mesh. In a layer the stretch lies between its earlier value
-   * and that set by the conditions at the ends and jumps; so as long as layers are thin, the extremes are those of the
-   * ends, 1 - m/k, which are known (doc/numerics.md, "Extremes after sudden changes"). Not with feedback.
+   * Stretch after the active stress starts or jumps suddenly, or a body starts that is not in balance. From the ends of
+   * the body, and from the jumps in space, layers grow like sqrt(D t) with D = k/(gamma w^a): at first they are thinner
+   * than the cells, and the polynomials there overshoot by some per cent of the jump, on any mesh. In a layer the
+   * stretch lies between its earlier value and that set by the conditions at the ends and jumps; so as long as layers
+   * are thin, the extremes are those of the ends, 1 - m/k, which are known (doc/numerics.md, "Extremes after sudden
+   * changes"). Not with feedback.
    */
   class SuddenChanges
   {

@@ -23,10 +23,13 @@ namespace
     for (const auto &[pilot, run] : {std::pair("pilot", "run"), {"pilot", "another run"}, {"another pilot", "run"}})
     {
       RunJournal now(0., {});
+      EXPECT_FALSE(now.knows_next());
       now.load(left);
+      EXPECT_TRUE(now.knows_next());
       EXPECT_EQ(now.begin(pilot).has_value(), pilot == std::string("pilot"));
       if (pilot != std::string("pilot"))
         now.end(SimulationResult());
+      EXPECT_EQ(now.knows_next(), pilot == std::string("pilot"));
       EXPECT_FALSE(now.begin(run));
       EXPECT_EQ(now.state() != nullptr, pilot + std::string(run) == "pilotrun") << pilot << ", " << run;
     }

@@ -36,7 +36,7 @@ namespace crawler
     begin_files(Log &log);
 
     /// Forgets the fields of a try that is not the answer, and states that would need them, unless the next try
-    /// resumes.
+    /// is known.
     void
     forget_fields();
 
