@@ -90,7 +90,7 @@ namespace crawler
             return end();
           keep(latest_);
         }
-        if (latest_.inversion && std::isfinite(space_error_) && sticks() && (!has_order_ || inverts_slowly()))
+        if (latest_.inversion && std::isfinite(space_error_) && sticks() && (!has_order() || inverts_slowly()))
           check_inversion();
         return end();
       }
@@ -109,13 +109,20 @@ namespace crawler
         return latest_.inversion && sticks() && scene_.friction_exponent() > min_slow_exponent;
       }
 
+      /// True if the last meshes show an order.
+      bool
+      has_order() const
+      {
+        return !levels_.empty() && levels_.back().order > min_order;
+      }
+
       bool
       is_worth_it() const
       {
         const double work = more_work * latest_.mesh.n_cells * latest_.time.steps;
         if (work <= (parameters_.accuracy < accurate ? max_work_if_accurate : max_work))
           return true;
-        const bool is_near = has_order_ && space_error_ / 4. <= (1. - time_part) * wanted(); // one mesh more
+        const bool is_near = has_order() && space_error_ / 4. <= (1. - time_part) * wanted(); // one mesh more
         return work <= max_work_if_near && is_near && !is_for_other_form_();
       }
 
@@ -360,7 +367,6 @@ namespace crawler
         const double change = std::abs(now.change), last = std::abs(before.change);
         const double order  = now.change * before.change < 0. ? 0. : std::log2(last / change);
         const bool is_clean = std::abs(order - 2.) < clean;
-        has_order_          = order > min_order;
         now.order           = order;
         if (inverts_slowly())
           return sticking_factor * std::max(change, last / sticking_rate);
@@ -508,7 +514,6 @@ namespace crawler
       std::vector<double> time_errors_; ///< empty if they are not known
       double size_ = 0., time_error_ = 0., space_error_ = HUGE_VAL;
       unsigned int n_runs_ = 0, n_corrections_ = 0;
-      bool has_order_ = false; ///< order observed between the last meshes
     };
   } // namespace
 
