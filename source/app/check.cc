@@ -7,7 +7,6 @@
 #include <crawler/studies/core/log.h>
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/progress.h>
-#include <crawler/studies/core/python.h>
 #include <crawler/studies/core/scene_numbers.h>
 #include <crawler/studies/optimize/optimize.h>
 #include <crawler/studies/run/run_files.h>
@@ -17,19 +16,6 @@
 
 namespace crawler
 {
-  namespace
-  {
-    /// Throws InputError where crawler fit would refuse its entries or data.
-    void
-    require_fit(MPI_Comm communicator, const CommandOptions &options)
-    {
-      std::vector<std::string> words = {"fit", "--check", options.file};
-      for (const std::string &assignment : options.overrides)
-        words.insert(words.end(), {"--set", assignment});
-      on_first_rank(communicator, [&]() { hand_over_to_python("__main__.py", words); });
-    }
-  } // namespace
-
   ExitCode
   check(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
   {
@@ -38,13 +24,9 @@ namespace crawler
       return ExitCode::finished;
     const Input input = read_input(file, /*command=*/"check");
     if (const FitParameters &fit = input.parameters.fit; !trimmed(fit.variables).empty())
-    {
-      if (!fit.data.empty() && options.file != "-")
-        require_fit(communicator, options);
       log.line(fmt::format("Fit: {} unknown, from {}.",
                            read_variables(input.file, "Fit/Variables").size(),
                            fit.data.empty() ? "the file given with --data" : fit.data));
-    }
     const ModelChoice model = choose_model(input);
     if (!model.needs_mesh())
     {

@@ -257,10 +257,9 @@ def refuses():
         more = [] if "--output" in arguments or code == 2 and "--overwrite" in phrase else ["--output", "new"]
         ended = crawler("fit", *arguments, *more)
         refused(ended, phrase, code=code)
-    for setting, code, phrase in (("Variables=Body/Elastic modulus : 0.3 to 4", 0, "Fit: 1 unknown, from"), ("Variables=Body/Friction profile[1] : 0.3 to 4", 2, "numbers at equally spaced places"),
-                                  ("Data=none.csv", 2, "none.csv"), ("Markers at=1,2,foo", 2, '"first" or a list of numbers')):
-        ended = crawler("check", "fit_worm.prm", "--set", f"Fit/{setting}")
-        expect(ended.returncode == code and phrase in ended.stdout + ended.stderr, f"check of {setting}: {ended.stdout}{ended.stderr}")
+    for variables, code, phrase in (("Body/Elastic modulus : 0.3 to 4", 0, "Fit: 1 unknown, from"), ("Body/Friction profile[1] : 0.3 to 4", 2, "numbers at equally spaced places")):
+        ended = crawler("check", "fit_worm.prm", "--set", f"Fit/Variables={variables}")
+        expect(ended.returncode == code and phrase in ended.stdout + ended.stderr, f"check of {variables}: {ended.stdout}{ended.stderr}")
     expect(pathlib.Path("output-fit_worm/summary.json").read_bytes() == before and pathlib.Path("other/kept.txt").exists()
            and not pathlib.Path("new").exists(), "a refusal changes something")
 

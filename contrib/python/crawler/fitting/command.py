@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """crawler fit: numbers of scenes from measured data, with their uncertainty; of several scenes, which the data prefer."""
-import argparse
 import contextlib
 import os
 import pathlib
@@ -33,7 +32,6 @@ def command_line():
     parser.add_argument("--overwrite", action="store_true", help="replaces the results in the output folder")
     parser.add_argument("--workers", metavar="N", type=int, default=1, help="number of processes that share the starts (Fit/Starts)")
     parser.add_argument("--quiet", action="store_true", help="prints only errors")
-    parser.add_argument("--check", action="store_true", help=argparse.SUPPRESS)  # for crawler check: nothing is computed
     add_reading_options(parser)
     return parser
 
@@ -203,9 +201,6 @@ def main():
     start = time.monotonic()
     options = command_line().parse_intermixed_args(sys.argv[2:])
     end_with_program(signal.SIGKILL)  # so that it does not hold its folder any longer; finished starts are kept
-    if options.check:
-        prepared_by(options.files[0], options)
-        return
     say = Screen(options.quiet)
     require_sense(options)
     comparison = Comparison(path_of(options.files[0], options).parent, options) if len(options.files) > 1 else None
