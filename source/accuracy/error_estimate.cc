@@ -352,7 +352,7 @@ namespace crawler
         error.time  = error.total - error.space;
       }
     }
-    catch (const std::runtime_error &) // the answer and its bound stay, but one that is not judged is none
+    catch (const std::runtime_error &) // the bound stays; if the sweep was stopped the error is unknown
     {
       if (!keep_going())
         error = DisplacementError();

@@ -24,7 +24,7 @@ namespace crawler
       return ExitCode::finished;
     const Input input = read_input(file, /*command=*/"check");
     if (const FitParameters &fit = input.parameters.fit; !trimmed(fit.variables).empty())
-      log.line(fmt::format("Fit: {} unknown, from {}.",
+      log.line(fmt::format("Fit: {} unknown, from {}, which only crawler fit reads.",
                            read_variables(input.file, "Fit/Variables").size(),
                            fit.data.empty() ? "the file given with --data" : fit.data));
     const ModelChoice model = choose_model(input);

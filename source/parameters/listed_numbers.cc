@@ -70,11 +70,12 @@ namespace crawler
         case EntryKind::profile:
           if (list.empty())
             refuse(entry.path,
-                   "{} names a number of a list, but \"{}\" is \"{}\"; numbers at equally spaced places from tail to "
-                   "head are expected there, like 1, 1, 1, 1",
+                   "{} names a number of a list, but \"{}\" is \"{}\"; {} expected there, like 1, 1, 1, 1",
                    number,
                    entry.path,
-                   text);
+                   text,
+                   entry.values.one_is_all ? "a number for each part is"
+                                           : "numbers at equally spaced places from tail to head are");
           refuse(entry.path,
                  "{0} names no number of the list; \"{1}\" has {2} of them, so [1] to [{2}] are expected",
                  number,

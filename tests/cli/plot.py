@@ -68,7 +68,7 @@ REFUSED = [
     (["run", "--output", "no/picture.png"], 6, "no/picture.png")]
 # The same of scripts.
 REFUSED_BY_SCRIPTS = [
-    (["run", "--kind", "sweep"], 2, "results.h5"), (["sweep", "--kind", "kymograph"], 2, "did not end before a second row"),
+    (["run", "--kind", "sweep"], 2, "results.h5"), (["sweep", "--kind", "kymograph"], 2, "has two rows at least"),
     (["run", "--from", "soon"], 2, "soon"), (["run", "--from", "2", "--to", "1"], 2, "from 2 to 1"),
     (["run", "--to", "4"], 2, "from 0 to 4"), (["run", "--from", "1", "--to", "1.001"], 2, "has 1 times"),
     (["run", "--last-stride", "--to", "1"], 2, "only one of the two"), (["no_stride", "--last-stride"], 2, "has no stride"),

@@ -112,7 +112,7 @@ def test_designs(folder):
            abs(rows["displacement"][1] - 4.8552305987e-2) < 1e-5, "parameter files are an axis")
     told = re.search(r"results.h5 will have about (\S+) kB", call([PROGRAM, "check", "sweep.prm"], folder).stdout)
     size = (folder / "files/results.h5").stat().st_size
-    expect(told and abs(1e3 * float(told[1]) / size - 1) < 0.1, f"check tells the size of the table, {size} bytes {told}")
+    expect(told and abs(1e3 * float(told[1]) / size - 1) < 0.3, f"check tells the size of the table, {size} bytes {told}")
     result = sweep(folder, "set", "--set", "Body/Elastic modulus=10")
     expect(result.returncode == 0 and list(table(folder / "set")["displacement"]) == [rows["displacement"][1]] * 2,
            f"--set is stronger than the files of an axis {result.stderr}")

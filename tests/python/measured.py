@@ -301,6 +301,7 @@ class Files(unittest.TestCase):
                 ("t,y1,y2,y3,y4\n" + "".join(f"{j},1,2,3,4\n" for j in range(5)), "but no x", {}), (WIDE, 'the column "q"', {"columns": "t=q"}),
                 ("t,x1,x2,x3,x4\n" + "".join(f"{j},1,2,3,4\n" for j in range(5)), '"--columns" has "x=x1", but', {"columns": "t=t, x=x1"}),
                 (WIDE.replace(";", ","), "commas separate the columns", {"decimal": "comma"}),
+                ('note,t,m\n"a,b",0,1.234\n"a,c",1,2.345\n', "commas separate the columns", {"decimal": "comma"}),
                 ("t,x1,x2,x3,x4\n" + "".join(f"{j},1,2,1e300,4\n" for j in range(5)), 'marker x3, t = 0, .* see "--unit-of-s"', {}),
                 ("t,x1,x2,x3,x4\n" + "0,1,2,3,4\n" * 5, "row 3 .* gives marker = x1, t = 0 a second", {})):
             with self.assertRaisesRegex(InputError, words, msg=text):

@@ -135,7 +135,9 @@ TEST(ErrorSweep, JudgesTries)
   ASSERT_TRUE(result.corrected);
   EXPECT_NEAR(result.corrected->value, 9.340023374e-4, result.corrected->error);
   ASSERT_EQ(begins.size(), 2u);
-  n_most  = begins[1] - 3; // near the end of the sweep
-  n_steps = begins[0];
-  EXPECT_TRUE(std::isnan(answer().error->total));
+  n_most                         = begins[1] - 3; // near the end of the sweep
+  n_steps                        = begins[0];
+  const SimulationResult stopped = answer();
+  ASSERT_TRUE(stopped.error);
+  EXPECT_TRUE(std::isnan(stopped.error->total));
 }

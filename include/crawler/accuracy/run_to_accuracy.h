@@ -13,8 +13,8 @@ namespace crawler
    * smaller tolerance, at most max_refinements times (collective). A final error that is too large or unknown is a
    * failure, `accuracy_not_met`: with all results and the error that was reached. If the user chose the numerics, their
    * error is reported and that is all. A family of meshes has its own way (mesh_family.h), with @p options; if it does
-   * not meet Accuracy the position form may. Only the last run is by @p simulate then, if that @p writes;
-   * then the adjoint judges tries, too.
+   * not meet Accuracy the position form may. Only the last run is by @p simulate then, if that @p writes. If it
+   * @p writes the adjoint judges tries, too.
    */
   Answer
   run_to_accuracy(const Problem &problem,

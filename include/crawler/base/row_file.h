@@ -52,7 +52,7 @@ namespace crawler
            const std::map<std::string, std::string> &attributes,
            const Known &known = {});
 
-    /// Size of the file that create() makes.
+    /// About the size of the file that create() makes.
     static double
     bytes_of(const std::vector<Column> &columns,
              unsigned long n_rows,

@@ -68,7 +68,7 @@ TEST(Declarations, NumbersOfAnEntryHaveNames)
                                    std::pair("X/Constants[1]", "\"a\" or \"rate\" is expected"),
                                    std::pair("X/Profile[3]", "has 2 of them, so [1] to [2] are expected"),
                                    std::pair("X/Formula[1]", "is \"1+s\"; numbers at equally spaced places"),
-                                   std::pair("X/Parts[2]", "is \"0.3\"; numbers at equally spaced places"),
+                                   std::pair("X/Parts[2]", "is \"0.3\"; a number for each part is expected"),
                                    std::pair("X/List[0]", "a whole number from 1 to 10000")})
     EXPECT_NE(test::complaint_of([&, &path = path]() { declarations.value(path); }).find(part), std::string::npos)
       << path;

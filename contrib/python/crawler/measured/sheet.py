@@ -161,7 +161,7 @@ def meaning_of_commas(rows, separator, name, decimal):
     between semicolons, as programs write them where decimals have commas."""
     if decimal not in ("", "comma", "point"):
         raise InputError(f'"--decimal" is "{decimal}", but "comma" or "point" is expected')
-    if decimal == "comma" and separator == "," and not any("," in cell for row in rows for cell in row):
+    if decimal == "comma" and separator == "," and not any(DECIMAL_COMMA.fullmatch(cell) for row in rows for cell in row):
         raise InputError(f'"--decimal" is "comma", but in "{name}" commas separate the columns; semicolons or tabs between them are expected')
     if decimal:
         return "decimal" if decimal == "comma" else "thousands"

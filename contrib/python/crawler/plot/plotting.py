@@ -124,7 +124,7 @@ class Kymograph:
     """Fields over body and time of a run: s [length], t [time], and under their names arrays with a row for each t."""
 
     def __init__(self, folder, *names):
-        what = "the output folder of a run with Output/Kymograph = true and snapshots, that was not stopped and did not end before a second row,"
+        what = "the output folder of a run that was not stopped and has two rows at least, with Output/Kymograph = true and snapshots,"
         path = existing(folder / "kymograph.vts", what)
         self.folder, entries = folder, parameters(existing(folder / "parameters.prm", what))
         self.length, self.duration = (entries.get(name) for name in ("Body/Length", "Time/End time"))
