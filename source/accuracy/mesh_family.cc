@@ -374,12 +374,12 @@ namespace crawler
           return 5. * change;
         if (order < min_order)
           return std::max(std::abs(now.settled), change / (std::exp2(order) - 1.));
-        const double settled_like_work = std::max(std::abs(now.settled), error_like_work(before, now));
+        const double least = std::max(std::abs(now.settled), error_like_work(before, now));
         if (order > largest_order)
-          return std::max(settled_like_work, change / 3.);
+          return std::max(least, change / 3.);
         // Displacements may agree by chance; their works rarely do at the same time, nor do three changes in a row.
         const bool is_regular = std::abs(order - 2.) < regular && std::abs(before.order - 2.) < regular;
-        const double settled  = std::max(settled_like_work, is_regular ? 0. : unsettled_work(before, now) * change);
+        const double settled  = std::max(least, is_regular ? 0. : unsettled_work(before, now) * change);
         if (levels_.size() == 2) // one change of the extrapolated value alone
           return is_clean ? settled : unclean_factor * settled;
         const double settled_before = std::abs(before.settled);

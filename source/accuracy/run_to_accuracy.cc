@@ -215,16 +215,15 @@ namespace crawler
         }
         if (!problem_.parameters.error_estimate || result_.time.status != Status::finished)
           return false;
-        // Where the energy balance does not close a finer run is tried, too; the self-check judges the last one.
-        const bool closes = !result_.energy_balance || result_.energy_balance->residual() <=
-                                                         energy_balance_tolerance(result_, problem_.parameters);
         const Stopwatch watch;
         estimate_errors(problem_, answer_.choice, result_);
-        const auto is_settled = [&]() { return is_good() && (closes || std::isnan(wanted())); };
         if (sweeps_ && is_good())
           sweep_error(problem_, answer_.choice, result_);
         estimate_seconds_ += watch.seconds();
-        if (is_settled())
+        // Where the energy balance does not close a finer run is tried, too; the self-check judges the last one.
+        const bool closes = !result_.energy_balance || result_.energy_balance->residual() <=
+                                                         energy_balance_tolerance(result_, problem_.parameters);
+        if (is_good() && (closes || std::isnan(wanted())))
           return false;
         std::string problem;
         if (has_tries() && first_.min_error <= wanted())

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
 #include <crawler/base/nearest_name.h>
 #include <crawler/base/plain_numbers.h>
 #include <crawler/parameters/axis.h>
@@ -60,7 +61,7 @@ namespace crawler
              near.empty() ? "" : "; the nearest name is " + quoted_list(near));
     }
 
-    /// True if it can be shown on a terminal: not UTF-16, compressed, a picture or lines that end with CR alone.
+    /// True if it can be shown on a terminal: not UTF-16, compressed or a picture.
     bool
     is_text(const std::string &line)
     {
@@ -147,8 +148,11 @@ namespace crawler
         if (row == 1 && line.starts_with("\xef\xbb\xbf"))
           line.erase(0, 3);
         line = trimmed(line);
-        if (!is_text(line))
-          refuse("row {} of \"{}\" is not text or has a CR in it, but a CSV file in UTF-8 is expected", row, file);
+        if (const std::string found = foreign_format(line); !found.empty() || !is_text(line))
+          refuse("row {} of \"{}\" is {}, but a CSV file in UTF-8 is expected",
+                 row,
+                 file,
+                 found.empty() ? "not text" : found);
         if (line.empty() || line[0] == '#')
           continue;
         const auto cells = csv_cells(line);
