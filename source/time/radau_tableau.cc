@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/bracketed_root.h>
 #include <crawler/time/radau_tableau.h>
 
 #include <boost/math/special_functions/legendre.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
+#include <span>
 #include <stdexcept>
 #include <tuple>
-#include <utility>
 
 namespace crawler
 {
@@ -18,106 +19,70 @@ namespace crawler
     using Real    = long double;
     using Complex = std::complex<Real>;
 
-    /// A square matrix, row by row.
-    template <typename Number>
-    struct Matrix
+    /// The Radau points in (0, 1]: the zeros of P_s - P_{s-1} by Newton's method from those of a Chebyshev polynomial.
+    std::vector<Real>
+    radau_points(const int n)
     {
-      explicit Matrix(const unsigned int n)
-        : n(n)
-        , entries(static_cast<std::size_t>(n) * n, Number(0))
+      std::vector<Real> points;
+      for (int j = n - 1; j >= 0; --j)
       {
+        Real y = std::cos(2 * std::numbers::pi_v<Real> * j / (2 * n - 1));
+        for (int iteration = 0; j > 0 && iteration < 10; ++iteration)
+          y -= (boost::math::legendre_p(n, y) - boost::math::legendre_p(n - 1, y)) /
+               (boost::math::legendre_p_prime(n, y) - boost::math::legendre_p_prime(n - 1, y));
+        points.push_back((1 + y) / 2);
       }
-      Number &
-      operator()(const unsigned int i, const unsigned int j)
-      {
-        return entries[i * n + j];
-      }
-      const Number &
-      operator()(const unsigned int i, const unsigned int j) const
-      {
-        return entries[i * n + j];
-      }
-      const unsigned int n;
-      std::vector<Number> entries;
-    };
+      return points;
+    }
 
-    /// Inverts by Gauss-Jordan elimination with pivoting.
-    template <typename Number>
-    Matrix<Number>
-    inverse_of(Matrix<Number> a)
+    /// Derivatives 0, 1, 2, ... at x of the polynomial with these zeros and the leading coefficient 1.
+    std::vector<Real>
+    derivatives(const std::span<const Real> zeros, const Real x)
     {
-      const unsigned int n = a.n;
-      Matrix<Number> result(n);
-      for (unsigned int i = 0; i < n; ++i)
-        result(i, i) = 1;
-      for (unsigned int k = 0; k < n; ++k)
+      std::vector<Real> result = {1}; // coefficients of the powers of the distance from x, then times factorials
+      for (const Real zero : zeros)
       {
-        unsigned int pivot = k;
-        for (unsigned int i = k + 1; i < n; ++i)
-          if (std::abs(a(i, k)) > std::abs(a(pivot, k)))
-            pivot = i;
-        const Number scale = Number(1) / a(pivot, k);
-        for (unsigned int j = 0; j < n; ++j)
+        result.push_back(0);
+        for (std::size_t i = result.size() - 1; i-- > 0;)
         {
-          std::swap(a(k, j), a(pivot, j));
-          std::swap(result(k, j), result(pivot, j));
-          a(k, j) *= scale;
-          result(k, j) *= scale;
-        }
-        for (unsigned int i = 0; i < n; ++i)
-        {
-          const Number factor = i == k ? Number(0) : a(i, k);
-          for (unsigned int j = 0; j < n; ++j)
-          {
-            a(i, j) -= factor * a(k, j);
-            result(i, j) -= factor * result(k, j);
-          }
+          result[i + 1] += result[i];
+          result[i] *= x - zero;
         }
       }
+      for (std::size_t i = 2; i < result.size(); ++i)
+        result[i] *= std::tgamma(static_cast<Real>(i + 1));
       return result;
     }
 
-    /// The eigenvalues, which are simple: all zeros of the characteristic polynomial at once (Weierstrass). The real
-    /// one first, then pairs with falling imaginary parts, in each pair the positive one first.
-    std::vector<Complex>
-    eigenvalues_of(const Matrix<Real> &matrix)
+    /// c[0] + c[1] z + c[2] z^2 + ...
+    Complex
+    value(const std::span<const Real> c, const Complex z)
     {
-      // Faddeev and LeVerrier: x^n + c[0] x^{n-1} + ... + c[n-1]
-      const unsigned int n = matrix.n;
-      std::vector<Real> c;
-      Matrix<Real> m(n);
-      for (unsigned int k = 1; k <= n; ++k)
-      {
-        Matrix<Real> product(n);
-        Real trace = 0;
-        for (unsigned int i = 0; i < n; ++i)
-          m(i, i) += k == 1 ? 1 : c.back();
-        for (unsigned int i = 0; i < n; ++i)
-          for (unsigned int j = 0; j < n; ++j)
-            for (unsigned int l = 0; l < n; ++l)
-              product(i, j) += matrix(i, l) * m(l, j);
-        for (unsigned int i = 0; i < n; ++i)
-          trace += product(i, i);
-        c.push_back(-trace / k);
-        m.entries = product.entries;
-      }
+      return std::accumulate(
+        c.rbegin(), c.rend(), Complex(0), [z](const Complex sum, const Real next) { return sum * z + next; });
+    }
+
+    /// All zeros of a polynomial with a leading coefficient of 1 at once (Weierstrass), which are simple and at most
+    /// one of them real: the real one first, then pairs with falling imaginary parts, in each pair the positive one
+    /// first.
+    std::vector<Complex>
+    zeros_of(const std::span<const Real> c)
+    {
+      const std::size_t n = c.size() - 1;
       std::vector<Complex> zeros;
       Real size = 0;
-      for (unsigned int k = 0; k < n; ++k)
-        size = std::max(size, std::pow(std::abs(c[k]), Real(1) / (k + 1)));
-      for (unsigned int k = 0; k < n; ++k)
-        zeros.push_back(std::polar(size, Real(2.5) * k + Real(0.4)));
+      for (std::size_t k = 0; k < n; ++k)
+        size = std::max(size, std::pow(std::abs(c[k]), Real(1) / static_cast<Real>(n - k)));
+      for (std::size_t k = 0; k < n; ++k)
+        zeros.push_back(std::polar(size, Real(2.5) * static_cast<Real>(k) + Real(0.4)));
       for (int iteration = 0; iteration < 200; ++iteration)
-        for (unsigned int k = 0; k < n; ++k)
+        for (std::size_t k = 0; k < n; ++k)
         {
-          Complex value = 1, others = 1;
-          for (unsigned int i = 0; i < n; ++i)
-          {
-            value = value * zeros[k] + c[i];
+          Complex others = 1;
+          for (std::size_t i = 0; i < n; ++i)
             if (i != k)
               others *= zeros[k] - zeros[i];
-          }
-          zeros[k] -= value / others;
+          zeros[k] -= value(c, zeros[k]) / others;
         }
       std::ranges::sort(zeros, {}, [](const Complex &zero) {
         constexpr Real round_off = 1e-8L;
@@ -127,127 +92,61 @@ namespace crawler
       zeros[0] = zeros[0].real();
       return zeros;
     }
-
-    /// The Radau points in (0, 1]: the zeros of P_s - P_{s-1}, one in each grid interval where the sign changes.
-    std::vector<double>
-    radau_points(const unsigned int n)
-    {
-      const auto function = [n](const double x) {
-        return boost::math::legendre_p(static_cast<int>(n), 2. * x - 1.) -
-               boost::math::legendre_p(static_cast<int>(n) - 1, 2. * x - 1.);
-      };
-      std::vector<double> points;
-      constexpr int n_grid = 1000;
-      for (int i = 1; i < n_grid - 1; ++i)
-      {
-        const double left = (i - 0.5) / n_grid, right = (i + 0.5) / n_grid;
-        if (function(left) * function(right) <= 0.)
-          points.push_back(bracketed_root(function, left, right));
-      }
-      points.push_back(1.);
-      return points;
-    }
-
-    /// Coefficients of 1, x, x^2, ... of the polynomial l_j with l_j(c_i) = (i == j).
-    std::vector<Real>
-    lagrange_polynomial(const std::vector<double> &c, const unsigned int j)
-    {
-      std::vector<Real> polynomial = {1};
-      for (unsigned int k = 0; k < c.size(); ++k)
-      {
-        if (k == j)
-          continue;
-        std::vector<Real> product(polynomial.size() + 1, 0);
-        for (unsigned int i = 0; i < polynomial.size(); ++i)
-        {
-          product[i] -= c[k] * polynomial[i] / (Real(c[j]) - c[k]);
-          product[i + 1] += polynomial[i] / (Real(c[j]) - c[k]);
-        }
-        polynomial = product;
-      }
-      return polynomial;
-    }
-
-    Real
-    integral(const std::vector<Real> &polynomial, const Real to)
-    {
-      Real sum = 0;
-      for (std::size_t i = polynomial.size(); i-- > 0;)
-        sum = sum * to + polynomial[i] / static_cast<Real>(i + 1);
-      return sum * to;
-    }
-
-    /// The eigenvector whose last component is 1.
-    std::vector<Complex>
-    eigenvector(const Matrix<Real> &matrix, const Complex eigenvalue)
-    {
-      const unsigned int n = matrix.n - 1;
-      Matrix<Complex> shifted(n);
-      for (unsigned int i = 0; i < n; ++i)
-        for (unsigned int j = 0; j < n; ++j)
-          shifted(i, j) = matrix(i, j) - (i == j ? eigenvalue : Complex(0));
-      const Matrix<Complex> inverse = inverse_of(shifted);
-      std::vector<Complex> vector(n + 1, 0);
-      vector[n] = 1;
-      for (unsigned int i = 0; i < n; ++i)
-        for (unsigned int j = 0; j < n; ++j)
-          vector[i] -= inverse(i, j) * matrix(j, n);
-      return vector;
-    }
   } // namespace
 
+  // With M = (x - c_1) ... (x - c_s) and z an eigenvalue of A^-1, which maps the values at c of a polynomial p of
+  // degree s with p(0) = 0 to those of p':
+  //   p = M + M'/z + M''/z^2 + ... has p' = z (p - M) and so is an eigenvector if p(0) = 0;
+  //   b y is an eigenvector of the transposed matrix for y = N - N'/z + N''/z^2 - ..., N = M/(x - 1), since b integrates exactly.
   RadauTableau::RadauTableau(const unsigned int n_stages)
     : n(n_stages)
     , newton_fraction(n_stages == 5 ? 1e-4 : 1e-3)
-    , c(radau_points(n_stages))
-    , inverse(static_cast<std::size_t>(n_stages) * n_stages)
-    , error_weights(n_stages, 0.)
   {
-    Matrix<Real> A(n);
-    for (unsigned int j = 0; j < n; ++j)
+    const std::vector<Real> points = radau_points(static_cast<int>(n)), at_start = derivatives(points, 0);
+    std::vector<Real> slopes, weights;
+    for (const Real x : points)
     {
-      const auto polynomial = lagrange_polynomial(c, j);
-      for (unsigned int i = 0; i < n; ++i)
-        A(i, j) = integral(polynomial, c[i]);
+      slopes.push_back(derivatives(points, x)[1]);
+      weights.push_back(x / std::pow(n * boost::math::legendre_p(static_cast<int>(n) - 1, 2 * x - 1), Real(2)));
     }
-    for (unsigned int j = 0; j < n; ++j)
-      b.push_back(static_cast<double>(A(n - 1, j)));
-    const Matrix<Real> W = inverse_of(A);
-    std::ranges::transform(W.entries, inverse.begin(), [](const Real x) { return static_cast<double>(x); });
-
-    const std::vector<Complex> zeros = eigenvalues_of(W);
-    Matrix<Complex> right(n);
-    for (unsigned int k = 0; k < n; ++k)
-    {
-      const auto vector = eigenvector(W, zeros[k]);
-      for (unsigned int i = 0; i < n; ++i)
-        right(i, k) = vector[i];
-    }
-    const Matrix<Complex> left     = inverse_of(right);
-    const auto rounded             = [](const Complex z) { return std::complex<double>(z); };
-    real_eigenvalue                = static_cast<double>(zeros[0].real());
-    std::vector<unsigned int> kept = {0};
-    for (unsigned int k = 1; k < n; k += 2)
-    {
-      kept.push_back(k);
-      eigenvalues.push_back(rounded(zeros[k]));
-    }
+    c.assign(points.begin(), points.end());
+    b.assign(weights.begin(), weights.end());
     for (unsigned int i = 0; i < n; ++i)
-      for (const unsigned int k : kept)
-        vectors.push_back(rounded(right(i, k)));
-    for (const unsigned int k : kept)
       for (unsigned int j = 0; j < n; ++j)
-        rows.push_back(rounded(left(k, j)));
+        inverse.push_back(
+          static_cast<double>(i == j ? 1 / points[i] + derivatives(points, points[i])[2] / (2 * slopes[i])
+                                     : points[i] / points[j] * slopes[i] / slopes[j] / (points[i] - points[j])));
+
+    std::vector<Real> characteristic(at_start.rbegin(), at_start.rend()); // z^s M(0) + z^(s-1) M'(0) + ... = 0
+    for (Real &coefficient : characteristic)
+      coefficient /= at_start[0];
+    std::vector<Complex> kept = zeros_of(characteristic);
+    for (unsigned int k = 1; k < kept.size(); ++k) // without the second one of each pair
+      kept.erase(kept.begin() + k + 1);
+    real_eigenvalue = static_cast<double>(kept[0].real());
+    eigenvalues.assign(kept.begin() + 1, kept.end());
+    vectors.resize(n * kept.size());
+    for (std::size_t k = 0; k < kept.size(); ++k)
+    {
+      std::vector<Complex> vector, row;
+      Complex product = 0;
+      for (unsigned int i = 0; i < n; ++i)
+      {
+        vector.push_back(value(derivatives(points, points[i]), Real(1) / kept[k]));
+        row.push_back(weights[i] * value(derivatives({points.data(), n - 1}, points[i]), Real(-1) / kept[k]));
+        product += row[i] * vector[i];
+      }
+      for (unsigned int i = 0; i < n; ++i)
+      {
+        vectors[i * kept.size() + k] = std::complex<double>(vector[i] / vector.back());
+        rows.push_back(std::complex<double>(row[i] * vector.back() / product));
+      }
+    }
 
     // The weights b^ integrate polynomials up to degree s-1 exactly together with the weight gamma_0 of f(0), so with
-    // l_j: b^_j = b_j - gamma_0 l_j(0).
-    const double gamma_0 = 1. / real_eigenvalue;
-    for (unsigned int j = 0; j < n; ++j)
-    {
-      const double at_start = static_cast<double>(lagrange_polynomial(c, j)[0]);
-      for (unsigned int l = 0; l < n; ++l)
-        error_weights[l] -= gamma_0 * at_start * inverse[j * n + l];
-    }
+    // l_j: b^_j = b_j - gamma_0 l_j(0); the sum of l_j(0) A^-1_jl is the derivative at 0 of x l_l/c_l.
+    for (unsigned int l = 0; l < n; ++l)
+      error_weights.push_back(static_cast<double>(at_start[0] / (kept[0].real() * points[l] * slopes[l] * points[l])));
   }
 
   const RadauTableau &
