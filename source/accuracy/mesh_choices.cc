@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace crawler
 {
@@ -17,6 +18,10 @@ namespace crawler
     constexpr double widest_hidden_layer = 1.;
     /// Factor on `unresolved` of the mesh: a bound of the relative error of the displacement in space.
     constexpr double space_factor = 6.;
+
+    /// Change of the displacement by twice the cells, relative to the wanted error, after which the mesh is fine enough
+    /// for it, whatever layers look like: if it was at least halved, and in any case.
+    constexpr double last_change = 0.3, last_small_change = 0.03;
 
     /// True if all layers are wide enough to show in the modes of the stretch on this mesh. Where nothing starts
     /// suddenly they are as wide as elasticity smooths against the largest friction of the last pilot while the active
@@ -107,7 +112,9 @@ namespace crawler
         return may_be_steep && indicator_factor * indicator > accuracy * last.size.strain &&
                indicator_rate < 0.5 * full_rate;
       };
-      while ((rate < 0.5 * full_rate || unbalanced()) && 2 * n_cells <= max_cells / 4)
+      double displacement = last.displacement, change = std::numeric_limits<double>::infinity();
+      bool settled = false;
+      while (!settled && (rate < 0.5 * full_rate || unbalanced()) && 2 * n_cells <= max_cells / 4)
       {
         if (may_be_steep && 2 * n_cells > max_uniform_cells)
           return std::nullopt;
@@ -119,6 +126,10 @@ namespace crawler
         unresolved     = finer.size.unresolved();
         indicator      = finer.size.largest_indicator;
         n_cells *= 2;
+        const double before = std::exchange(change, std::abs(finer.displacement - displacement));
+        displacement        = finer.displacement;
+        settled             = std::isfinite(before) && pilots.stiffness_over_friction() >= very_soft &&
+                  change <= (2. * change <= before ? last_change : last_small_change) * accuracy * pilots.size;
         if (unresolved <= 0.01 * wanted_part && !unbalanced())
           break;
       }
@@ -127,7 +138,9 @@ namespace crawler
       // must be that of a smooth solution.
       const double gain      = std::pow(std::max(1., cells / n_cells), full_rate);
       const double too_large = indicator_factor * indicator / (accuracy * gain * last.size.strain);
-      if (may_be_steep && too_large > 1.)
+      if (settled)
+        cells = std::min(cells, 1. * n_cells);
+      else if (may_be_steep && too_large > 1.)
       {
         if (indicator_rate < 0.5 * full_rate || pilots.stiffness_over_friction() < very_soft)
           return std::nullopt;

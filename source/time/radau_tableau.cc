@@ -97,7 +97,8 @@ namespace crawler
   // With M = (x - c_1) ... (x - c_s) and z an eigenvalue of A^-1, which maps the values at c of a polynomial p of
   // degree s with p(0) = 0 to those of p':
   //   p = M + M'/z + M''/z^2 + ... has p' = z (p - M) and so is an eigenvector if p(0) = 0;
-  //   b y is an eigenvector of the transposed matrix for y = N - N'/z + N''/z^2 - ..., N = M/(x - 1), since b integrates exactly.
+  //   b y is an eigenvector of the transposed matrix for y = N - N'/z + N''/z^2 - ..., N = M/(x - 1), since b
+  //   integrates exactly.
   RadauTableau::RadauTableau(const unsigned int n_stages)
     : n(n_stages)
     , newton_fraction(n_stages == 5 ? 1e-4 : 1e-3)
