@@ -42,6 +42,12 @@ namespace crawler
     sudden_changes_.emplace(scene_, units_, size);
   }
 
+  bool
+  Recorder::layers_are_thin(const double time)
+  {
+    return sudden_changes_ && sudden_changes_->extremes_if_thin(time).has_value();
+  }
+
   std::vector<double>
   Recorder::step_ends() const
   {

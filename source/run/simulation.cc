@@ -178,7 +178,7 @@ namespace crawler
     const bool is_watched              = time_.step_control == StepControl::adaptive;
     Recorder recorder(
       physical_scene_, units_, options, numerics_.tolerance, mesh_.discretization->n_unknowns() <= max_unknowns);
-    if (mesh_.position != nullptr && !is_adaptive())
+    if (mesh_.position != nullptr)
       recorder.set_smallest_cell(std::ranges::min_element(mesh_.discretization->cells, {}, &Cell::size)->size);
     OutputTimes output_times(pictures, recorder.step_ends(), !integrators_.present->stage_places().empty());
     run_.emplace(

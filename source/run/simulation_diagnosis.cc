@@ -197,13 +197,14 @@ namespace crawler
   /**
    * Names a loss of stretch inside. For a <= -1 it stays positive as long as the ends do (doc/theory.md, "When a body
    * can invert"), so the loss is called an error of the mesh. For -1 < a < 0 bodies do invert, but the position form
-   * loses the stretch too early, or without need.
+   * loses the stretch too early, or without need. Nor can a body invert inside while layers are thin.
    */
   void
   Simulation::inverted_inside(const double value, const double s, const double t)
   {
-    const double a = scene_.friction_exponent();
-    if (a <= -1. || (a < 0. && mesh_.position != nullptr))
+    const double a     = scene_.friction_exponent();
+    const bool is_thin = run_->recorder.layers_are_thin(t);
+    if (is_thin || a <= -1. || (a < 0. && mesh_.position != nullptr))
       run_->diagnosis = {
         Status::failed,
         "under_resolved",
@@ -213,8 +214,9 @@ namespace crawler
                     value,
                     s * units_.length,
                     t * units_.time,
-                    a <= -1. ? "where the body itself stays uninverted (a <= -1)"
-                             : "for which only the stretch form is trusted at a < 0",
+                    is_thin    ? "so soon after a sudden change that the body itself stays uninverted"
+                    : a <= -1. ? "where the body itself stays uninverted (a <= -1)"
+                               : "for which only the stretch form is trusted at a < 0",
                     mesh_.discretization->n_cells(),
                     mesh_.discretization->element.degree,
                     mesh_.position != nullptr ? "Discretization/Formulation = stretch, or " : "")};

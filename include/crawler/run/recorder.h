@@ -76,6 +76,11 @@ namespace crawler
     void
     set_smallest_cell(double size);
 
+    /// True if layers after a sudden change are thinner than the cells, in which no stretch is smaller than at the ends
+    /// of the body; not before the time of the last call, or that of the last observation.
+    bool
+    layers_are_thin(double time);
+
     /// Times in (0, 1), ascending, where steps have to end besides the output times.
     std::vector<double>
     step_ends() const;
