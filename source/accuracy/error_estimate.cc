@@ -5,7 +5,6 @@
 #include <crawler/adjoint/error_sweep.h>
 #include <crawler/base/communication.h>
 #include <crawler/run/batch.h>
-#include <crawler/run/gait_efficiency.h>
 #include <crawler/run/result_table.h>
 #include <crawler/run/self_check.h>
 #include <crawler/time/failure.h>
@@ -91,20 +90,6 @@ namespace crawler
         n.n_cells = finer_n_cells(cells, n.n_cells, scene.breaks_in_space().size(), n.grading) + more;
       change_steps(n, steps);
       return n.grading.levels > 0 ? with_finer_grading(scene, n) : n;
-    }
-
-    /// Sets the errors of efficiencies, which are relative to a limit by the extreme stretches.
-    void
-    set_errors_of_efficiencies(const Scene &scene, SimulationResult &result)
-    {
-      if (!result.gait_efficiency)
-        return;
-      const double part = error_of_efficiencies(scene, result);
-      const auto stride = result.gait ? result.gait->efficiency : std::nullopt;
-      for (const auto &[key, value] :
-           {std::pair("gait.efficiency", result.gait_efficiency), {"gait.stride_efficiency", stride}})
-        if (const auto known = error_bound(result, key); known && value)
-          set_error_bound(result, key, std::max(*known, part * *value));
     }
 
     RecordOptions
@@ -275,7 +260,6 @@ namespace crawler
                                     std::isfinite(choice.wanted_error) ? choice.wanted_error / accuracy : 0.));
       if (scene.keeps_its_centre()) // few steps suffice except for the kinks of positive power
         set_error_bound(result, "positive_power", std::numeric_limits<double>::quiet_NaN());
-      set_errors_of_efficiencies(scene, result);
     }
     if (scene.keeps_its_centre()) // round-off of each step, whatever the other errors are
     {
@@ -291,6 +275,7 @@ namespace crawler
     error.space         = scene.keeps_its_centre() ? 0. : space.value_or(choice.space_share * rest);
     error.time          = error.total - error.space;
     error.model         = 0.;
+    extend_errors_of_efficiencies(scene, result);
   }
 
   void

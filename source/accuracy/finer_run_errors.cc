@@ -85,4 +85,28 @@ namespace crawler
         result.errors[i] = part < 1. ? result.errors[i] + part / (1. - part) * std::abs(entries[i]->number_in(result))
                                      : std::numeric_limits<double>::quiet_NaN();
   }
+
+  void
+  extend_errors_of_efficiencies(const Scene &scene, SimulationResult &result)
+  {
+    const Extreme &low = result.min_stretch, &high = result.max_stretch;
+    const auto bound_of = [&](const char *key) { return error_bound(result, key).value_or(HUGE_VAL); };
+    const double from   = low.value + std::max(low.jump, bound_of("min_stretch.value")),
+                 to     = high.value - std::max(high.jump, bound_of("max_stretch.value"));
+    const auto extend =
+      [&](const char *key, const std::optional<double> &efficiency, const double D, const double error) {
+        const auto known = error_bound(result, key);
+        if (!known || !efficiency)
+          return;
+        const double limit =
+          from < to
+            ? largest_merit(*scene.friction, low.value, high.value) / largest_merit(*scene.friction, from, to) - 1.
+            : HUGE_VAL;
+        set_error_bound(result, key, std::max(*known, (limit + error / std::abs(D)) * *efficiency));
+      };
+    extend("gait.efficiency", result.gait_efficiency, result.displacement, result.error->total);
+    if (result.gait)
+      extend(
+        "gait.stride_efficiency", result.gait->efficiency, result.gait->displacement, bound_of("gait.displacement"));
+  }
 } // namespace crawler

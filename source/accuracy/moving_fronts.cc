@@ -2,6 +2,7 @@
 #include <crawler/accuracy/extrapolation.h>
 #include <crawler/accuracy/finer_run_errors.h>
 #include <crawler/accuracy/moving_fronts.h>
+#include <crawler/run/result_table.h>
 
 #include <fmt/format.h>
 
@@ -149,7 +150,13 @@ namespace crawler
         }
         before_       = result.displacement;
         result.errors = number_errors(result, other, factor, parameters_.accuracy);
+        // Numbers that are found by sampling do not depend on the width so smoothly that their extrapolation is better.
+        const auto changes = number_errors(result, steepest, factor, parameters_.accuracy);
+        for (std::size_t i = 0; i < changes.size(); ++i)
+          if (entries_with_errors()[i]->is_sampled)
+            result.errors[i] = std::max(result.errors[i], changes[i]);
         add_errors_of_cycles(result, std::abs(result.displacement));
+        extend_errors_of_efficiencies(problem_.scene, result);
         result.time                 = steepest.time;
         answer_.result              = std::move(result);
         answer_.choice.wanted_error = wanted();

@@ -2,7 +2,6 @@
 #include <crawler/run/gait_efficiency.h>
 
 #include <cmath>
-#include <limits>
 #include <optional>
 
 namespace crawler
@@ -37,16 +36,6 @@ namespace crawler
       return bound > 0. && std::isfinite(bound) ? std::optional(std::abs(displacement) / bound) : std::nullopt;
     }
   } // namespace
-
-  double
-  error_of_efficiencies(const Scene &scene, const SimulationResult &result)
-  {
-    const Extreme &low = result.min_stretch, &high = result.max_stretch;
-    const double from = low.value + low.jump, to = high.value - high.jump;
-    return from < to
-             ? largest_merit(*scene.friction, low.value, high.value) / largest_merit(*scene.friction, from, to) - 1.
-             : std::numeric_limits<double>::infinity();
-  }
 
   void
   set_efficiencies(const Scene &scene, SimulationResult &result)

@@ -418,3 +418,20 @@ TEST(HardAnswers, LayersThatDoNotMatter)
   EXPECT_LE(result.error->total, 1e-5 * std::abs(result.displacement));
   EXPECT_NEAR(result.displacement, other.displacement, result.error->total + other.error->total);
 }
+
+/// Efficiencies have the errors of the displacement and of the extreme stretches as well. True ones at 1e-8 and 1e-5;
+/// a body that is let go and keeps its centre has none.
+TEST(HardAnswers, Efficiencies)
+{
+  const auto expect = [](const double efficiency, const char *scene) {
+    const SimulationResult result = answer_to(test::set("{}", scene));
+    ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
+    EXPECT_NEAR(result.gait_efficiency.value(), efficiency, error_bound(result, "gait.efficiency").value()) << scene;
+  };
+  expect(0.36099, "Accuracy = 1e-6; c = 1; chi = 0.6");
+  expect(0.50624,
+         "Accuracy = 1e-3; T = 2; travelling wave; Amplitude = 0.3; Wave number = 1; Frequency = 1; "
+         "Profile = square; Ramp duration = 0.5");
+  expect(0.,
+         "Accuracy = 1e-3; T = 0.5; Active stress/Generator = none; Body/Initial stretch = 1+0.3*sin(2*pi*s/L)+0.1*s");
+}

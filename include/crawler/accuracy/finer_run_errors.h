@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/run/simulation_result.h>
+#include <crawler/scene/scene.h>
 
 #include <span>
 #include <vector>
@@ -36,4 +37,9 @@ namespace crawler
   /// transport that is not known at all then has no error.
   void
   add_errors_of_cycles(SimulationResult &result, double size);
+
+  /// Extends the errors of efficiencies, the last ones to be known, to those of their displacement and of the limit
+  /// that the extreme stretches set.
+  void
+  extend_errors_of_efficiencies(const Scene &scene, SimulationResult &result);
 } // namespace crawler

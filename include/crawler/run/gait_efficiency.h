@@ -18,10 +18,6 @@ namespace crawler
   void
   set_efficiencies(const Scene &scene, SimulationResult &result);
 
-  /// Relative error of both that the jumps of the extreme stretches make (Extreme::jump).
-  double
-  error_of_efficiencies(const Scene &scene, const SimulationResult &result);
-
   /// Energy in the bound [energy]: the work of the active stress if the body starts unstretched, else the dissipation,
   /// which that work may not exceed.
   double

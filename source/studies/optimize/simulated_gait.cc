@@ -98,15 +98,9 @@ namespace crawler
           latest_extremes_.clear();
         }
         const Task &task = latest_.front();
-        if (const std::string problem = problem_of(task); !problem.empty())
+        if (const std::string problem = problem_at(task); !problem.empty())
           throw InputError(problem);
         values.numbers = numbers(task);
-        for (std::size_t i = 0; i < gait_numbers.size(); ++i)
-          if (wishes.numbers[i] && !std::isfinite(values.numbers[i]))
-            throw InputError(
-              i == GaitNumber::speed
-                ? "the speed is not known, since the active stress does not tell the duration of a stride"
-                : "a work is not known there");
         if (wishes.strain && latest_extremes_.empty())
           latest_extremes_ = extremes(task);
         for (const StretchPlace &one : latest_extremes_)
@@ -142,6 +136,21 @@ namespace crawler
         if (interrupted_())
           throw Interrupted();
         return tasks;
+      }
+
+      /// Problem of a gait that has none of the wanted numbers, or not all; empty if there is none.
+      std::string
+      problem_at(const Task &task) const
+      {
+        if (const std::string problem = problem_of(task); !problem.empty())
+          return problem;
+        const auto list = numbers(task);
+        for (std::size_t i = 0; i < list.size(); ++i)
+          if (wishes.numbers[i] && !std::isfinite(list[i]))
+            return i == GaitNumber::speed
+                     ? "the speed is not known, since the active stress does not tell the duration of a stride"
+                     : "a work is not known there";
+        return "";
       }
 
       ByGaitNumber<double>
@@ -322,7 +331,7 @@ namespace crawler
         for (std::size_t j = 0; j < tasks.size(); ++j)
         {
           const std::size_t i = weights[j].first;
-          if (const std::string problem = problem_of(tasks[j]); !problem.empty())
+          if (const std::string problem = problem_at(tasks[j]); !problem.empty())
             problems[i] = problem;
           else if (distance(j) > 0. && (nearest[i] == tasks.size() || distance(j) < distance(nearest[i])))
             nearest[i] = j;
