@@ -234,9 +234,10 @@ namespace crawler
             const double cells = refinements_ == 0 || !(total > wanted())
                                    ? least
                                    : std::clamp(std::cbrt(total / wanted()), least, max_refined_cells);
-            // The error of a rough stress is that of its kinks in the cells, unless more cells do not reduce it.
-            const bool is_of_cells =
-              first_.is_rough && first_.numerics.mesh.tolerance == 0. && total > wanted() && total < error_before_;
+            // The error of a rough stress is that of its kinks in the cells, unless more cells hardly reduce it.
+            constexpr double hardly = 0.8;
+            const bool is_of_cells  = first_.is_rough && first_.numerics.mesh.tolerance == 0. && total > wanted() &&
+                                     total < hardly * error_before_;
             error_before_ = total;
             make_finer(cells, is_of_cells ? 1. : refined_tolerance);
             return true;

@@ -53,15 +53,16 @@ namespace crawler
     return bad;
   }
 
-  BadLaw
-  FrictionAtPoints::describe(const long point, const Units &units) const
+  std::function<BadLaw(const Units &)>
+  FrictionAtPoints::describe(const long point) const
   {
-    const auto i = static_cast<std::size_t>(point);
-    return {fmt::format("the profile of the ground is {} at x = {:.6g}, which the body has reached; a positive number "
-                        "is expected",
-                        std::isnan(c_[i]) ? "not known" : fmt::format("{:.6g}", c_[i]),
-                        x_[i] * units.length),
-            "Ground/Profile"};
+    return [c = c_[static_cast<std::size_t>(point)], x = x_[static_cast<std::size_t>(point)]](const Units &units) {
+      return BadLaw{fmt::format("the profile of the ground is {} at x = {:.6g}, which the body has reached; a positive "
+                                "number is expected",
+                                std::isnan(c) ? "not known" : fmt::format("{:.6g}", c),
+                                x * units.length),
+                    "Ground/Profile"};
+    };
   }
 
   BodyForceAtPoints::BodyForceAtPoints(const Scene &scene, const std::vector<double> &points)

@@ -34,7 +34,7 @@ namespace crawler
     force_.evaluate(t, e_, {w_, rate_, elsewhere_.near, elsewhere_.delayed}, in.m);
     bad = friction_laws_.evaluate(u_, v_, w_);
     if (bad >= 0)
-      describe_bad_law_ = [this, bad](const Units &units) { return friction_laws_.describe(bad, units); };
+      describe_bad_law_ = friction_laws_.describe(bad);
     else
       bad = look_at_friction(w_, friction_laws_.g);
     laws_   = {force_.N.data(),

@@ -157,10 +157,11 @@ namespace crawler
   bool
   GaitMeter::keeps_step(const double time) const
   {
-    if (!steps_.empty() && steps_.back().time == time)
+    constexpr double same = 1e-9; // first steps of stiff bodies are shorter
+    if (!steps_.empty() && time - steps_.back().time <= (period_ ? same * *period_ : 0.))
       return false;
     const double strides = period_ ? (1. - time) / *period_ : 0.;
-    return period_ ? std::abs(strides - std::round(strides)) <= 1e-9 : time >= 0.4;
+    return period_ ? std::abs(strides - std::round(strides)) <= same : time >= 0.4;
   }
 
   void

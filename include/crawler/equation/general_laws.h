@@ -41,8 +41,9 @@ namespace crawler
     std::vector<double> sliding;            ///< b c d v [velocity]
     std::vector<double> f, f_u, f_v, w_f_w; ///< friction per reference length, its derivatives by u, v and log w
 
-    BadLaw
-    describe(long point, const Units &units) const;
+    /// Description, in the given units, of the law as it is now at a point.
+    std::function<BadLaw(const Units &)>
+    describe(long point) const;
 
   private:
     const Scene &scene_;

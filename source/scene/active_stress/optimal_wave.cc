@@ -120,11 +120,11 @@ namespace crawler
       body_, shape_, chi_, end_time_, parameters.energy, by_index ? std::max(25u, parameters.root_index) : 25);
     const auto &list = roots_->roots;
     if (list.empty())
-      refuse(section + "Energy",
-             "no wave spends the energy H = {}; H from the smallest, {}, to below {} is expected",
-             parameters.energy,
-             roots_->smallest_energy,
-             roots_->largest_energy);
+      refuse_entry(section + "Energy",
+                   "no wave spends the energy H = {}; H from the smallest, {}, to below {} is expected",
+                   parameters.energy,
+                   roots_->smallest_energy,
+                   roots_->largest_energy);
     if (by_index)
     {
       if (parameters.root_index > list.size())

@@ -280,7 +280,10 @@ namespace crawler
         list.push_back({path, 0.});
     else
       for (const std::string &name : parts_of(output.sensitivities, ','))
-        add(list, {numbers.find(name, "Output/Sensitivities", ", or \"all\""), 0.});
+        if (trimmed(name) == "all")
+          refuse_entry("Output/Sensitivities", "\"all\" stands beside other entries, but is expected alone");
+        else
+          add(list, {numbers.find(name, "Output/Sensitivities", ", or \"all\""), 0.});
     const std::string own = "Output/Uncertainty";
     for (const std::string &one : parts_of(output.uncertainty, ';'))
     {
