@@ -213,6 +213,8 @@ def test_notes(folder):
             (formula, (), f'"B" of "{EXPRESSION}Constants" has no effect with'),
             (formula, (EXPRESSION + "Active stress=sin(2*pi*(s+t))/10",), f'"{EXPRESSION}Constants" has no effect with'),
             (formula, (EXPRESSION + "Constants=A = 0.1",)),
+            (("Active stress/Table/File=/elsewhere/actuation.csv",), ()),
+            (("Active stress/Table/File=/elsewhere/stress.csv",), (), '"Active stress/Table/File" has no effect'),
             ((BY_SPEED,), ("Time/Cycle stop=off",), '"Time/Cycle stop" has no effect'),
             ((BY_SPEED,), ("Time/Cycle stop=off", "Time/End time=4")),
             ((BY_SPEED,), ("Time/Cycle stop=off", "Time/End time=4", "Time/Step control=fixed", "Time/Initial step=0.1"),

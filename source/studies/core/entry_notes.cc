@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 namespace crawler
@@ -85,8 +86,12 @@ namespace crawler
       for (const Assignment &assignment : file.assignments())
       {
         const std::string path = assignment.path.substr(0, assignment.path.find('['));
-        const std::string &own = declarations.info(path).default_value;
+        const EntryInfo &entry = declarations.info(path);
+        const std::string &own = entry.default_value;
         if (assignment.value.empty() && own.empty()) // to leave something out
+          continue;
+        // The default, seen from the folder of a file that names all entries.
+        if (entry.names_file && std::filesystem::path(assignment.value).filename() == own)
           continue;
         if (file.assignment_of(assignment.path) == &assignment &&
             (assignment.is_override || !is_default(assignment.value, own)))

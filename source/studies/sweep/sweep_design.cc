@@ -28,7 +28,7 @@ namespace crawler
 
     template <typename... Arguments>
     [[noreturn]] void
-    refuse(fmt::format_string<Arguments...> sentence, Arguments &&...arguments)
+    reject(fmt::format_string<Arguments...> sentence, Arguments &&...arguments)
     {
       refuse_entry(entry_name, sentence, std::forward<Arguments>(arguments)...);
     }
@@ -39,7 +39,7 @@ namespace crawler
     {
       std::error_code ignored;
       if (std::filesystem::is_directory(file, ignored))
-        refuse("\"{}\" is a folder, but {} is expected", file, what);
+        reject("\"{}\" is a folder, but {} is expected", file, what);
       errno = 0;
       std::ifstream in(file);
       if (in)
@@ -54,7 +54,7 @@ namespace crawler
       auto near = nearest_names(path.stem().string(), others, 1);
       for (std::string &name : near)
         name = (folder / name).string() + path.extension().string();
-      refuse("cannot read \"{}\" ({}), but {} is expected{}",
+      reject("cannot read \"{}\" ({}), but {} is expected{}",
              file,
              reason,
              what,
@@ -113,11 +113,11 @@ namespace crawler
       if (found == names.end())
       {
         if (names.size() == 1 && names[0].find(';') != std::string::npos)
-          refuse("\"{}\" has its columns between semicolons, but commas between them and decimal points are expected",
+          reject("\"{}\" has its columns between semicolons, but commas between them and decimal points are expected",
                  file);
         constexpr std::size_t most = 10;
         const bool all_are_named   = names.size() <= most;
-        refuse("\"{}\" has no column \"{}\", but {} is expected{}",
+        reject("\"{}\" has no column \"{}\", but {} is expected{}",
                file,
                name,
                all_are_named
@@ -128,7 +128,7 @@ namespace crawler
                nearest_hint(name, names));
       }
       if (std::find(found + 1, names.end(), name) != names.end())
-        refuse("\"{}\" has more than one column \"{}\", but different names are expected", file, name);
+        reject("\"{}\" has more than one column \"{}\", but different names are expected", file, name);
       return static_cast<std::size_t>(found - names.begin());
     }
 
@@ -137,7 +137,7 @@ namespace crawler
     read_column(const Call &call, const std::filesystem::path &folder)
     {
       if (call.arguments.size() != 2 || call.arguments[0].empty() || call.arguments[1].empty())
-        refuse("found \"column({})\", but \"column(file.csv, name)\" is expected", fmt::join(call.arguments, ", "));
+        reject("found \"column({})\", but \"column(file.csv, name)\" is expected", fmt::join(call.arguments, ", "));
       const std::string file = (folder / call.arguments[0]).string(), name = call.arguments[1];
       std::ifstream in      = open(file, "a CSV file with a line of names");
       std::size_t n_columns = 0, column = 0;
@@ -149,7 +149,7 @@ namespace crawler
           line.erase(0, 3);
         line = trimmed(line);
         if (const std::string found = foreign_format(line); !found.empty() || !is_text(line))
-          refuse("row {} of \"{}\" is {}, but a CSV file in UTF-8 is expected",
+          reject("row {} of \"{}\" is {}, but a CSV file in UTF-8 is expected",
                  row,
                  file,
                  found.empty() ? "not text" : found);
@@ -157,7 +157,7 @@ namespace crawler
           continue;
         const auto cells = csv_cells(line);
         if (!cells)
-          refuse("a double quote in row {} of \"{}\" is not closed, but rows of one line are expected", row, file);
+          reject("a double quote in row {} of \"{}\" is not closed, but rows of one line are expected", row, file);
         if (n_columns == 0)
         {
           n_columns = cells->size();
@@ -165,22 +165,22 @@ namespace crawler
           continue;
         }
         if (cells->size() != n_columns)
-          refuse("row {} of \"{}\" has {}, but {}, as many as names in the first row, {} expected",
+          reject("row {} of \"{}\" has {}, but {}, as many as names in the first row, {} expected",
                  row,
                  file,
                  counted(cells->size(), "value"),
                  n_columns,
                  n_columns == 1 ? "is" : "are");
         if ((*cells)[column].empty())
-          refuse("row {} of \"{}\" has no value in column \"{}\", but one is expected", row, file, name);
+          reject("row {} of \"{}\" has no value in column \"{}\", but one is expected", row, file, name);
         values.push_back((*cells)[column]);
       }
       if (in.bad())
-        refuse("cannot read \"{}\" to its end", file);
+        reject("cannot read \"{}\" to its end", file);
       if (n_columns == 0)
-        refuse("\"{}\" is empty, but a CSV file with a line of names is expected", file);
+        reject("\"{}\" is empty, but a CSV file with a line of names is expected", file);
       if (values.empty())
-        refuse("\"{}\" has no rows after the line of names, but at least one is expected", file);
+        reject("\"{}\" has no rows after the line of names, but at least one is expected", file);
       return values;
     }
 
@@ -194,7 +194,7 @@ namespace crawler
         if (const auto number = to_number(argument))
           ends.push_back(*number);
       if (call.arguments.size() != 2 || ends.size() != 2 || !(ends[0] < ends[1]) || (is_logarithmic && !(ends[0] > 0.)))
-        refuse("found \"{}({})\", but {}(from, to) with two {}increasing numbers is expected",
+        reject("found \"{}({})\", but {}(from, to) with two {}increasing numbers is expected",
                call.function,
                fmt::join(call.arguments, ", "),
                call.function,
@@ -253,13 +253,13 @@ namespace crawler
     SweepAxis axis{entry, {}};
     const auto call = read_call(text);
     if (axis.is_file() && call && call->function != "column")
-      refuse(
+      reject(
         "found \"{}\" on the axis \"File\", but names of parameter files or \"column(file.csv, name)\" are expected",
         text);
     if (call && (call->function == "uniform" || call->function == "loguniform"))
     {
       if (kind_ == Kind::grid || kind_ == Kind::zip)
-        refuse("{} is only for a random or latin hypercube design, but this is a {}", call->function, design);
+        reject("{} is only for a random or latin hypercube design, but this is a {}", call->function, design);
       axis.values         = read_range(*call);
       axis.is_range       = true;
       axis.is_logarithmic = call->function == "loguniform";
@@ -277,7 +277,7 @@ namespace crawler
       if (!call)
         for (const std::string &value : split_parts(text, ','))
           if (split_parts(value, ':').size() > 1 && value.find('?') == std::string::npos) // not "x<0 ? 1 : 2"
-            refuse("found the value \"{}\" of \"{}\"; is a semicolon missing before the next entry? (a value with a "
+            reject("found the value \"{}\" of \"{}\"; is a semicolon missing before the next entry? (a value with a "
                    "colon must be in double quotes)",
                    value,
                    entry);
@@ -307,10 +307,10 @@ namespace crawler
       const std::string entry = trimmed(text.substr(0, colon));
       const std::string rest  = colon == std::string::npos ? "" : trimmed(text.substr(colon + 1));
       if (entry.empty() || rest.empty())
-        refuse("found \"{}\", but {} is expected", text, sweep_syntax);
+        reject("found \"{}\", but {} is expected", text, sweep_syntax);
       const std::string path = normal_path(entry);
       if (varies(path))
-        refuse("\"{}\" varies twice, but different entries are expected", path);
+        reject("\"{}\" varies twice, but different entries are expected", path);
       axes_.push_back(read_axis(path, rest, parameters.design));
     }
 
@@ -321,7 +321,7 @@ namespace crawler
       if (kind_ == Kind::grid)
         n *= static_cast<double>(axis.values.size());
       else if (kind_ == Kind::zip && axis.values.size() != axes_[0].values.size())
-        refuse("a zip must have equally many values on all axes, but \"{}\" has {} and \"{}\" has {}",
+        reject("a zip must have equally many values on all axes, but \"{}\" has {} and \"{}\" has {}",
                axes_[0].entry,
                axes_[0].values.size(),
                axis.entry,
