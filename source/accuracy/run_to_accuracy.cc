@@ -235,7 +235,7 @@ namespace crawler
                                    ? least
                                    : std::clamp(std::cbrt(total / wanted()), least, max_refined_cells);
             // The error of a rough stress is that of its kinks in the cells, unless more cells hardly reduce it.
-            constexpr double hardly = 0.8;
+            constexpr double hardly = 0.95;
             const bool is_of_cells  = first_.is_rough && first_.numerics.mesh.tolerance == 0. && total > wanted() &&
                                      total < hardly * error_before_;
             error_before_ = total;

@@ -128,6 +128,13 @@ def resumes():
     expect(not summary.exists() or json_of(summary)["status"] == "stopped", "a program that is killed leaves its fit behind")
     ended = crawler(*THREE, "--output", "orphan", "--resume")
     expect(ended.returncode == 0 and contents("orphan") == whole, f"--resume behind a program that was killed: {ended.stderr}")
+    with subprocess.Popen([PROGRAM, *THREE, "--output", "early"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
+        while process.poll() is None and not children.read_text(encoding="ascii"):
+            pass
+        process.kill()  # before the part in Python looks for the program
+        process.stdout.read()
+    expect(not pathlib.Path("early/summary.json").exists(), "a program that is killed at once leaves its fit behind")
     for workers in ("1", "2"):  # processes that wait, and cannot end in order, hold the folder no longer than the program lives
         shutil.rmtree("held", ignore_errors=True)
         held = (*THREE, "--output", "held", "--workers", workers)

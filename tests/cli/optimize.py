@@ -366,6 +366,14 @@ def test_obstacles(place):
                "Optimize/Largest strain=automatic", "Optimize/Starts=1")
     expect(free.returncode == 0 and summary(place / "free")["displacement"] > 0.022,
            f"work alone: {free.returncode}, {free.stdout}{free.stderr}")
+    # Beside gaits with fewer than two strides, which have no speed, derivatives are of one side.
+    wave = "Active stress/Travelling wave/"
+    few = run("optimize_robot", place / "few", "Active stress/Generator=travelling wave", wave + "Amplitude=0.2",
+              wave + "Ramp duration=0.5", "Time/End time=3", "Optimize/Objective=speed", "Optimize/Work=0.1",
+              "Optimize/Smallest strain=-0.4", "Optimize/Largest strain=automatic", "Optimize/Tolerance=1e-4", "Accuracy=1e-5",
+              f"Optimize/Variables={wave}Amplitude : 0.05 to 0.6; {wave}Frequency : 0.3 to 3")
+    expect(few.returncode == 3 and "better gaits are impossible: the speed is not known" in few.stdout,
+           f"few strides: {few.returncode}, {few.stdout}{few.stderr}")
     # Without a strain below 0 there is no scale for it.
     longer = run("optimize_harmonics", place / "longer", "Optimize/Smallest strain=0", "Optimize/Largest strain=automatic")
     expect(longer.returncode == 0 and "Smallest strain = 0 holds it back" in longer.stdout,

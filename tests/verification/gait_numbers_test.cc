@@ -180,3 +180,13 @@ TEST(GaitNumbers, SideBySideTheyAreTheSame)
       EXPECT_NEAR(here[j], there[j], 2e-6 * std::max(1., std::abs(there[j]))) << i << ", number " << j;
   }
 }
+
+/// The first steps of a stiff body are shorter than what rounds the ends of strides.
+TEST(GaitNumbers, AStrideIsTheWholeRunOfAStiffBody)
+{
+  const auto result =
+    stride(test::set("k = 1e8; T = 1; travelling wave; Amplitude = 3e7; Wave number = 1; Frequency = 1"));
+  ASSERT_TRUE(result.gait);
+  EXPECT_EQ(result.gait->displacement, result.displacement);
+  EXPECT_EQ(result.gait->energy_balance->stress_work, result.energy_balance->stress_work);
+}

@@ -4,6 +4,7 @@
     python3 -m crawler table IN.csv OUT.csv [options]
 """
 import importlib
+import os
 import pathlib
 import signal
 import sys
@@ -29,6 +30,8 @@ if __name__ == "__main__":
     from needs import STOPPING, InputError, complain, end_with_program, need
     signal.pthread_sigmask(signal.SIG_BLOCK, STOPPING)  # until run_script()
     end_with_program()
+    if os.getppid() != int(os.environ.pop("CRAWLER_PROGRAM_ID", os.getppid())):  # it was killed before that
+        signal.raise_signal(signal.SIGTERM)
     if sys.argv[1:2] == [] or sys.argv[1] not in COMMANDS:
         complain(f"one of the commands {', '.join(COMMANDS)} is expected; others need the full program (doc/install.md)")
         sys.exit(InputError.code)

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <sysexits.h>
+#include <unistd.h>
 
 namespace crawler
 {
@@ -23,6 +24,7 @@ namespace crawler
     const std::array<std::filesystem::path, 2> places = {
       {folder.parent_path() / CRAWLER_INSTALLED_PYTHON / script, folder / "python/crawler" / script}};
     setenv("CRAWLER_PROGRAM", program.c_str(), /*overwrite=*/1);
+    setenv("CRAWLER_PROGRAM_ID", std::to_string(getpid()).c_str(), /*overwrite=*/1);
     const auto *const path =
       std::ranges::find_if(places, [&](const auto &place) { return std::filesystem::exists(place, ignored); });
     if (path == places.end())

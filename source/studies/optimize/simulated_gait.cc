@@ -148,7 +148,7 @@ namespace crawler
         for (std::size_t i = 0; i < list.size(); ++i)
           if (wishes.numbers[i] && !std::isfinite(list[i]))
             return i == GaitNumber::speed
-                     ? "the speed is not known, since the active stress does not tell the duration of a stride"
+                     ? "the speed is not known, since the active stress has no stride, or the run is shorter than two"
                      : "a work is not known there";
         return "";
       }

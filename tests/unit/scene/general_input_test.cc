@@ -162,7 +162,7 @@ TEST(GeneralInput, IsCheckedInOneSentence)
     {{"Ground/Friction law", "expression"}, {"Ground/Expression", "w-1"}}, "Ground/Expression", "positive");
   expect_message(
     {{"Ground/Friction law", "expression"}, {"Ground/Expression", ""}}, "Ground/Expression", "expression of w");
-  expect_message({{"Ground/Backward ratio", "2"}}, "Ground/Switching velocity", "a velocity is expected");
+  expect_message({{"Ground/Backward ratio", "2"}}, "Ground/Backward ratio", "a velocity is expected");
   expect_message({{"Ground/Profile", "1+x"}, {"Model", "kinematic"}}, "Model", "Ground/Profile");
   expect_message({{"Ground/Profile", "1+x"}, {"Time/Cycle stop", "on"}, {"Output/Number of snapshots", "0"}},
                  "Time/Cycle stop",

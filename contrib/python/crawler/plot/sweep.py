@@ -325,14 +325,14 @@ def scatter(axes, x, y, mine, values, marks, look):
 
 def power_law(x, y):
     """Factor and exponent of y = factor * x^exponent; None unless two points or more have positive x and y of one
-    sign."""
+    sign, 0 where that is not sure."""
     if len(x) < 2 or x.min() <= 0 or x.min() == x.max() or not (y.min() > 0 or y.max() < 0):
         return None
     power, shift = np.polyfit(np.log(x), np.log(np.abs(y)), 1)
     return np.exp(shift) * np.sign(y[0]), power
 
 
-def lines(axes, x, mine, values, errors, marks, other, look, options, panel):
+def lines(axes, x, mine, values, errors, has_bars, marks, other, look, options, panel):
     """Draws a line for each value of the axis other (or one), with gaps where points have no value.
 
     Returns the power laws: the line (other and panel in words), the law or None, the smallest magnitude of its values.
@@ -352,14 +352,14 @@ def lines(axes, x, mine, values, errors, marks, other, look, options, panel):
         known = np.isfinite(y)
         text = f"{other.short} = {other.texts()[key]}" if other and (look is None or options.fit) else ""
         if options.fit:
-            law = power_law(at[known], y[known])
+            law = power_law(at[known], y[known] if errors is None else np.where(np.abs(y) > errors[some], y, 0.)[known])
             laws.append((", ".join(([f"{other.name} = {other.texts()[key]}"] if other else []) + panel), law,
                          np.abs(y[known]).min(initial=np.inf)))
             text += ("; " if text else "") + (f"{law[0]:.3g} x^{law[1]:.4f}" if law else "no power law")
         points = len(at) <= 60
         axes.plot(at, y, color=colour, marker=marker if points or options.dots else "",
                   linestyle="" if options.dots else style, markersize=4 if points else 2.5, linewidth=1.2, label=text or None)
-        if errors is not None and not options.dots:
+        if has_bars and not options.dots:
             bar = np.where(known, errors[some], np.nan)
             if points:
                 axes.errorbar(at, y, bar, fmt="none", ecolor=colour, elinewidth=0.8, capsize=2.5)
@@ -494,7 +494,7 @@ def draw(sweep, options, size=None):
                                   layout="constrained")
     drawn = values[marks.drawn]
     look = None if by_status else norm_of(drawn, options.scale)
-    line_look, errors = None, None
+    line_look, errors, has_bars = None, None, False
     if as_lines:
         if y and len(y.values) > len(COLOURS):
             if len(y.values) > MOST_LINES or not y.is_number:
@@ -511,8 +511,7 @@ def draw(sweep, options, size=None):
         if bars:
             errors = sweep.column(bars)
             own = errors[marks.drawn]
-            visible = own > (0.02 * np.abs(drawn) if log else 0.003 * (drawn.max() - drawn.min()))
-            errors = errors if visible.any() else None
+            has_bars = (own > (0.02 * np.abs(drawn) if log else 0.003 * (drawn.max() - drawn.min()))).any()
     mesh, laws = None, []
     for row, j in enumerate(high):
         for column, i in enumerate(wide):
@@ -521,7 +520,7 @@ def draw(sweep, options, size=None):
                 mine &= axis.index == which
             if as_lines:
                 panel = [f"{axis.name} = {axis.texts()[which]}" for axis, which in zip(rest, (i, j))]
-                laws += lines(axes, x, mine, values, errors, marks, y, line_look, options, panel)
+                laws += lines(axes, x, mine, values, errors, has_bars, marks, y, line_look, options, panel)
             elif sweep.design == "grid":
                 mesh = heat_map(axes, x, y, mine, values, marks, look)
             else:
