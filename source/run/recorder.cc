@@ -43,9 +43,9 @@ namespace crawler
   }
 
   bool
-  Recorder::layers_are_thin(const double time)
+  Recorder::keeps_stretch_inside(const double time)
   {
-    return sudden_changes_ && sudden_changes_->extremes_if_thin(time).has_value();
+    return sudden_changes_ && sudden_changes_->keeps_stretch_inside(time);
   }
 
   std::vector<double>

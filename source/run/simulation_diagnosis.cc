@@ -197,13 +197,14 @@ namespace crawler
   /**
    * Names a loss of stretch inside. For a <= -1 it stays positive as long as the ends do (doc/theory.md, "When a body
    * can invert"), so the loss is called an error of the mesh. For -1 < a < 0 bodies do invert, but the position form
-   * loses the stretch too early, or without need. Nor can a body invert inside while layers are thin.
+   * loses the stretch too early, or without need. Nor can a body invert inside as soon as
+   * it starts.
    */
   void
   Simulation::inverted_inside(const double value, const double s, const double t)
   {
     const double a     = scene_.friction_exponent();
-    const bool is_thin = run_->recorder.layers_are_thin(t);
+    const bool is_thin = run_->recorder.keeps_stretch_inside(t);
     if (is_thin || a <= -1. || (a < 0. && mesh_.position != nullptr))
       run_->diagnosis = {
         Status::failed,

@@ -53,7 +53,7 @@ namespace crawler
     const double start               = starts_[next_++];
     const std::vector<double> after  = balanced_at(start + beside),
                               before = start > 0. ? balanced_at(start - beside) : initial_;
-    double largest = 0., resistance = 1.; // largest w^a
+    double largest = 0., smallest = 1., resistance = 1.; // change, stretch, w^a
     const auto see = [&](const double change, const double w) {
       largest = std::max(largest, std::abs(change));
       if (w > 0.)
@@ -67,9 +67,11 @@ namespace crawler
     for (std::size_t i = 2; i < after.size(); i += 2)
     {
       const double change = (after[i + 1] - after[i]) - (before[i + 1] - before[i]);
+      smallest            = std::min(smallest, std::min(before[i], before[i + 1]) - std::abs(change));
       see(change, 1. + 0.5 * change);
       see(change, 1. - 0.5 * change);
     }
+    keeps_stretch_ = start == 0. && smallest > 0.;
     if (largest > sudden)
       thin_until_ =
         std::max(thin_until_, start + std::min(longest, cell_ * cell_ * seen * seen * resistance / (4. * k_)));
@@ -85,6 +87,12 @@ namespace crawler
     const std::vector<double> w = balanced_at(t);
     const Extreme at_left{w[0], 0., t}, at_right{w[1], 1., t};
     return w[0] < w[1] ? std::pair(at_left, at_right) : std::pair(at_right, at_left);
+  }
+
+  bool
+  SuddenChanges::keeps_stretch_inside(const double t)
+  {
+    return extremes_if_thin(t) && keeps_stretch_;
   }
 
   std::optional<double>

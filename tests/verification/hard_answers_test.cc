@@ -447,3 +447,18 @@ TEST(HardAnswers, ManyWaves)
                   std::stod(accuracy),
                   accuracy);
 }
+
+/// Fronts of a sudden start that fast friction drives from the ends overshoot on any mesh, whose body does not invert:
+/// 1 - m/k is 0.18 at least. One whose stress jumps by more than 2 k inside does.
+TEST(HardAnswers, InversionsOfSuddenStarts)
+{
+  const SimulationResult steep =
+    answer_to(test::set("p = -8; k = 1000; T = 1; Discretization/Mesh = adaptive; Accuracy = 1e-2; segments; "
+                        "Number of segments = 8; Amplitude = 820; Frequency = 1; Phase lag = 0.125; "
+                        "Switching = smooth; Front width = 0.03; Gap = 0.28"));
+  EXPECT_EQ(steep.time.reason, "under_resolved") << steep.time.message;
+  EXPECT_FALSE(steep.inversion);
+  const SimulationResult jump =
+    answer_to(test::set("p = 0; T = 1; Accuracy = 1e-3; expression; Active stress = 2.6*(s>0.3)*(s<0.7)"));
+  EXPECT_EQ(jump.time.reason, "inverted_inside") << jump.time.message;
+}

@@ -71,15 +71,15 @@ namespace crawler
     /// natural units. A gait whose period is not declared is searched only if @p may_search.
     Recorder(const Scene &scene, const Units &units, const RecordOptions &options, double tolerance, bool may_search);
 
-    /// Tells that the mesh is of high order with cells no smaller than this, in natural units: its values in thin
-    /// layers do not count. Not called otherwise.
+    /// Tells that the mesh is of high order and begins with cells no smaller than this, in natural units: its values in
+    /// thin layers do not count. Not called otherwise.
     void
     set_smallest_cell(double size);
 
-    /// True if layers after a sudden change are thinner than the cells, in which no stretch is smaller than at the ends
-    /// of the body; not before the time of the last call, or that of the last observation.
+    /// True if the body cannot have inverted inside, since the layers of a sudden start are thinner than the cells; not
+    /// before the time of the last call, or that of the last observation.
     bool
-    layers_are_thin(double time);
+    keeps_stretch_inside(double time);
 
     /// Times in (0, 1), ascending, where steps have to end besides the output times.
     std::vector<double>

@@ -30,6 +30,11 @@ namespace crawler
     std::optional<std::pair<Extreme, Extreme>>
     extremes_if_thin(double t);
 
+    /// True if layers of the start are thin at time @p t, as above, and no jump of the stress in space is so large that
+    /// the stretch, between its initial value and that plus or minus the jump over k, could be lost inside.
+    bool
+    keeps_stretch_inside(double t);
+
     /// Stretch that the end conditions set at @p s, if that is an end of the body; nothing with feedback.
     std::optional<double>
     stretch_at_end(double s, double t);
@@ -44,8 +49,9 @@ namespace crawler
     const Units units_;
     const double cell_, a_, k_;           ///< in natural units
     std::vector<double> starts_, moduli_; ///< times when the stress may jump; k where the stress is
-    std::size_t next_  = 0;               ///< index of the next start
-    double thin_until_ = 0.;
+    std::size_t next_   = 0;              ///< index of the next start
+    double thin_until_  = 0.;
+    bool keeps_stretch_ = false;                   ///< no jump in space of the last start can invert the body
     std::vector<double> initial_;                  ///< stretch at the start there
     std::unique_ptr<ActiveStressAtPoints> stress_; ///< stress there; nothing with feedback
   };
