@@ -267,14 +267,15 @@ namespace crawler
       if (std::isfinite(choice.wanted_error))
         total = std::min(total, choice.wanted_error);
     }
-    if (!std::isfinite(total))
-      return;
-    const double cycles = result.cycles ? result.cycles->bound : 0.;
-    const double rest   = std::max(total, displacement_round_off * scene.body.length);
-    error.total         = rest + cycles;
-    error.space         = scene.keeps_its_centre() ? 0. : space.value_or(choice.space_share * rest);
-    error.time          = error.total - error.space;
-    error.model         = 0.;
+    if (std::isfinite(total))
+    {
+      const double cycles = result.cycles ? result.cycles->bound : 0.;
+      const double rest   = std::max(total, displacement_round_off * scene.body.length);
+      error.total         = rest + cycles;
+      error.space         = scene.keeps_its_centre() ? 0. : space.value_or(choice.space_share * rest);
+      error.time          = error.total - error.space;
+      error.model         = 0.;
+    }
     extend_errors_of_efficiencies(scene, result);
   }
 
@@ -328,6 +329,7 @@ namespace crawler
       const double found = std::abs(result.displacement - value);
       if (bound < found) // otherwise it may be the sweep's own error
         error.total = std::max(error.total, found);
+      extend_errors_of_efficiencies(scene, result);
       if (bound < error.total)
         result.corrected = {value, bound};
       const double all = swept->time_sum + swept->space_sum;

@@ -78,8 +78,6 @@ namespace crawler
     add("gait.speed", change / gait.period);
     if (const auto speed = gait.wave_speed())
       add("gait.slip", change / (gait.period * std::abs(*speed)));
-    if (gait.efficiency)
-      add("gait.stride_efficiency", part * *gait.efficiency);
     for (std::size_t i = 0; i < result.errors.size(); ++i)
       if (entries[i]->scale == ResultEntry::Scale::cost) // inversely proportional to the displacement
         result.errors[i] = part < 1. ? result.errors[i] + part / (1. - part) * std::abs(entries[i]->number_in(result))
@@ -89,24 +87,24 @@ namespace crawler
   void
   extend_errors_of_efficiencies(const Scene &scene, SimulationResult &result)
   {
+    if (!result.gait_efficiency || result.errors.empty())
+      return;
     const Extreme &low = result.min_stretch, &high = result.max_stretch;
-    const auto bound_of = [&](const char *key) { return error_bound(result, key).value_or(HUGE_VAL); };
-    const double from   = low.value + std::max(low.jump, bound_of("min_stretch.value")),
-                 to     = high.value - std::max(high.jump, bound_of("max_stretch.value"));
-    const auto extend =
-      [&](const char *key, const std::optional<double> &efficiency, const double D, const double error) {
-        const auto known = error_bound(result, key);
-        if (!known || !efficiency)
-          return;
-        const double limit =
-          from < to
-            ? largest_merit(*scene.friction, low.value, high.value) / largest_merit(*scene.friction, from, to) - 1.
-            : HUGE_VAL;
-        set_error_bound(result, key, std::max(*known, (limit + error / std::abs(D)) * *efficiency));
-      };
-    extend("gait.efficiency", result.gait_efficiency, result.displacement, result.error->total);
-    if (result.gait)
+    const auto known_or_any = [](const double error) { return std::isfinite(error) ? error : HUGE_VAL; };
+    const auto bound_of     = [&](const char *key) { return error_bound(result, key).value_or(HUGE_VAL); };
+    const double from       = low.value + std::max(low.jump, bound_of("min_stretch.value")),
+                 to         = high.value - std::max(high.jump, bound_of("max_stretch.value")),
+                 of_limit   = from < to ? largest_merit(*scene.friction, low.value, high.value) /
+                                            largest_merit(*scene.friction, from, to) -
+                                          1.
+                                        : HUGE_VAL;
+    const auto extend       = [&](const char *key, const double efficiency, const double D, const double error) {
+      if (const auto known = error_bound(result, key); known && D != 0.)
+        set_error_bound(result, key, std::max(*known, (of_limit + error / std::abs(D)) * efficiency));
+    };
+    extend("gait.efficiency", *result.gait_efficiency, result.displacement, known_or_any(result.error->total));
+    if (result.gait && result.gait->efficiency)
       extend(
-        "gait.stride_efficiency", result.gait->efficiency, result.gait->displacement, bound_of("gait.displacement"));
+        "gait.stride_efficiency", *result.gait->efficiency, result.gait->displacement, bound_of("gait.displacement"));
   }
 } // namespace crawler

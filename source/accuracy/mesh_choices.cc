@@ -19,8 +19,8 @@ namespace crawler
     /// Factor on `unresolved` of the mesh: a bound of the relative error of the displacement in space.
     constexpr double space_factor = 6.;
 
-    /// Change of the displacement by twice the cells, relative to the wanted error, after which the mesh is fine enough
-    /// for it, whatever layers look like: if it was at least halved, and in any case.
+    /// Changes of the displacement by twice the cells, relative to the wanted error, after which no more cells are
+    /// tried, whatever layers look like: the larger one if the change before was at least twice as large.
     constexpr double last_change = 0.3, last_small_change = 0.03;
 
     /// True if all layers are wide enough to show in the modes of the stretch on this mesh. Where nothing starts
@@ -93,7 +93,7 @@ namespace crawler
      * may_be_steep and few cells are not enough. On smooth solutions `unresolved` falls as (cell size)^(2q-2), q the
      * pilot's degree, and the error of the displacement at least as fast. Thin layers look resolved before they are:
      * so the rate is measured, with smaller steps whose errors do not hide it, on meshes twice as fine each time until
-     * it is at least half of that.
+     * it is at least half of that, or the displacement hardly changes any more.
      */
     std::optional<double>
     extrapolate_cells(
@@ -112,7 +112,7 @@ namespace crawler
         return may_be_steep && indicator_factor * indicator > accuracy * last.size.strain &&
                indicator_rate < 0.5 * full_rate;
       };
-      double displacement = last.displacement, change = std::numeric_limits<double>::infinity();
+      double displacement = std::numeric_limits<double>::quiet_NaN(), change = displacement; // with the smaller steps
       bool settled = false;
       while (!settled && (rate < 0.5 * full_rate || unbalanced()) && 2 * n_cells <= max_cells / 4)
       {

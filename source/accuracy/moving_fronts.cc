@@ -2,6 +2,7 @@
 #include <crawler/accuracy/extrapolation.h>
 #include <crawler/accuracy/finer_run_errors.h>
 #include <crawler/accuracy/moving_fronts.h>
+#include <crawler/run/gait_efficiency.h>
 #include <crawler/run/result_table.h>
 
 #include <fmt/format.h>
@@ -127,6 +128,7 @@ namespace crawler
           if (value > 0.)
             (sum.*extreme).value = value;
         }
+        set_efficiencies(problem_.scene, sum);
         sum.error = DisplacementError{.time = 0.};
         for (std::size_t i = 0; i < results.size(); ++i)
           sum.error->time += std::abs(weights[i]) * results[i]->error->total;
@@ -150,7 +152,8 @@ namespace crawler
         }
         before_       = result.displacement;
         result.errors = number_errors(result, other, factor, parameters_.accuracy);
-        // Numbers that are found by sampling do not depend on the width so smoothly that their extrapolation is better.
+        // Numbers that are found by sampling do not depend on the width smoothly: the change by the extrapolation
+        // counts.
         const auto changes = number_errors(result, steepest, factor, parameters_.accuracy);
         for (std::size_t i = 0; i < changes.size(); ++i)
           if (entries_with_errors()[i]->is_sampled)

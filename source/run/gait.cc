@@ -157,7 +157,7 @@ namespace crawler
   bool
   GaitMeter::keeps_step(const double time) const
   {
-    constexpr double same = 1e-9; // first steps of stiff bodies are shorter
+    constexpr double same = 1e-9; // part of a stride; first steps of stiff bodies are shorter
     if (!steps_.empty() && time - steps_.back().time <= (period_ ? same * *period_ : 0.))
       return false;
     const double strides = period_ ? (1. - time) / *period_ : 0.;

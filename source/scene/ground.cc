@@ -146,9 +146,9 @@ namespace crawler
     if (parameters.backward_ratio != 1.)
     {
       if (!parameters.switching_velocity)
-        refuse_entry("Ground/Backward ratio",
-                     "Backward ratio is {:g} and Switching velocity is automatic, but a velocity is expected",
-                     parameters.backward_ratio);
+        refuse("Ground/Backward ratio",
+               "Backward ratio is {:g} and Switching velocity is automatic, but a velocity is expected",
+               parameters.backward_ratio);
       ground.direction = {parameters.backward_ratio, *parameters.switching_velocity};
     }
     return ground;

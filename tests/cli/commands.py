@@ -215,6 +215,7 @@ def test_notes(folder):
             (formula, (EXPRESSION + "Constants=A = 0.1",)),
             (("Active stress/Table/File=/elsewhere/actuation.csv",), ()),
             (("Active stress/Table/File=/elsewhere/stress.csv",), (), '"Active stress/Table/File" has no effect'),
+            ((), ("Active stress/Table/File=/elsewhere/actuation.csv",), '"Active stress/Table/File" has no effect'),
             ((BY_SPEED,), ("Time/Cycle stop=off",), '"Time/Cycle stop" has no effect'),
             ((BY_SPEED,), ("Time/Cycle stop=off", "Time/End time=4")),
             ((BY_SPEED,), ("Time/Cycle stop=off", "Time/End time=4", "Time/Step control=fixed", "Time/Initial step=0.1"),

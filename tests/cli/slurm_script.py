@@ -105,6 +105,8 @@ def test_crashes(folder):
         expect(code == 137 and requeued == again, f"job {job} of the same folder dies, again: {again} ({words})")
     code, words, requeued = cluster.start("sweep.prm", "--output", "elsewhere", CODE="1")
     expect(code == 1 and not requeued, "--output FOLDER is the folder that it looks at")
+    code, words, _ = cluster.start("sweep.prm", "--output", CODE="1")
+    expect(code == 2 and "--output needs a folder" in words, f"--output without one: {code}, {words}")
     code, words, requeued = cluster.start("sweep.prm", "--output=output-sweep", CODE="1", ROWS="1")
     expect(code == 1 and requeued, "so is --output=FOLDER")
 

@@ -208,7 +208,8 @@ TEST(HardAnswers, DisplacementsAreWithinTheirBounds)
 }
 
 /// Kinks that travel need more cells, and steps so small that they do not pass over them, but no smaller ones with each
-/// mesh: the search once ended with 9708 steps for the first scene, and the tries with 12 872 for the second.
+/// mesh: the search once ended with 9708 steps for the first scene, and the tries with 12 872 for the second. The
+/// numbers of steps are a matter of chance, which the last digit of a coefficient decides: 547 or 1297 for the first.
 TEST(HardAnswers, KinksThatTravelNeedCells)
 {
   const auto expect_few_steps = [](const std::string &scene, const double displacement, const unsigned int steps) {
@@ -399,28 +400,23 @@ TEST(HardAnswers, StepsThatHardlyDependOnTheTolerance)
 }
 
 /// The fronts of a stiff robot make layers with steep friction that no mesh of a few hundred cells resolves, and the
-/// displacement hardly feels: cells of high order are enough. True one by the stretch form.
+/// displacement hardly feels: few cells of high order are enough. True one on 512 cells at 1.3e-7; the stretch form at
+/// 1e-4 has -0.186227 +- 1.2e-5.
 TEST(HardAnswers, LayersThatDoNotMatter)
 {
-  const auto robot = [](const char *form, const char *accuracy) {
-    return answer_to(
-      test::set("L = 1.0249872646; gamma = 1.4265455394; k = 527.58411646; p = 14.486448312; "
-                "T = 2.5349192866; Discretization/Formulation = {}; Accuracy = {}; segments; Number of segments = 4; "
-                "Amplitude = 83.241538780; Frequency = 6.5684930546; Phase lag = 0.25; "
-                "Direction = from tail to head; Duty cycle = 0.76283932775; "
-                "Saturation = 78.830841576; Rate limit = 7515.2183465",
-                form,
-                accuracy));
-  };
-  const SimulationResult result = robot("automatic", "1e-5"), other = robot("stretch", "1e-4");
-  ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
+  const SimulationResult result =
+    answer_to(test::set("L = 1.0249872646; gamma = 1.4265455394; k = 527.58411646; p = 14.486448312; "
+                        "T = 2.5349192866; Accuracy = 1e-5; segments; Number of segments = 4; "
+                        "Amplitude = 83.241538780; Frequency = 6.5684930546; Phase lag = 0.25; "
+                        "Direction = from tail to head; Duty cycle = 0.76283932775; "
+                        "Saturation = 78.830841576; Rate limit = 7515.2183465"));
+  expect_within(result, -0.1862200015, 1e-5, "robot");
   EXPECT_EQ(result.formulation, Formulation::position);
-  EXPECT_LE(result.error->total, 1e-5 * std::abs(result.displacement));
-  EXPECT_NEAR(result.displacement, other.displacement, result.error->total + other.error->total);
+  EXPECT_LE(result.mesh.n_cells, 128u);
 }
 
 /// Efficiencies have the errors of the displacement and of the extreme stretches as well. True ones at 1e-8 and 1e-5;
-/// a body that is let go and keeps its centre has none.
+/// that of a body that is let go, whose displacement is 0, is 0.
 TEST(HardAnswers, Efficiencies)
 {
   const auto expect = [](const double efficiency, const char *scene) {

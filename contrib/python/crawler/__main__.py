@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Commands of crawler that are written in Python. The program, whose path is CRAWLER_PROGRAM, calls them; without it:
+"""Commands of crawler that are written in Python. The program, whose path is CRAWLER_PROGRAM and
+whose number as a process CRAWLER_PROGRAM_ID, calls them; without it:
 
     python3 -m crawler table IN.csv OUT.csv [options]
 """
@@ -30,7 +31,7 @@ if __name__ == "__main__":
     from needs import STOPPING, InputError, complain, end_with_program, need
     signal.pthread_sigmask(signal.SIG_BLOCK, STOPPING)  # until run_script()
     end_with_program()
-    if os.getppid() != int(os.environ.pop("CRAWLER_PROGRAM_ID", os.getppid())):  # it was killed before that
+    if os.getppid() != int(os.environ.pop("CRAWLER_PROGRAM_ID", os.getppid())):  # the program was killed before
         signal.raise_signal(signal.SIGTERM)
     if sys.argv[1:2] == [] or sys.argv[1] not in COMMANDS:
         complain(f"one of the commands {', '.join(COMMANDS)} is expected; others need the full program (doc/install.md)")

@@ -38,8 +38,8 @@ namespace crawler
   void
   add_errors_of_cycles(SimulationResult &result, double size);
 
-  /// Extends the errors of efficiencies, the last ones to be known, to those of their displacement and of the limit
-  /// that the extreme stretches set.
+  /// Extends the errors of efficiencies to those of their displacement and of the limit that the extreme stretches set,
+  /// once these are known; runs differ in their energies as they do in the efficiencies.
   void
   extend_errors_of_efficiencies(const Scene &scene, SimulationResult &result);
 } // namespace crawler

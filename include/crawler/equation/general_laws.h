@@ -5,6 +5,7 @@
 #include <crawler/equation/stretch_means.h>
 #include <crawler/scene/scene.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>

@@ -91,7 +91,7 @@ namespace crawler
         if (assignment.value.empty() && own.empty()) // to leave something out
           continue;
         // The default, seen from the folder of a file that names all entries.
-        if (entry.names_file && std::filesystem::path(assignment.value).filename() == own)
+        if (entry.names_file && !assignment.is_override && std::filesystem::path(assignment.value).filename() == own)
           continue;
         if (file.assignment_of(assignment.path) == &assignment &&
             (assignment.is_override || !is_default(assignment.value, own)))

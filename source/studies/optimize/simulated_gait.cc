@@ -138,7 +138,7 @@ namespace crawler
         return tasks;
       }
 
-      /// Problem of a gait that has none of the wanted numbers, or not all; empty if there is none.
+      /// Problem of a gait that lacks a wanted number; empty if it has all.
       std::string
       problem_at(const Task &task) const
       {
@@ -147,9 +147,9 @@ namespace crawler
         const auto list = numbers(task);
         for (std::size_t i = 0; i < list.size(); ++i)
           if (wishes.numbers[i] && !std::isfinite(list[i]))
-            return i == GaitNumber::speed
-                     ? "the speed is not known, since the active stress has no stride, or the run is shorter than two"
-                     : "a work is not known there";
+            return i == GaitNumber::speed ? "the speed is not known, since the active stress has no stride, or the run "
+                                            "is shorter than two of them"
+                                          : "a work is not known there";
         return "";
       }
 

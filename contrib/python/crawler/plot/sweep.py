@@ -325,7 +325,7 @@ def scatter(axes, x, y, mine, values, marks, look):
 
 def power_law(x, y):
     """Factor and exponent of y = factor * x^exponent; None unless two points or more have positive x and y of one
-    sign, 0 where that is not sure."""
+    sign."""
     if len(x) < 2 or x.min() <= 0 or x.min() == x.max() or not (y.min() > 0 or y.max() < 0):
         return None
     power, shift = np.polyfit(np.log(x), np.log(np.abs(y)), 1)
@@ -352,7 +352,8 @@ def lines(axes, x, mine, values, errors, has_bars, marks, other, look, options, 
         known = np.isfinite(y)
         text = f"{other.short} = {other.texts()[key]}" if other and (look is None or options.fit) else ""
         if options.fit:
-            law = power_law(at[known], y[known] if errors is None else np.where(np.abs(y) > errors[some], y, 0.)[known])
+            no_sign = np.abs(y) <= errors[some] if errors is not None else np.zeros_like(known)
+            law = power_law(at[known], np.where(no_sign, 0., y)[known])
             laws.append((", ".join(([f"{other.name} = {other.texts()[key]}"] if other else []) + panel), law,
                          np.abs(y[known]).min(initial=np.inf)))
             text += ("; " if text else "") + (f"{law[0]:.3g} x^{law[1]:.4f}" if law else "no power law")
@@ -393,7 +394,7 @@ def scale_lines(axes, values, fitted):
 def tell_laws(laws, x, value):
     """Prints the power laws and, in a sentence, the lines that have none."""
     without = [line for line, law, _ in laws if law is None]
-    needed = f'two points or more with a positive axis and values "{value}" of one sign'
+    needed = f'two points or more with a positive axis and values "{value}" of one sign, larger than their errors'
     if len(without) == len(laws):
         raise InputError(f"--fit: no line has {needed}, which are expected")
     for line, law, _ in laws:
