@@ -90,19 +90,21 @@ namespace crawler
     if (!result.gait_efficiency || result.errors.empty())
       return;
     const Extreme &low = result.min_stretch, &high = result.max_stretch;
-    const auto known_or_any = [](const double error) { return std::isfinite(error) ? error : HUGE_VAL; };
-    const auto bound_of     = [&](const char *key) { return error_bound(result, key).value_or(HUGE_VAL); };
-    const double from       = low.value + std::max(low.jump, bound_of("min_stretch.value")),
-                 to         = high.value - std::max(high.jump, bound_of("max_stretch.value")),
-                 of_limit   = from < to ? largest_merit(*scene.friction, low.value, high.value) /
+    const auto bound_of   = [&](const char *key) { return error_bound(result, key).value_or(HUGE_VAL); };
+    const double from     = low.value + std::max(low.jump, bound_of("min_stretch.value")),
+                 to       = high.value - std::max(high.jump, bound_of("max_stretch.value")),
+                 of_limit = from < to ? largest_merit(*scene.friction, low.value, high.value) /
                                             largest_merit(*scene.friction, from, to) -
                                           1.
-                                        : HUGE_VAL;
-    const auto extend       = [&](const char *key, const double efficiency, const double D, const double error) {
+                                      : HUGE_VAL;
+    const auto extend     = [&](const char *key, const double efficiency, const double D, const double error) {
       if (const auto known = error_bound(result, key); known && D != 0.)
         set_error_bound(result, key, std::max(*known, (of_limit + error / std::abs(D)) * efficiency));
     };
-    extend("gait.efficiency", *result.gait_efficiency, result.displacement, known_or_any(result.error->total));
+    extend("gait.efficiency",
+           *result.gait_efficiency,
+           result.displacement,
+           std::isfinite(result.error->total) ? result.error->total : HUGE_VAL);
     if (result.gait && result.gait->efficiency)
       extend(
         "gait.stride_efficiency", *result.gait->efficiency, result.gait->displacement, bound_of("gait.displacement"));

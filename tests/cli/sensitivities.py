@@ -136,6 +136,7 @@ def main(folder):
                          ("Active stress/Optimal wave/Cosine coefficients : 5 %", "without %")):
         refused(crawler(folder, WAVE, "Output/Uncertainty=" + wrong)[0], words)
     for wrong, words in (("Body/Elastic moduls", "Body/Elastic modulus"), ("Accuracy", "are expected"),
+                         (f"all, {K}", "is expected alone"),
                          ("Active stress/Segments/Number of segments", "are expected")):
         refused(crawler(folder, WAVE, "Output/Sensitivities=" + wrong)[0], words)
     refused(crawler(folder, WAVE, "Model=kinematic", "Output/Sensitivities=all")[0], "nonlinear")

@@ -3,6 +3,7 @@
 // Whole runs of general bodies and grounds (doc/theory.md) against plain scenes, closed forms and symmetries. Every run
 // must close its energy balance and balance its friction.
 #include "../support/run_text.h"
+#include "../support/temporary_folder.h"
 #include "../support/test.h"
 
 #include <crawler/base/exceptions.h>
@@ -305,6 +306,11 @@ TEST(GeneralScenes, LawsThatAreNotPositiveEndTheRunWithTheirName)
               .find("friction law"),
             std::string::npos);
   EXPECT_NE(message(wave + Settings{{"Ground/Profile", "1.01-x"}}).find("profile of the ground"), std::string::npos);
+  const test::TemporaryFolder folder; // one for each rank
+  const std::string file = (folder.path / "ground.csv").string();
+  std::ofstream(file) << "x,value\n0,1\n0.3,1.3\n0.6,1.6\n1,2\n";
+  EXPECT_NE(message(wave + Settings{{"Ground/Profile", file}, {"Ground/Outside", "error"}}).find("is not known at x"),
+            std::string::npos);
 }
 
 namespace

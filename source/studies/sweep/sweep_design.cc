@@ -26,6 +26,7 @@ namespace crawler
   {
     const std::string entry_name = "Sweep/Axes";
 
+    /// Refuses the axes; not called refuse(), as another function is that sources compiled together with this one call.
     template <typename... Arguments>
     [[noreturn]] void
     reject(fmt::format_string<Arguments...> sentence, Arguments &&...arguments)
