@@ -276,7 +276,7 @@ namespace crawler
       error.time          = error.total - error.space;
       error.model         = 0.;
     }
-    extend_errors_of_efficiencies(scene, result);
+    extend_errors(scene, result);
   }
 
   void
@@ -329,7 +329,7 @@ namespace crawler
       const double found = std::abs(result.displacement - value);
       if (bound < found) // otherwise it may be the sweep's own error
         error.total = std::max(error.total, found);
-      extend_errors_of_efficiencies(scene, result);
+      extend_errors(scene, result);
       if (bound < error.total)
         result.corrected = {value, bound};
       const double all = swept->time_sum + swept->space_sum;

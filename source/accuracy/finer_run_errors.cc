@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/finer_run_errors.h>
 #include <crawler/run/result_table.h>
 
@@ -85,8 +86,19 @@ namespace crawler
   }
 
   void
-  extend_errors_of_efficiencies(const Scene &scene, SimulationResult &result)
+  extend_errors(const Scene &scene, SimulationResult &result)
   {
+    const auto extend = [&result](const char *key, const double least) {
+      if (const auto known = error_bound(result, key))
+        set_error_bound(result, key, std::max(*known, least));
+    };
+    if (result.gait)
+    {
+      const double round_off =
+        scene.keeps_its_centre() ? result.error->total : displacement_round_off * scene.body.length;
+      extend("gait.displacement", round_off);
+      extend("gait.speed", round_off / result.gait->period);
+    }
     if (!result.gait_efficiency || result.errors.empty())
       return;
     const Extreme &low = result.min_stretch, &high = result.max_stretch;
@@ -97,16 +109,15 @@ namespace crawler
                                             largest_merit(*scene.friction, from, to) -
                                           1.
                                       : HUGE_VAL;
-    const auto extend     = [&](const char *key, const double efficiency, const double D, const double error) {
-      if (const auto known = error_bound(result, key); known && D != 0.)
-        set_error_bound(result, key, std::max(*known, (of_limit + error / std::abs(D)) * efficiency));
+    const auto error_of   = [=](const double efficiency, const double D, const double error) {
+      return D != 0. ? (of_limit + error / std::abs(D)) * efficiency : 0.;
     };
     extend("gait.efficiency",
-           *result.gait_efficiency,
-           result.displacement,
-           std::isfinite(result.error->total) ? result.error->total : HUGE_VAL);
+           error_of(*result.gait_efficiency,
+                    result.displacement,
+                    std::isfinite(result.error->total) ? result.error->total : HUGE_VAL));
     if (result.gait && result.gait->efficiency)
-      extend(
-        "gait.stride_efficiency", *result.gait->efficiency, result.gait->displacement, bound_of("gait.displacement"));
+      extend("gait.stride_efficiency",
+             error_of(*result.gait->efficiency, result.gait->displacement, bound_of("gait.displacement")));
   }
 } // namespace crawler

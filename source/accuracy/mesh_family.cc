@@ -479,7 +479,7 @@ namespace crawler
           add_errors_of_cycles(result, size_);
           if (!std::isfinite(space_error_))
             result.error = DisplacementError();
-          extend_errors_of_efficiencies(scene_, result);
+          extend_errors(scene_, result);
           fails_accuracy(result, wanted() * (1. + 1e-9), "the meshes do not agree");
         }
         else if (latest_.inversion)

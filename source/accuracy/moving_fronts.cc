@@ -159,7 +159,7 @@ namespace crawler
           if (entries_with_errors()[i]->is_sampled)
             result.errors[i] = std::max(result.errors[i], changes[i]);
         add_errors_of_cycles(result, std::abs(result.displacement));
-        extend_errors_of_efficiencies(problem_.scene, result);
+        extend_errors(problem_.scene, result);
         result.time                 = steepest.time;
         answer_.result              = std::move(result);
         answer_.choice.wanted_error = wanted();

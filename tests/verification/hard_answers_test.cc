@@ -432,6 +432,17 @@ TEST(HardAnswers, Efficiencies)
          "Accuracy = 1e-3; T = 0.5; Active stress/Generator = none; Body/Initial stretch = 1+0.3*sin(2*pi*s/L)+0.1*s");
 }
 
+/// A stride's displacement is known to round-off at best, as that of the run is. With p = 1 both are 0.
+TEST(HardAnswers, StridesThatKeepTheCentre)
+{
+  const SimulationResult result =
+    answer_to(test::set("Accuracy = 1e-3; p = 1; T = 10; gamma = 0.23; travelling wave; Amplitude = 0.3; "
+                        "Wave number = 1; Frequency = 1"));
+  ASSERT_TRUE(result.gait);
+  for (const char *const key : {"gait.displacement", "gait.speed"})
+    EXPECT_GE(error_bound(result, key).value(), result.error->total) << key;
+}
+
 /// Steps as long as the active stress admits have the error, not the cells of many waves. True one at 1e-8.
 TEST(HardAnswers, ManyWaves)
 {

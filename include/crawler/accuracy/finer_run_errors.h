@@ -39,7 +39,8 @@ namespace crawler
   add_errors_of_cycles(SimulationResult &result, double size);
 
   /// Extends the errors of efficiencies to those of their displacement and of the limit that the extreme stretches set,
-  /// once these are known; runs differ in their energies as they do in the efficiencies.
+  /// once these are known; runs differ in their energies as they do in the efficiencies. Those of the stride's
+  /// displacement and speed are at least round-off, as the displacement's is.
   void
-  extend_errors_of_efficiencies(const Scene &scene, SimulationResult &result);
+  extend_errors(const Scene &scene, SimulationResult &result);
 } // namespace crawler
