@@ -41,6 +41,29 @@ namespace crawler
   }
 
   std::vector<double>
+  with_echoes(std::vector<double> places, const StretchFeedback::Facts &facts, const double length)
+  {
+    // Parts of the body, and places, below or beyond which more would not be worth their cells; the echoes of a sensor
+    // are ever smoother.
+    constexpr unsigned int most_parts = 20, most_places = 300, of_sensor = 2;
+    const double d = facts.distance, half = 0.5 * facts.sensor_length;
+    const bool has_sensor      = half > 0.;
+    std::vector<double> latest = places;
+    for (unsigned int i = 0; i < (has_sensor ? of_sensor : most_parts) && places.size() < most_places; ++i)
+    {
+      std::vector<double> next;
+      for (const double s : latest)
+        for (const double shift : {-half, half})
+          next.push_back(s - d + shift);
+      if (i == 0 && std::max(std::abs(d), 2. * half) * most_parts >= length) // where the ends of the body come in sight
+        next.insert(next.end(), {(d > 0. || has_sensor ? length : 0.) - d - half, half - d});
+      latest = distinct_breaks_in_space(std::move(next), length);
+      places.insert(places.end(), latest.begin(), latest.end());
+    }
+    return places;
+  }
+
+  std::vector<double>
   off_breaks_at_ends(std::vector<double> points, const std::vector<double> &breaks, const double length)
   {
     const double off = 1e-12 * length;
@@ -60,8 +83,17 @@ namespace crawler
   TimeSegments::TimeSegments(const ActiveStress &stress, const double end_time)
   {
     std::vector<double> breaks = stress.breaks_in_time();
-    clamps_                    = !breaks.empty();
-    breaks_                    = distinct(std::move(breaks), end_time, min_time_between_breaks);
+    if (const auto *feedback = stress.feedback(); feedback != nullptr && feedback->facts.delay > 0.)
+    {
+      constexpr int most        = 6; // each echo is smoother than the one before
+      std::vector<double> heard = breaks;
+      heard.push_back(0.); // the past begins there
+      for (int i = 1; i <= most; ++i)
+        for (const double t : heard)
+          breaks.push_back(t + i * feedback->facts.delay);
+    }
+    clamps_ = !breaks.empty();
+    breaks_ = distinct(std::move(breaks), end_time, min_time_between_breaks);
     set_limits();
   }
 

@@ -199,6 +199,8 @@ namespace crawler
         const auto more = profile->breaks();
         places.insert(places.end(), more.begin(), more.end());
       }
+    if (active_stress && feels_elsewhere())
+      places = with_echoes(std::move(places), active_stress->feedback()->facts, body.length);
     return distinct_breaks_in_space(std::move(places), body.length);
   }
 

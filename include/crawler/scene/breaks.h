@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/base/archive.h>
+#include <crawler/scene/active_stress.h>
 
 #include <algorithm>
 #include <limits>
@@ -9,8 +10,6 @@
 
 namespace crawler
 {
-  class ActiveStress;
-
   /// Breaks closer than this fraction of the duration, or of the length, are one.
   constexpr double min_time_between_breaks = 1e-12, min_space_between_breaks = 1e-9;
 
@@ -26,15 +25,22 @@ namespace crawler
   std::vector<double>
   distinct_breaks_in_space(std::vector<double> places, double length);
 
+  /// Adds to the @p places of jumps and kinks of the stretch those where a feedback that sees the stretch elsewhere has
+  /// them in turn: those from which it, or an end of its sensor, meets one, those from which it meets these, and so on,
+  /// and those from which it meets an end of the body [length].
+  std::vector<double>
+  with_echoes(std::vector<double> places, const StretchFeedback::Facts &facts, double length);
+
   /// Moves points at an end of the body inwards if one of the @p breaks is there: with floor(4*s/L) a fifth segment
   /// begins at s = L, which is none.
   std::vector<double>
   off_breaks_at_ends(std::vector<double> points, const std::vector<double> &breaks, double length);
 
   /**
-   * The pieces of [0, T] between the times when the active stress, or a derivative of it, jumps. Within a piece from
-   * t_b to t_c it is evaluated at times in [t_b + 2 d, t_c - d], d = 1e-12 T: the values of a generator at the very
-   * time of a break do not matter. Times are in units of T.
+   * The pieces of [0, T] between the times when the active stress, or a derivative of it, jumps, also by a feedback
+   * that sees an earlier jump, or the start, after its delay. Within a piece from t_b to t_c it is evaluated at times
+   * in [t_b + 2 d, t_c - d], d = 1e-12 T: the values of a generator at the very time of a break do not matter. Times
+   * are in units of T.
    */
   class TimeSegments
   {

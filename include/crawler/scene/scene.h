@@ -78,8 +78,8 @@ namespace crawler
     std::pair<double, double>
     end_moduli() const;
 
-    /// Places in (0, L) where the active stress or a profile of the body has a jump or a kink, ascending, each once
-    /// [length].
+    /// Places in (0, L) where the active stress, also by its feedback, or a profile of the body has a jump or a kink,
+    /// ascending, each once [length].
     std::vector<double>
     breaks_in_space() const;
   };

@@ -39,28 +39,6 @@ namespace crawler
         gradient.evaluate(arguments, m.m, derivatives);
       });
     }
-
-    /// Kinks of w_near: places from which it, or the sensor, reaches an end of the body, and places from which these
-    /// are seen in turn.
-    std::vector<double>
-    kinks_in_space(const double distance, const double sensor, const double length)
-    {
-      constexpr int most = 20; // more would not be worth their cells
-      std::vector<double> places;
-      if (sensor * most >= length)
-      {
-        // Kinks of the near stretch are where the sensor reaches an end of the body, and smoother ones where an end of
-        // the sensor reaches those.
-        for (const double kink : within({0.5 * sensor - distance, length - 0.5 * sensor - distance}, length))
-          places.insert(places.end(), {kink, kink - distance - 0.5 * sensor, kink - distance + 0.5 * sensor});
-        return within(std::move(places), length);
-      }
-      if (distance == 0. || std::abs(distance) * most < length)
-        return places;
-      for (int i = 1; std::abs(i * distance) < length; ++i)
-        places.push_back(distance > 0. ? length - i * distance : -i * distance);
-      return places;
-    }
   } // namespace
 
   void
@@ -121,14 +99,8 @@ namespace crawler
         return formula_feedback(formula, off_breaks_at_ends(points, ends, length));
       }};
     facts_.has_rate        = false;
-    facts_.breaks_in_space = kinks_in_space(facts.distance, facts.sensor_length, length);
+    facts_.breaks_in_space = breaks.in_space.value_or(std::vector<double>());
     facts_.breaks_in_time  = breaks.in_time.value_or(std::vector<double>());
-    if (breaks.in_space)
-      facts_.breaks_in_space.insert(facts_.breaks_in_space.end(), breaks.in_space->begin(), breaks.in_space->end());
-    // The past begins at t = 0, which causes kinks at the first multiples of the delay.
-    constexpr int most = 6; // each is smoother than the previous one
-    for (int i = 1; i <= most && facts.delay > 0. && i * facts.delay < end_time; ++i)
-      facts_.breaks_in_time.push_back(i * facts.delay);
 
     require_finite_values(*this, input, " for a body at rest with the stretch 1", length, end_time);
   }
