@@ -24,8 +24,6 @@
 //                        each half of the chi: the cheapest with which the largest true error of all its scenes is
 //                        below that. Runs that the batch gives back are computed by a Simulation; the time includes
 //                        them.
-//   level/...            The levels without a mesh, from a scene to its result with the error (small optimal wave to
-//                        1e-2, prescribed strain to 1e-6), and the estimate of the models' errors alone.
 //   kernel/...           Residual, Jacobian, elimination and velocity on a mesh of n cells.
 //   kernel/expression/... The active stress as a formula: "bulk" evaluates it at the Gauss points of n cells of degree
 //                        4 (items are points), "construction" prepares it for a mesh.
@@ -47,7 +45,6 @@ main(int argc, char **argv)
   crawler::test::add_run_benchmarks();
   crawler::test::add_sweep_benchmarks();
   crawler::test::add_kernel_benchmarks();
-  crawler::test::add_reduced_benchmarks();
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   return 0;
