@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// Answers of the stretch form: the order of its meshes, and what extrapolation and the reported errors are worth.
+// Answers of the stretch form: what extrapolation and the reported errors are worth.
 #include "../../support/lane_runs.h"
-#include "../../support/observed_order.h"
 #include "../../support/test.h"
 
 #include <crawler/accuracy/mesh_family.h>
@@ -28,30 +27,6 @@ namespace
     EXPECT_LT(result.net_friction, 1e-12);
   }
 } // namespace
-
-TEST(MeshFamily, IsOfSecondOrder)
-{
-  constexpr double exact          = 0.0900725298;
-  const std::vector<double> cells = {25, 50, 100};
-  std::vector<double> displacements, errors;
-  for (const double n : cells)
-  {
-    const auto result =
-      test::run_with(test::with(test::with(test::wave(-1., 0.4), stretch), "cells = {}; tolerance = 1e-9", n)).result;
-    ASSERT_EQ(result.time.status, Status::finished);
-    EXPECT_EQ(result.mesh.n_cells, n);
-    displacements.push_back(result.displacement);
-    errors.push_back(std::abs(result.displacement - exact));
-  }
-  const double order = test::observed_order("stretch form", cells, errors);
-  EXPECT_NEAR(order, 2., 0.1);
-  EXPECT_GT(errors[2], 1e-4 * exact); // what extrapolation gains
-  const auto extrapolated = [&](const int i) {
-    return std::abs((4. * displacements[i] - displacements[i - 1]) / 3. - exact);
-  };
-  EXPECT_LT(extrapolated(2), 1e-5 * exact);
-  EXPECT_NEAR(std::log2(extrapolated(1) / extrapolated(2)), 4., 0.3);
-}
 
 TEST(MeshFamily, ErrorsAreTrueAndSmallEnough)
 {
