@@ -27,8 +27,6 @@
 //   kernel/...           Residual, Jacobian, elimination and velocity on a mesh of n cells.
 //   kernel/expression/... The active stress as a formula: "bulk" evaluates it at the Gauss points of n cells of degree
 //                        4 (items are points), "construction" prepares it for a mesh.
-//   kernel/*/values      The same for other generators; formula_of_shaped_wave is shaped_wave as a formula.
-//   kernel/table/...     A table of 65 x 129 samples in the same way; "reading" is a file of 1000 x 1000.
 //   scale/...            One Newton step (residual, Jacobian, elimination, solution) of 1e6 unknowns.
 #include "benchmarks.h"
 
