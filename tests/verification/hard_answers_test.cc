@@ -272,25 +272,6 @@ TEST(HardAnswers, TimesOfSlowInversions)
   }
 }
 
-/// Shortly before an end inverts the stretch beside it is tiny, and the position form fails; the body inverts all the
-/// same, when m(0, t) = k.
-TEST(HardAnswers, EndsOfSteepFrictionInvert)
-{
-  for (const char *accuracy : {"1e-2", "1e-4"})
-  {
-    const double k = 1.065687391169341, amplitude = 1.3692980755928033;
-    const SimulationResult result =
-      answer_to(test::set("p = 3.7742919342516785; k = {}; Accuracy = {}; "
-                          "travelling wave; Amplitude = {}; Wave number = 1; Frequency = 1",
-                          k,
-                          accuracy,
-                          amplitude));
-    ASSERT_EQ(result.time.reason, "inverted_at_end") << accuracy << ": " << result.time.message;
-    EXPECT_NEAR(result.inversion->t, std::asin(k / amplitude) / (2. * M_PI), 1e-9);
-    EXPECT_LE(result.time.time, result.inversion->t);
-  }
-}
-
 /// Errors in space and time may cancel in two runs, but not in three.
 TEST(HardAnswers, NumericsOfTheUser)
 {
