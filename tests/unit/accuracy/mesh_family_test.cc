@@ -47,32 +47,6 @@ TEST(MeshFamily, RegularOrdersNeedNoFinerMesh)
   EXPECT_LE(result.mesh.n_cells, 800u);
 }
 
-/// Soft bodies whose layers are thin are answered by as many cells as they need, where the steps are few.
-TEST(MeshFamily, SoftBodiesGetManyCells)
-{
-  const Settings soft =
-    test::set("p = 2.5; travelling wave; Amplitude = 4.7e-6; Wave number = 1.4; Ramp duration = 0.5; k = 1.5e-5");
-  const auto found = test::run_with(test::with(soft, {{"Accuracy", "1e-4"}})).result,
-             finer = test::run_with(test::with(soft, {{"Accuracy", "1e-5"}})).result;
-  ASSERT_EQ(found.time.status, Status::finished) << found.time.message;
-  ASSERT_EQ(finer.time.status, Status::finished) << finer.time.message;
-  EXPECT_GT(found.mesh.n_cells, 3200u);
-  EXPECT_LE(std::abs(found.displacement - finer.displacement), found.error->total + finer.error->total);
-}
-
-/// Meshes that do not see a layer agree on a displacement without it: that tells nothing.
-TEST(MeshFamily, UnseenLayersLeaveTheErrorUnknown)
-{
-  const Settings soft =
-    test::set("p = 0.77; travelling wave; Amplitude = 9.4e-9; Wave number = 1.14; Frequency = 1.16; "
-              "Ramp duration = 0.3; k = 1.4e-7");
-  const auto found = test::run_with(test::with(soft, {{"Accuracy", "1e-2"}})).result,
-             finer = test::run_with(test::with(soft, {{"Accuracy", "1e-3"}})).result;
-  ASSERT_EQ(found.time.status, Status::finished) << found.time.message;
-  ASSERT_EQ(finer.time.status, Status::finished) << finer.time.message;
-  EXPECT_LE(std::abs(found.displacement - finer.displacement), found.error->total + finer.error->total);
-}
-
 /// The little that is left in an empty cell decides when it refills: small tolerances alone see it.
 TEST(MeshFamily, EmptyCellsRefillOnTime)
 {
