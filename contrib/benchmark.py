@@ -4,7 +4,7 @@
 
     contrib/benchmark.py [build] [--repeat 3] [--json FILE]
 
-Runs tests/benchmark/crawler_benchmark of the build folder (whole runs, sweeps, memory, a Newton step against the size)
+Runs tests/benchmark/crawler_benchmark of the build folder (whole runs, sweeps, a Newton step of a large mesh)
 and prints a table in Markdown. Of the repetitions the fastest counts, in processor time: the machine may be doing other
 things. Each process searches for its settings, which with the runs takes about five minutes. The numbers of the other
 programs are in contrib/reference/peers.json. What falls short is printed last; that is not an error.
@@ -112,16 +112,12 @@ def print_rows(found, peers):
 
 
 def print_settings(found):
-    """True errors and settings of whole runs, and the memory of sweeps."""
+    """True errors and settings of whole runs."""
     print("| benchmark | true error | per second | setting |\n|---|---|---|---|")
     for name, entry in found.items():
         if "error" in entry:
             back = f", {entry['given_back']:.0f} runs given back" if "given_back" in entry else ""
             print(f"| {name} | {entry['error']:.1e} | {entry['rate']:.0f} | {entry.get('label', '')}{back} |")
-    print("\n| scenes of the sweep | peak of memory before the batches [MiB] | growth by them [MiB] |\n|---|---|---|")
-    for name, entry in found.items():
-        if name.startswith("memory/"):
-            print(f"| {name.split('/')[2]} | {entry['scenes']:.0f} | {entry['growth']:.1f} |")
 
 
 def main():
@@ -136,7 +132,6 @@ def main():
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     found = measure(program, FILTER, arguments.repeat)
-    found.update(measure(program, "^memory"))  # in a process of its own, whose peak is theirs
     if arguments.json:
         arguments.json.write_text(json.dumps(found, indent=1), encoding="utf-8")
     peers = json.loads((SOURCE / "contrib/reference/peers.json").read_text(encoding="utf-8"))

@@ -10,6 +10,4 @@ namespace crawler::test
   add_sweep_benchmarks();
   void
   add_kernel_benchmarks();
-  void
-  add_reduced_benchmarks();
 } // namespace crawler::test

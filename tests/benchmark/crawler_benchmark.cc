@@ -24,15 +24,10 @@
 //                        each half of the chi: the cheapest with which the largest true error of all its scenes is
 //                        below that. Runs that the batch gives back are computed by a Simulation; the time includes
 //                        them.
-//   level/...            The levels without a mesh, from a scene to its result with the error (small optimal wave to
-//                        1e-2, prescribed strain to 1e-6), and the estimate of the models' errors alone.
 //   kernel/...           Residual, Jacobian, elimination and velocity on a mesh of n cells.
 //   kernel/expression/... The active stress as a formula: "bulk" evaluates it at the Gauss points of n cells of degree
 //                        4 (items are points), "construction" prepares it for a mesh.
-//   kernel/*/values      The same for other generators; formula_of_shaped_wave is shaped_wave as a formula.
-//   kernel/table/...     A table of 65 x 129 samples in the same way; "reading" is a file of 1000 x 1000.
-//   scale/...            One Newton step (residual, Jacobian, elimination, solution) against the number of
-//                        unknowns.
+//   scale/...            One Newton step (residual, Jacobian, elimination, solution) of 1e6 unknowns.
 #include "benchmarks.h"
 
 #include <crawler/base/mpi_session.h>
@@ -47,7 +42,6 @@ main(int argc, char **argv)
   crawler::test::add_run_benchmarks();
   crawler::test::add_sweep_benchmarks();
   crawler::test::add_kernel_benchmarks();
-  crawler::test::add_reduced_benchmarks();
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   return 0;

@@ -2,17 +2,12 @@
 //
 // What the parts of a run by PETSc cost.
 #include "../support/run_text.h"
-#include "../support/temporary_folder.h"
 #include "benchmarks.h"
 
 #include <crawler/equation/position_form.h>
 #include <crawler/scene/active_stress/expression.h>
-#include <crawler/scene/active_stress/table.h>
 
 #include <benchmark/benchmark.h>
-
-#include <cmath>
-#include <numbers>
 
 namespace crawler::test
 {
@@ -87,69 +82,6 @@ namespace crawler::test
       state.SetItemsProcessed(state.iterations());
     }
 
-    /// A CSV file with n_s x n_t samples of a wave, for the life of this object.
-    class TableFile
-    {
-    public:
-      TableFile(const unsigned int n_s, const unsigned int n_t)
-      {
-        std::string rows = "s,t,m\n";
-        for (unsigned int j = 0; j < n_t; ++j)
-          for (unsigned int i = 0; i < n_s; ++i)
-          {
-            const double s = i / (n_s - 1.), t = j / (n_t - 1.);
-            rows += fmt::format("{},{},{}\n", s, t, 0.1 * std::sin(2. * std::numbers::pi * (s + t)));
-          }
-        write_file(folder_.path / "m.csv", rows);
-      }
-
-      ActiveStressTable
-      read(const std::string &interpolation) const
-      {
-        return {{.file = folder_.path / "m.csv", .interpolation = interpolation}, 1., 1.};
-      }
-
-    private:
-      const TemporaryFolder folder_;
-    };
-
-    /// Rows of 1000 x 1000 samples in a second.
-    void
-    table_reading(benchmark::State &state)
-    {
-      const TableFile file(1000, 1000);
-      for (auto _ : state)
-        benchmark::DoNotOptimize(file.read("cubic"));
-      state.SetItemsProcessed(state.iterations() * 1000000);
-    }
-
-    template <typename Function, typename Stress>
-    void
-    add(const std::string &name, const Function &function, const Stress &make_stress)
-    {
-      benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State &state) { function(state, *make_stress()); })
-        ->Arg(12)
-        ->Arg(1200);
-    }
-
-    void
-    add_generators()
-    {
-      for (const auto &[name, settings] :
-           {std::pair("travelling_wave", "travelling wave"),
-            {"smoothed_square", "travelling wave; Profile = smoothed square"},
-            {"standing_wave", "standing wave"},
-            {"pulse", "pulse"},
-            {"optimal_wave", "optimal wave"},
-            {"shaped_wave", "c = 1; optimal wave; Shape = expression; Shape formula = exp(-(x/0.1)^2)"},
-            {"formula_of_shaped_wave",
-             "expression; Active stress = 0.4*(0.0886*(erf(10*(s+t)) - erf(10*t) - s*(erf(10*(1+t)) - erf(10*t))) - "
-             "exp(-100*(s+t)^2) + exp(-100*s^2))"}})
-        add(std::string("kernel/") + name + "/values", stress_values, [settings = settings]() {
-          return parameters_with(set(settings)).create_scene().active_stress;
-        });
-    }
-
     void
     newton_step(benchmark::State &state)
     {
@@ -164,9 +96,6 @@ namespace crawler::test
         bench.matrix.solve(bench.F, bench.F);
       }
       state.SetItemsProcessed(state.iterations());
-      state.counters["ns_per_cell"] =
-        benchmark::Counter(static_cast<double>(state.range(0)) * 1e-9,
-                           benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
     }
   } // namespace
 
@@ -181,24 +110,13 @@ namespace crawler::test
     add_kernel("kernel/elimination", [](Bench &b) { b.matrix.factorize(); });
     add_kernel("kernel/solution", [](Bench &b) { b.matrix.solve(b.F, b.F); });
     add_kernel("kernel/velocity", [](Bench &b) { b.assembler.velocity(0.3, b.u, b.v); });
-    const auto expression = []() {
-      return std::make_unique<Expression>(ExpressionParameters{.active_stress = "0.1*sin(2*pi*(s+t))"}, 1., 1.);
+    const auto add_formula = [](const char *name, const auto &action) {
+      const auto stress =
+        std::make_shared<const Expression>(ExpressionParameters{.active_stress = "0.1*sin(2*pi*(s+t))"}, 1., 1.);
+      benchmark::RegisterBenchmark(name, [=](benchmark::State &state) { action(state, *stress); })->Arg(12)->Arg(1200);
     };
-    add("kernel/expression/bulk", stress_values, expression);
-    add("kernel/expression/construction", stress_construction, expression);
-    add_generators();
-    // To be compared with kernel/expression/bulk.
-    const auto table = [](const std::string &interpolation) {
-      return [=]() { return std::make_unique<ActiveStressTable>(TableFile(65, 129).read(interpolation)); };
-    };
-    add("kernel/table/cubic", stress_values, table("cubic"));
-    add("kernel/table/linear", stress_values, table("linear"));
-    add("kernel/table/construction", stress_construction, table("cubic"));
-    benchmark::RegisterBenchmark("kernel/table/reading", table_reading)->Unit(benchmark::kMillisecond);
-    benchmark::RegisterBenchmark("scale/newton_step", newton_step)
-      ->RangeMultiplier(10)
-      ->Range(10, 100000)
-      ->Arg(500000)
-      ->Unit(benchmark::kMicrosecond);
+    add_formula("kernel/expression/bulk", stress_values);
+    add_formula("kernel/expression/construction", stress_construction);
+    benchmark::RegisterBenchmark("scale/newton_step", newton_step)->Arg(500000)->Unit(benchmark::kMicrosecond);
   }
 } // namespace crawler::test

@@ -141,20 +141,14 @@ namespace crawler::test
     }
 
     void
-    repeat_run(benchmark::State &state, const Case &body, const Setting &setting, const RecordOptions &options)
-    {
-      OneBody own(body, setting);
-      SimulationResult result;
-      for (auto _ : state)
-        result = own.simulation.run({}, options);
-      state.SetItemsProcessed(state.iterations());
-      show(state, setting, error_of(result, body.displacement), result);
-    }
-
-    void
     run_one(benchmark::State &state, const Case &body, const Way &way, const double accuracy)
     {
-      repeat_run(state, body, cheapest(body, way, accuracy), {});
+      OneBody own(body, cheapest(body, way, accuracy));
+      SimulationResult result;
+      for (auto _ : state)
+        result = own.simulation.run({}, {});
+      state.SetItemsProcessed(state.iterations());
+      show(state, own.setting, error_of(result, body.displacement), result);
     }
 
     void
@@ -176,18 +170,12 @@ namespace crawler::test
         show(state, setting, error_of(results[0], body.displacement), *results[0]);
     }
 
-    Parameters
-    parameters_of(const Case &body, const double accuracy)
-    {
-      return parameters_with(with(body.settings, "Accuracy = {}", accuracy));
-    }
-
     /// What `Accuracy` delivers: choice, run with the energy balance, bounds of the errors; "ratio" is its time over
     /// that of the cheapest fixed setting, which knows nothing of its error.
     void
     run_answer(benchmark::State &state, const Case &body, const double accuracy)
     {
-      const auto parameters = parameters_of(body, accuracy);
+      const auto parameters = parameters_with(with(body.settings, "Accuracy = {}", accuracy));
       const Scene scene     = parameters.create_scene();
       OneBody own(body, cheapest(body, "fused", accuracy));
       using Clock = std::chrono::steady_clock;

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// A study over two parameters by batches, and what it needs of memory.
+// A study over two parameters by batches.
 #include "batch_scenes.h"
 #include "benchmarks.h"
 
 #include <benchmark/benchmark.h>
-
-#include <sys/resource.h>
 
 #include <array>
 #include <cmath>
@@ -176,32 +174,6 @@ namespace crawler::test
       state.counters["reference_error"] = sweep().reference_error;
       state.counters["given_back"]      = given_back;
     }
-
-    /// Peak of resident memory of this process so far [MiB].
-    double
-    peak_memory()
-    {
-      rusage usage{};
-      getrusage(RUSAGE_SELF, &usage);
-      return static_cast<double>(usage.ru_maxrss) / 1024.; // Linux counts in KiB
-    }
-
-    /// A larger sweep, in chunks. "scenes" is the peak of memory once all scenes exist, "growth" what the runs add.
-    void
-    memory_of_sweep(benchmark::State &state)
-    {
-      static constexpr std::size_t chunk = 4096;
-      const Setting setting              = fine(7, 4, 1e-5);
-      const auto scenes                  = grid_of_scenes(static_cast<std::size_t>(state.range(0)) / n_chi, n_chi);
-      const double before                = peak_memory();
-      for (auto _ : state)
-        for (std::size_t begin = 0; begin < scenes.size(); begin += chunk)
-          benchmark::DoNotOptimize(
-            run_scenes({scenes.data() + begin, std::min(chunk, scenes.size() - begin)}, setting));
-      state.SetItemsProcessed(state.iterations() * state.range(0));
-      state.counters["scenes"] = before;
-      state.counters["growth"] = peak_memory() - before;
-    }
   } // namespace
 
   void
@@ -209,10 +181,5 @@ namespace crawler::test
   {
     benchmark::RegisterBenchmark("sweep/1e-4", run_sweep, 1e-4)->Unit(benchmark::kMillisecond);
     benchmark::RegisterBenchmark("sweep/1e-6", run_sweep, 1e-6)->Unit(benchmark::kMillisecond);
-    benchmark::RegisterBenchmark("memory/sweep", memory_of_sweep)
-      ->RangeMultiplier(10)
-      ->Range(1000, 100000)
-      ->Iterations(1)
-      ->Unit(benchmark::kMillisecond);
   }
 } // namespace crawler::test

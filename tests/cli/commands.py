@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import call, checks, contents, expect, prm, sets  # noqa: E402
-from tables import json_of  # noqa: E402
+from tables import summary_of  # noqa: E402
 
 CRAWLER = pathlib.Path(sys.argv[1]).resolve()
 SCENE = "# the default wave\n" + prm("Accuracy=1e-3", "Output/Number of snapshots=3")
@@ -28,16 +28,12 @@ def crawler(folder, *words, **more):
     return call([CRAWLER, *words], folder, **more)
 
 
-def run(folder, *entries, options=(), text=SCENE, code=0, stop_at=None):
+def run(folder, *entries, options=(), text=SCENE, code=0):
     """Runs a parameter file with these entries into "results", and expects this exit code."""
     (folder / "scene.prm").write_text(text, encoding="utf-8")
-    done = crawler(folder, "run", "scene.prm", "--output", "results", *options, *sets(entries), stop_at=stop_at)
+    done = crawler(folder, "run", "scene.prm", "--output", "results", *options, *sets(entries))
     expect(done.returncode == code, f"{entries}, {options}: exit code {done.returncode}, {done.stderr}")
     return done
-
-
-def summary_of(folder):
-    return json_of(folder / "summary.json")
 
 
 def read(file):

@@ -38,12 +38,6 @@ def crawler(*arguments, **options):
     return call([CRAWLER, *arguments], **options)
 
 
-def is_refused(done, code, words, what):
-    """One short sentence, and this exit code."""
-    refused(done, words, code=code)
-    expect(len(done.stderr) < 3000, f"{what}: {len(done.stderr)} characters")
-
-
 def damaged_tables(place, scene):
     """results.h5 that is not what sweep wrote."""
     whole = place / "whole"
@@ -69,14 +63,14 @@ def damaged_tables(place, scene):
                 for key, value in attributes.items():
                     file["results"]["displacement"].attrs[key] = value
         before = (folder / "results.h5").read_bytes()
-        is_refused(crawler("sweep", scene, "--output", folder, "--resume"), 2, words, name)
+        refused(crawler("sweep", scene, "--output", folder, "--resume"), words)
         expect((folder / "results.h5").read_bytes() == before, f"{name}: a refused table is another one")
         expect(not (folder / "study.lock").exists(), f"{name}: a refused study leaves its lock")
 
     text = place / "text"
     shutil.copytree(whole, text)
     (text / "results.h5").write_text("no table\n", encoding="utf-8")
-    is_refused(crawler("sweep", scene, "--output", text, "--resume"), 2, "HDF5 file", "a text as a table")
+    refused(crawler("sweep", scene, "--output", text, "--resume"), "HDF5 file")
 
     # Flipped bits: the rows that they are in are computed anew, so the table is that of the first time.
     chance = random.Random(1)
@@ -135,7 +129,7 @@ def links(place, scene):
         folder = place / f"link_{name}"
         folder.mkdir()
         (folder / name).symlink_to(outside / "snapshots")
-        is_refused(crawler("run", scene, "--output", folder, "--overwrite"), 6, "is a link", f"the link {name}")
+        refused(crawler("run", scene, "--output", folder, "--overwrite"), "is a link", code=6)
         expect((outside / "snapshots" / "mine.vtu").exists(), f"files behind the link {name} are gone")
 
 
@@ -146,17 +140,17 @@ def texts(place):
     for level in range(9):
         (bomb / f"{level}.prm").write_text(f"include {level + 1}.prm\n" * 10)
     (bomb / "9.prm").write_text("# nothing\n")
-    is_refused(crawler("check", bomb / "0.prm"), 2, "at most 1000", "ten includes of ten files")
+    refused(crawler("check", bomb / "0.prm"), "at most 1000")
     nested = place / "nested.prm"
     nested.write_text("subsection a\n" * 100000 + "end\n" * 100000)
-    is_refused(crawler("check", nested), 2, "more than 100 deep", "nested sections")
+    refused(crawler("check", nested), "more than 100 deep")
     many = place / "many.prm"
     many.write_text("".join(f"set Entry {i} = 1\n" for i in range(100000)))
-    is_refused(crawler("check", many), 2, "Entry 0", "many entries")
+    refused(crawler("check", many), "Entry 0")
     long = place / "long.prm"
     long.write_text("subsection Active stress\n set Generator = expression\n subsection Expression\n  set Active stress = "
                     + "1+" * 500000 + "x\n end\nend\n")
-    is_refused(crawler("check", long), 2, "characters)", "a long formula")
+    refused(crawler("check", long), "characters)")
     steering = place / "steering.prm"
     steering.write_text("subsection Body\n set Length = \x1b[31mred\nend\n")
     done = crawler("check", steering)
@@ -166,23 +160,23 @@ def texts(place):
 def endless(place):
     """Files without an end, or with too much in them."""
     for name in some(("/dev/zero", "/dev/urandom")):
-        is_refused(crawler("check", name), 6, "is a device", name)
+        refused(crawler("check", name), "is a device", code=6)
         (place / "endless.prm").write_text(f"include {name}\n")
-        is_refused(crawler("check", place / "endless.prm"), 6, "is a device", f"include {name}")
-        is_refused(crawler("table", name, place / "out.csv"), 6, "is a device", f"table {name}")
+        refused(crawler("check", place / "endless.prm"), "is a device", code=6)
+        refused(crawler("table", name, place / "out.csv"), "is a device", code=6)
         for generator, section in (("table", "Table"), ("prescribed strain", "Prescribed strain")):
             done = crawler("check", "-", "--set", f"Active stress/Generator={generator}", "--set",
                            f"Active stress/{section}/File={name}", "--set", "Active stress/Prescribed strain/Given by=table",
                            input="set Accuracy = 1e-3\n")
-            is_refused(done, 2, "is a device", f"{generator} {name}")
+            refused(done, "is a device")
     (place / "dash.prm").write_text("include -\n")
-    is_refused(crawler("check", "dash.prm", folder=place, input="set Accuracy = 1\n"), 6, "no such file", "include -")
+    refused(crawler("check", "dash.prm", folder=place, input="set Accuracy = 1\n"), "no such file", code=6)
     with open(place / "big.prm", "wb") as file:
         file.truncate(1 << 40)
-    is_refused(crawler("check", place / "big.prm"), 6, "4 GiB", "a file of 1 TiB")
+    refused(crawler("check", place / "big.prm"), "4 GiB", code=6)
     (place / "part.prm").write_text(("#" * 99 + "\n") * 200000)
     (place / "whole.prm").write_text("include part.prm\n" * 900)
-    is_refused(crawler("check", place / "whole.prm"), 2, "at most 64 MB", "900 includes of 20 MB")
+    refused(crawler("check", place / "whole.prm"), "at most 64 MB")
 
 
 def counts(scene):
@@ -208,17 +202,17 @@ def counts(scene):
     for axes in ("Body/Length : linspace(1, 2, 1e18)", "Body/Length : linspace(1, 2, 1e5); Body/Elastic modulus : "
                  "linspace(1, 2, 1e5); Body/Anchoring exponent : linspace(1, 2, 1e5)"):
         done = crawler("check", scene, "--set", f"Sweep/Axes={axes}", preexec_fn=limit)
-        is_refused(done, 2, "Sweep/Axes", axes)
+        refused(done, "Sweep/Axes")
 
 
 def names_and_cells(place, scene):
     """Names that steer terminals or shells, and cells that spreadsheets would compute."""
     for word in ("a\nb", "a\x1b[2Jb", "a\rb", "a\tb"):
-        is_refused(crawler("run", scene, "--output", place / word), 2, "control character", repr(word))
+        refused(crawler("run", scene, "--output", place / word), "control character")
         expect(not (place / word).exists(), f"a folder {word!r} is there")
-        is_refused(crawler("run", place / f"{word}.prm"), 2, "control character", repr(word))
+        refused(crawler("run", place / f"{word}.prm"), "control character")
     done = crawler("run", place / "a\xc2\x9b31mb.prm".encode("latin-1").decode("utf-8"))
-    is_refused(done, 6, "\\xc2\\x9b31m", "a control character behind ASCII")
+    refused(done, "\\xc2\\x9b31m", code=6)
     for name in some(("$(touch pwned) `touch pwned`; touch pwned; a b' \" &", "$(touch pwned)", "`touch pwned`",
                       "; touch pwned;", "a b' \" &")):
         folder = place / "names" / name

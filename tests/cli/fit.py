@@ -4,7 +4,6 @@
 
     python3 fit.py PATH_TO_CRAWLER
 """
-import json
 import os
 import pathlib
 import re

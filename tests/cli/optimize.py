@@ -15,7 +15,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import NO_PICTURES, call, checks, expect, on_ranks, refused, sets  # noqa: E402
-from tables import csv_rows, h5_columns, json_of  # noqa: E402
+from tables import csv_rows, h5_columns, summary_of  # noqa: E402
 
 CRAWLER, PRM, MPIRUN = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), sys.argv[3]
 MODES, SEGMENTS = "Active stress/Modes/", "Active stress/Segments/"
@@ -30,13 +30,9 @@ def run(study, folder, *settings, options=(), ranks=1, stop_at=None, picture=Fal
                  "--output", folder, *options], None, stop_at, {} if picture else NO_PICTURES)
 
 
-def summary(folder):
-    return json_of(folder / "summary.json")
-
-
 def optima(folder):
     """The optimum of each case."""
-    return summary(folder)["optimize"]["optima"]
+    return summary_of(folder)["optimize"]["optima"]
 
 
 def rows(folder):
@@ -66,7 +62,7 @@ def test_merits(place):
                                   f"Optimize/Variables={MODES}Coefficients[1-{2 * n + 1}] : -1 to 1"]
         done = run("optimize_harmonics", place / name, *more, picture=name == "two")
         expect(done.returncode == 0, f"{name} harmonics: exit code {done.returncode}: {done.stderr}")
-        best = summary(place / name)
+        best = summary_of(place / name)
         optimum = best["optimize"]["optima"][0]
         expect(optimum["objective"] >= reference, f"{name} harmonics: merit {optimum['objective']}, wanted {reference}")
         expect(best["min_stretch"]["value"] >= 0.7 - 1e-5 and best["max_stretch"]["value"] <= 1.3 + 1e-5,
@@ -82,7 +78,7 @@ def test_merits(place):
 
     # The optimum is a parameter file that runs.
     again = call([CRAWLER, "run", place / "two" / "optimum.prm", "--output", place / "again"])
-    expect(again.returncode == 0 and summary(place / "again")["displacement"] == summary(place / "two")["displacement"],
+    expect(again.returncode == 0 and summary_of(place / "again")["displacement"] == summary_of(place / "two")["displacement"],
            f"optimum.prm gives the displacement of the summary {again.stderr}")
 
 
@@ -99,10 +95,10 @@ def test_simulations(place):
     """Robots, by simulations; gaits that repeat."""
     done = run("optimize_robot", place / "robot", *([] if LONG else ["Optimize/Tolerance=1e-2"]))
     expect(done.returncode == 0, f"robot: exit code {done.returncode}: {done.stderr}")
-    expect(summary(place / "robot")["displacement"] > 0.0669, f"robot: {summary(place / 'robot')['displacement']}")
+    expect(summary_of(place / "robot")["displacement"] > 0.0669, f"robot: {summary_of(place / 'robot')['displacement']}")
     # Of a gait that repeats the elastic energy of its start does not count.
     done = run("optimize_segments", place / "periodic", "Sweep/Axes=")
-    best = summary(place / "periodic")
+    best = summary_of(place / "periodic")
     expect(done.returncode == 0 and best["optimize"]["optima"][0]["objective"] > 0.1265, f"periodic: {done.stderr}")
     expect(0.83 < best["gait"]["stride_efficiency"] < 0.87 and best["gait"]["efficiency"] < 0.2, f"{best['gait']}")
 
@@ -131,7 +127,7 @@ def test_many_crests(place):
                f"Optimize/Variables={MODES}Coefficients[2-7] : -2 to 2", "Optimize/Objective=displacement",
                f"Optimize/Smallest strain={low}", f"Optimize/Largest strain={high}", "Optimize/Starts=1", f"Optimize/Tolerance={tolerance}")
     optimum = optima(place / "crests")[0] if done.returncode == 0 else {"has_converged": False, "objective": 0, "violation": 1}
-    best = summary(place / "crests")
+    best = summary_of(place / "crests")
     expect(optimum["has_converged"] and 0.99 * 0.0222 < optimum["objective"] < 0.023, f"crests: {optimum} {done.stderr}")
     strains = best["min_stretch"]["value"] - 1, best["max_stretch"]["value"] - 1
     expect(low * (1 + tolerance) <= strains[0] <= 0.97 * low and 0.97 * high <= strains[1] <= high * (1 + tolerance),
@@ -245,7 +241,7 @@ def test_stops(place):
         expect(done.returncode == code and (folder / "results.csv").exists() == (code in (0, 5)),
                f"{name}: {done.returncode}, {done.stderr}")
         if code == 5:
-            state = summary(folder)["optimize"]
+            state = summary_of(folder)["optimize"]
             expect(state["status"] == "stopped" and state["reason"] == "signal" and "--resume" in done.stderr
                    and (folder / "best-1" / "summary.json").exists(), f"a signal ends with the best so far: {done.stderr}")
         if code != 0:
@@ -268,7 +264,7 @@ def test_stops(place):
 
     # Within the first start there is a best so far, too.
     within = run("optimize_from_rest", place / "within", stop_at="step:30:TERM")
-    expect(within.returncode == 5 and summary(place / "within")["status"] == "stopped"
+    expect(within.returncode == 5 and summary_of(place / "within")["status"] == "stopped"
            and (place / "within" / "best" / "summary.json").exists(), f"a signal: {within.returncode}, {within.stderr}")
     for limit, code in (("0.001", 5), ("1e6", 0)):
         limited = run("optimize_harmonics", place / "limited", f"Optimize/Time limit={limit}", options=["--resume"])
@@ -336,7 +332,7 @@ def test_gradients(place):
 def test_uneven(place):
     """On a body that is not the same everywhere, the strain being given: the run agrees, and there is no bound."""
     uneven = run("optimize_harmonics", place / "uneven", "Body/Friction profile=1.5-s", "Body/Elastic modulus profile=1+s")
-    best = summary(place / "uneven")
+    best = summary_of(place / "uneven")
     merit = best["displacement"] / math.sqrt(best["stress_power"])
     expect(uneven.returncode == 0 and abs(merit - best["optimize"]["optima"][0]["objective"]) < 1e-6 and merit > 0.2
            and best["gait"]["efficiency"] is None and not any(row["efficiency"] for row in rows(place / "uneven")),
@@ -364,7 +360,7 @@ def test_obstacles(place):
            f"beside inversion: {brink.returncode}, {brink.stdout}{brink.stderr}")
     free = run("optimize_tradeoff", place / "free", "Optimize/Smallest strain=automatic", "Sweep/Axes=", "Optimize/Work=0.01",
                "Optimize/Largest strain=automatic", "Optimize/Starts=1")
-    expect(free.returncode == 0 and summary(place / "free")["displacement"] > 0.022,
+    expect(free.returncode == 0 and summary_of(place / "free")["displacement"] > 0.022,
            f"work alone: {free.returncode}, {free.stdout}{free.stderr}")
     # Beside gaits with fewer than two strides, which have no speed, derivatives are of one side.
     wave = "Active stress/Travelling wave/"
@@ -385,7 +381,7 @@ def test_obstacles(place):
            and optima(place / "against")[0]["exceeded_limit"] == "Largest stress rate",
            f"an empty set: {against.stdout}{against.stderr}")
     # The run of the best gait finished, but the study did not.
-    whole = summary(place / "against")
+    whole = summary_of(place / "against")
     expect((whole["status"], whole["reason"]) == ("failed", "limits_exceeded") and "Largest stress rate" in whole["message"],
            f"status of the study: {whole['status']}, {whole['reason']}, {whole['message']}")
 

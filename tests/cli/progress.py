@@ -59,14 +59,14 @@ class Screen:
         self.seen.append([row for row in self.rows if row])
 
 
-def on_terminal(command, folder, language="C.UTF-8", term="xterm", stop=None):
+def on_terminal(command, folder, term="xterm", stop=None):
     """The screen, with all that was seen on it, and the exit code. stop: a signal, and what is asked, with the screen, until
     it is to be sent.
     """
     main, inner = pty.openpty()
     fcntl.ioctl(inner, termios.TIOCSWINSZ, struct.pack("HHHH", 40, WIDTH, 0, 0))
     with subprocess.Popen([str(word) for word in command], cwd=folder, stdin=subprocess.DEVNULL, stdout=inner, stderr=inner,
-                          env=environment(TERM=term, LC_ALL=language)) as process:
+                          env=environment(TERM=term, LC_ALL="C.UTF-8")) as process:
         os.close(inner)
         screen, waiting = Screen(), ""
         decoder = codecs.getincrementaldecoder("utf-8")(errors="replace")

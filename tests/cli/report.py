@@ -17,7 +17,7 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from browser import Browser  # noqa: E402
 from program import NO_PICTURES, call, checks, expect, prm, refused, sets  # noqa: E402
-from tables import csv_rows, json_of  # noqa: E402
+from tables import csv_rows, json_of, number_at  # noqa: E402
 
 NASTY = "</script><script>window.broken = 1</script><img src=x onerror='window.broken = 1'>"
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
@@ -280,19 +280,12 @@ def test_in_browser(browser, folder):
             expect(browser.ask("(({x, y}) => x.type === 'logarithmic' && y.type === 'logarithmic')(CHARTS.find(one => one.own.label === 'map of all points').scales)"), "times and errors are logarithmic")
 
 
-def in_summary(summary, key):
-    """The number under a key with dots."""
-    for word in key.split("."):
-        summary = summary[word]
-    return summary
-
-
 def test_run_in_browser(browser, folder):
     """Numbers, and time by keys and by the pointer."""
     browser.open(folder / "run/report.html")
     summary = json_of(folder / "run/summary.json")
     shown = browser.ask(ALL_KNOWN_NUMBERS)
-    expect(len(shown) > 40 and all(in_summary(summary, key) == value for key, value in shown), f"{len(shown)} numbers are those of summary.json")
+    expect(len(shown) > 40 and all(number_at(summary, key) == value for key, value in shown), f"{len(shown)} numbers are those of summary.json")
     text = browser.ask("document.body.innerText")
     expect("retrograde" in text and "What matters" in text and f"crawler {summary['versions']['crawler']}" in text, "gait in words, sensitivities, version")
     time = "document.querySelector('output').textContent"
@@ -348,7 +341,7 @@ def test_map_in_browser(browser, folder):
     expect("Kymograph" in browser.ask(f"{panel}.innerText") and browser.ask(BLANK) == 0, "a stored point shows its body")
     shown = browser.ask(ALL_KNOWN_NUMBERS)
     stored = json_of(folder / "sweep/points/5/summary.json")
-    expect(shown and all(in_summary(stored, key) == value for key, value in shown), "its numbers are those of its summary.json")
+    expect(shown and all(number_at(stored, key) == value for key, value in shown), "its numbers are those of its summary.json")
     browser.ask(f"{chart}.canvas.focus()")
     browser.key("ArrowRight")
     text = browser.ask(f"{panel}.innerText")

@@ -18,17 +18,17 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import Paused, call, checks, contents, environment, expect, on_ranks, prm, ranks_that_stop, refused  # noqa: E402
-from tables import csv_rows, h5_columns, json_of, number, same_as_csv, same_columns  # noqa: E402
+from tables import csv_rows, h5_columns, json_of, number, number_at, same_as_csv, same_columns  # noqa: E402
 
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
 BASE = prm("Accuracy=1e-4", "Active stress/Optimal wave/Choose wave by=wave speed")
 PROGRAM, MPIRUN = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
 
 
-def write(folder, axes, more="", name="sweep.prm"):
+def write(folder, axes, more=""):
     """A parameter file with these axes."""
     text = BASE + f"subsection Sweep\n  set Axes = {axes}\n  {more}\nend\n"
-    pathlib.Path(folder, name).write_text(text, encoding="utf-8")
+    pathlib.Path(folder, "sweep.prm").write_text(text, encoding="utf-8")
 
 
 def sweep(folder, output, *more, stop_at=None, command=(), file="sweep.prm"):
@@ -73,14 +73,9 @@ def test_grid(folder):
            <= summary["displacement_error"]["total"] + rows["displacement_error.total"][5],
            "a point agrees with crawler run within the error bounds")
 
-    def in_summary(key):
-        value = summary
-        for part in key.split("."):
-            value = value[part]
-        return value
     compared = [(name, name.removeprefix("errors.") + (".value" if name.endswith("_stretch") else ""))
                 for name in rows if name.startswith("errors.")]
-    apart = [key for name, key in compared if not abs(rows[key][5] - in_summary(key)) <= rows[name][5] + in_summary(name)]
+    apart = [key for name, key in compared if not abs(rows[key][5] - number_at(summary, key)) <= rows[name][5] + number_at(summary, name)]
     expect(len(compared) > 5 and not apart, f"so do its works, extreme stretches and gait numbers {apart}")
     for name, n, more in (("two", 2, ()), ("without shared memory", 3, ("--mca", "btl", "tcp,self", "--mca", "osc", "pt2pt"))):
         other = sweep(folder, name, command=[*on_ranks(MPIRUN, n), *more])

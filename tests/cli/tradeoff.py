@@ -17,7 +17,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import NO_PICTURES, call, checks, expect, on_ranks, prm, ranks_that_stop, refused, sets  # noqa: E402
-from tables import csv_rows, h5_columns, json_of, number, same_as_csv  # noqa: E402
+from tables import csv_rows, h5_columns, number, same_as_csv, summary_of  # noqa: E402
 
 BODY = prm("Active stress/Optimal wave/Perturbation parameter=0.4",
            "Active stress/Optimal wave/Choose wave by=wave speed")
@@ -38,10 +38,6 @@ def study(output, *more, ranks=1, stop_at=None, picture=False):
 def table(folder):
     """The rows of tradeoff.csv that were tried."""
     return [row for row in csv_rows(folder / "tradeoff.csv") if row["status"]]
-
-
-def summary_of(folder):
-    return json_of(folder / "summary.json")
 
 
 def answers(rows):

@@ -33,10 +33,10 @@ def answer(scene, **more):
     return crawler.run(scene, fields=False, **more)
 
 
-def compare(kind, scene, accuracy=1e-5, reference=None):
+def compare(kind, scene, accuracy):
     """The scene at an Accuracy and at a thousandth of it; returns the bound over the error."""
     one = answer(scene, set={"Accuracy": accuracy})
-    other = reference if reference is not None else answer(scene, set={"Accuracy": max(accuracy * 1e-3, 1e-9)})
+    other = answer(scene, set={"Accuracy": max(accuracy * 1e-3, 1e-9)})
     text = f"{kind}: {one}, {other}\n{crawler.to_prm(scene)}"
     if one.status != "finished" or (other.status != "finished" and other.reason != "accuracy_not_met"):
         expect(one.status == other.status, text)

@@ -60,18 +60,18 @@ class Study:
 class PointStudy(Study):
     """A sweep."""
 
-    def __init__(self, command, table, group, status, seconds):
+    def __init__(self, command, table="results"):
         super().__init__(command, ("original.prm", "parameters.prm", f"{table}.h5", f"{table}.csv", "summary.json"), 300)
-        self.table, self.group, self.status, self.seconds = table, group, status, seconds
+        self.table = table
 
     def columns(self, output):
         """Of the table, if there is one."""
         file = output / f"{self.table}.h5"
-        return h5_columns(file, self.group) if file.exists() else None
+        return h5_columns(file, self.table) if file.exists() else None
 
     def done(self, output):
         rows = self.columns(output)
-        return {i: rows[self.seconds][i] for i, status in enumerate(rows[self.status]) if status} if rows else {}
+        return {i: rows["seconds"][i] for i, status in enumerate(rows["status"]) if status} if rows else {}
 
     def answers(self, output):
         return {name: column if isinstance(column, list) else column.tobytes()
@@ -164,21 +164,20 @@ def kills(name, study, folder, n_kills):
            f"{name}: in the end it is the unbroken one {last.stderr}")
 
 
-def write(folder, axes, more=""):
+def write(folder, axes):
     """scene.prm with these axes."""
-    (folder / "scene.prm").write_text(BODY + f"subsection Sweep\n set Axes = {axes}\n {more}\nend\n", encoding="utf-8")
+    (folder / "scene.prm").write_text(BODY + prm(f"Sweep/Axes={axes}"), encoding="utf-8")
 
 
 def test_kills(folder):
-    point_study = {"sweep": PointStudy(("sweep", "scene.prm"), "results", "results", "status", "seconds"),
+    point_study = {"sweep": PointStudy(("sweep", "scene.prm")),
                    "cross-check": PointStudy(("sweep", "scene.prm", "--set", "Accuracy=1e-3", *CHECKED, "--set",
-                                              f"Sweep/Axes={CHI} : linspace(0.1, 0.3, 60); {P} : 0, 2"), "results", "results",
-                                             "status", "seconds")}
+                                              f"Sweep/Axes={CHI} : linspace(0.1, 0.3, 60); {P} : 0, 2"))}
     budgets = ("--set", "Sweep/Axes=Optimize/Work : 0.001, 0.003", "--set", "Optimize/Objective=displacement",
                "--set", "Optimize/Starts=3")
     tables = ("starts.h5", "results.h5", "results.csv", "starts.csv", "summary.json")
     studies = {**point_study,
-               "tradeoff": TradeoffStudy(("tradeoff", "scene.prm"), "tradeoff", "tradeoff", "status", "seconds"),
+               "tradeoff": TradeoffStudy(("tradeoff", "scene.prm"), "tradeoff"),
                "optimize": OptimizeStudy(("optimize", PRM / "optimize_harmonics.prm", *budgets), tables, 400)}
     for name, study in studies.items():
         (folder / name).mkdir()

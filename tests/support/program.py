@@ -36,8 +36,9 @@ class Checks:
         return bool(condition)
 
     def refused(self, done, *words, code=2):
-        """Expects that a command ended with this exit code and one sentence that has these words. Returns whether it did."""
-        return self.expect(done.returncode == code and done.stderr.count("\n") == 1 and all(word in done.stderr for word in words),
+        """Expects that a command ended with this exit code and one short sentence that has these words. Returns whether it did."""
+        return self.expect(done.returncode == code and done.stderr.count("\n") == 1 and len(done.stderr) < 3000
+                           and all(word in done.stderr for word in words),
                            f"{' '.join(done.args)}: exit code {done.returncode}, {done.stderr[:800]!r}, but {words} are expected")
 
     def skip(self, what):

@@ -89,9 +89,9 @@ class Scene:
         log = self.place / folder / "log.txt"
         return log.read_text(encoding="utf-8").count(GOES_ON) if log.exists() else 0
 
-    def compare(self, folder, what, other="whole"):
-        """Compares all files of two folders, except times and identifiers of a run."""
-        one, two = self.place / folder, self.place / other
+    def compare(self, folder, what):
+        """Compares all files with those of the undisturbed run, except times and identifiers of a run."""
+        one, two = self.place / folder, self.place / "whole"
         if self.name in STARTS_ANEW:
             ends = [json_of(place / "summary.json") for place in (one, two)]
             expect(abs(ends[0]["displacement"] - ends[1]["displacement"]) <= ends[1]["displacement_error"]["total"],

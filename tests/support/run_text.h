@@ -100,17 +100,6 @@ namespace crawler::test
     return to_text(value);
   }
 
-  /// Wraps "set ..." lines in the subsections of a path like "Active stress/Expression".
-  inline std::string
-  in_section(const std::string &path, const std::string &lines)
-  {
-    std::string before, after;
-    std::istringstream in(path);
-    for (std::string name; std::getline(in, name, '/'); after += "end\n")
-      before += "subsection " + name + "\n";
-    return before + lines + "\n" + after;
-  }
-
   /// Parameters with some entries set by their full names.
   inline Parameters
   parameters_with(const Settings &settings)

@@ -16,6 +16,17 @@ def json_of(file):
     return json.loads(pathlib.Path(file).read_text(encoding="utf-8"))
 
 
+def summary_of(folder):
+    return json_of(pathlib.Path(folder, "summary.json"))
+
+
+def number_at(summary, key):
+    """Number under a key with dots."""
+    for word in key.split("."):
+        summary = summary[word]
+    return summary
+
+
 def csv_rows(file):
     """Rows of a CSV file, by the names of its columns."""
     with open(file, newline="", encoding="utf-8") as lines:

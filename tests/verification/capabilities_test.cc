@@ -55,12 +55,6 @@ namespace
     {"bdf", {{"Time/Integrator", "bdf"}, {"Time/End time", "4"}}, "the lanes have radau 5 and 9"},
   };
 
-  std::string
-  cell(const bool has)
-  {
-    return has ? " yes |" : "  |";
-  }
-
   /// The line of a row.
   std::string
   line(const Row &row)
@@ -85,7 +79,7 @@ namespace
                            result.cycles.has_value(),
                            result.gait.has_value(),
                            result.gait_efficiency.has_value()})
-      text += cell(has);
+      text += has ? " yes |" : "  |";
     return text + " " + row.reason + " |";
   }
 } // namespace

@@ -6,8 +6,6 @@
 #include "../support/expect_within.h"
 #include "../support/test.h"
 
-#include <crawler/base/gauss_panels.h>
-
 using namespace crawler;
 using test::answer_to;
 using test::expect_within;
@@ -135,49 +133,24 @@ TEST(Events, OneInALongRest)
   EXPECT_LT(rested.time.steps, 1000u);
 }
 
-/// The displacement that a strain brings about, by theory.md ("Prescribed strain") and the trapezoidal rule in time.
+/// The displacement that a strain brings about: theory.md ("Prescribed strain") by Gauss's rule along the body and the
+/// trapezoidal rule in time, with 40 000 and 80 000 steps (twice as many change no digit).
 TEST(Events, OfGivenStrains)
 {
-  struct Case
+  struct
   {
     const char *strain;
-    double T;
-    unsigned int n_steps;
-    double beginning; ///< so fast the strain begins
-    double event;     ///< its size
-  };
-  constexpr double time = 13.126, width = 0.003, pi = std::numbers::pi;
-  const Case cases[] = {
-    {"0.2*sin(2*pi*(s+t))*tanh(t)", 400., 40000, 1., 0.},
-    {"0.2*sin(2*pi*(s+t))*tanh(5*t)+0.3*sin(pi*s)*sin(2*pi*s)*exp(-((t-13.126)/0.003)^2)", 20., 80000, 5., 0.3}};
-  const GaussPanels body(0., 1., 4);
-  const std::size_t n = body.points().size();
-  std::vector<double> e_t(n), B_t(n), g(n), product(n);
-  for (const auto &[strain, T, n_steps, beginning, size] : cases)
-  {
-    double displacement = 0.;
-    for (unsigned int j = 0; j <= n_steps; ++j)
-    {
-      const double t = T * j / n_steps, start = std::tanh(beginning * t), start_rate = beginning * (1. - start * start);
-      const double x = (t - time) / width, bell = size * std::exp(-x * x), bell_rate = -2. * x / width * bell;
-      for (std::size_t i = 0; i < n; ++i)
-      {
-        const double s = body.points()[i], phase = 2. * pi * (s + t), shape = std::sin(pi * s) * std::sin(2. * pi * s);
-        g[i]   = 1. / (1. + 0.2 * std::sin(phase) * start + bell * shape); // p = 2: a = -1
-        e_t[i] = 0.2 * (2. * pi * std::cos(phase) * start + std::sin(phase) * start_rate) + bell_rate * shape;
-      }
-      body.running_integral(e_t, B_t);
-      std::ranges::transform(g, B_t, product.begin(), std::multiplies());
-      const double velocity = body.integral(B_t) - body.integral(product) / body.integral(g);
-      displacement += velocity * T / n_steps * (j == 0 || j == n_steps ? 0.5 : 1.);
-    }
+    double T, displacement;
+  } const cases[] = {
+    {"0.2*sin(2*pi*(s+t))*tanh(t)", 400., 8.0613681819049},
+    {"0.2*sin(2*pi*(s+t))*tanh(5*t)+0.3*sin(pi*s)*sin(2*pi*s)*exp(-((t-13.126)/0.003)^2)", 20., 0.40019794627599}};
+  for (const auto &[strain, T, displacement] : cases)
     for (const char *accuracy : {"1e-2", "1e-4", "1e-6"})
       expect_within(answer_to(test::set(
                       "Model = kinematic; T = {}; Accuracy = {}; prescribed strain; Strain = {}", T, accuracy, strain)),
                     displacement,
                     std::stod(accuracy),
                     fmt::format("{}, {}", strain, accuracy));
-  }
 }
 
 /// Both ends invert when m = k, on any mesh; pilots on finer and finer ones took minutes.

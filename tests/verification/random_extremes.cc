@@ -13,7 +13,6 @@
 //
 //     random_extremes FIRST-LAST OUT.csv [steps that a run of the second method may take; 0: nothing is compared
 //                                         [steps that the program may take]]
-//     random_extremes NUMBER --prm           prints the parameter file of one scene
 #include "second_method.h"
 
 #include <crawler/base/mpi_session.h>
@@ -171,20 +170,6 @@ namespace
     return row;
   }
 
-  /// The entries as they stand in a parameter file.
-  std::string
-  parameter_file(const Settings &settings)
-  {
-    std::string text;
-    for (const auto &[entry, value] : settings)
-    {
-      const std::size_t slash = entry.rfind('/');
-      text += in_section(slash == std::string::npos ? "" : entry.substr(0, slash),
-                         fmt::format("set {} = {}", entry.substr(slash + 1), value));
-    }
-    return text;
-  }
-
   std::string
   command(const Row &row)
   {
@@ -333,14 +318,9 @@ main(int argc, char **argv)
   const crawler::MpiSession mpi(one, none);
   unsigned int first = 0, last = 0;
   const int n_numbers = argc < 3 ? 0 : std::sscanf(argv[1], "%u-%u", &first, &last);
-  if (n_numbers == 1 && std::string(argv[2]) == "--prm")
-  {
-    fmt::print("{}", parameter_file(random_scene(Family::everything, first, ".").settings));
-    return 0;
-  }
   if (n_numbers < 1)
   {
-    fmt::print(stderr, "random_extremes FIRST-LAST OUT.csv [steps [steps]]\nrandom_extremes NUMBER --prm\n");
+    fmt::print(stderr, "random_extremes FIRST-LAST OUT.csv [steps [steps]]\n");
     return 2;
   }
   last                               = std::max(first, last);

@@ -44,6 +44,13 @@ namespace
     "subsection Active stress\n subsection Optimal wave\n set Choose wave by = wave speed\n "
     "set Wave speed = 1\n end\nend\n";
 
+  SweepPoints
+  grid_of(const std::string &axes)
+  {
+    return {MPI_COMM_SELF,
+            ParameterFile::from_text(set_by_speed + "subsection Sweep\n set Axes = " + axes + "\nend\n", "test.prm")};
+  }
+
   void
   expect_covered(const Family &family, const double accuracy)
   {
@@ -165,11 +172,7 @@ TEST(SharedNumerics, DependOnTheBlockAlone)
 /// Neighbours of different kinds share nothing, but parts of them may.
 TEST(SharedNumerics, BlocksOfDifferentKindsAreDivided)
 {
-  SweepPoints points(MPI_COMM_SELF,
-                     ParameterFile::from_text(set_by_speed +
-                                                "subsection Sweep\n set Axes = Time/Integrator : bdf, radau 9; "
-                                                "Body/Anchoring exponent : linspace(1.5, 4, 300)\nend\n",
-                                              "test.prm"));
+  SweepPoints points = grid_of("Time/Integrator : bdf, radau 9; Body/Anchoring exponent : linspace(1.5, 4, 300)");
   SweepNumerics numerics(points);
   const SweepBlock some = {280, 40};
   EXPECT_EQ(numerics.at(some, 283, always).choice, nullptr) << "bdf is not for the fused engine";
@@ -182,11 +185,7 @@ TEST(SharedNumerics, BlocksOfDifferentKindsAreDivided)
 /// Where each rank would measure for a few points only, each point chooses for itself.
 TEST(SharedNumerics, AreForManyPoints)
 {
-  SweepPoints points(
-    MPI_COMM_SELF,
-    ParameterFile::from_text(set_by_speed +
-                               "subsection Sweep\n set Axes = Body/Anchoring exponent : linspace(1.5, 4, 100)\nend\n",
-                             "test.prm"));
+  SweepPoints points = grid_of("Body/Anchoring exponent : linspace(1.5, 4, 100)");
   SweepNumerics numerics(points);
   EXPECT_EQ(numerics.at({0, 100}, 3, always).choice, nullptr);
 }

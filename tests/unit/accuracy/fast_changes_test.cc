@@ -4,7 +4,6 @@
 
 #include <crawler/accuracy/stress_scales.h>
 #include <crawler/scene/fast_changes.h>
-#include <crawler/scene/period.h>
 
 using namespace crawler;
 

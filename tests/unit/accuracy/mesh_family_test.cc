@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// Answers of the stretch form: the order of its meshes, and what extrapolation and the reported errors are worth.
+// Answers of the stretch form: what extrapolation and the reported errors are worth.
 #include "../../support/lane_runs.h"
-#include "../../support/observed_order.h"
 #include "../../support/test.h"
 
 #include <crawler/accuracy/mesh_family.h>
@@ -29,30 +28,6 @@ namespace
   }
 } // namespace
 
-TEST(MeshFamily, IsOfSecondOrder)
-{
-  constexpr double exact          = 0.0900725298;
-  const std::vector<double> cells = {25, 50, 100};
-  std::vector<double> displacements, errors;
-  for (const double n : cells)
-  {
-    const auto result =
-      test::run_with(test::with(test::with(test::wave(-1., 0.4), stretch), "cells = {}; tolerance = 1e-9", n)).result;
-    ASSERT_EQ(result.time.status, Status::finished);
-    EXPECT_EQ(result.mesh.n_cells, n);
-    displacements.push_back(result.displacement);
-    errors.push_back(std::abs(result.displacement - exact));
-  }
-  const double order = test::observed_order("stretch form", cells, errors);
-  EXPECT_NEAR(order, 2., 0.1);
-  EXPECT_GT(errors[2], 1e-4 * exact); // what extrapolation gains
-  const auto extrapolated = [&](const int i) {
-    return std::abs((4. * displacements[i] - displacements[i - 1]) / 3. - exact);
-  };
-  EXPECT_LT(extrapolated(2), 1e-5 * exact);
-  EXPECT_NEAR(std::log2(extrapolated(1) / extrapolated(2)), 4., 0.3);
-}
-
 TEST(MeshFamily, ErrorsAreTrueAndSmallEnough)
 {
   for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7})
@@ -70,32 +45,6 @@ TEST(MeshFamily, RegularOrdersNeedNoFinerMesh)
   const auto result = test::run_with(test::with(test::wave(-1., 0.6), {{"Accuracy", "1e-6"}})).result;
   expect_true(result, 0.2349598822, 1e-10, 1e-6);
   EXPECT_LE(result.mesh.n_cells, 800u);
-}
-
-/// Soft bodies whose layers are thin are answered by as many cells as they need, where the steps are few.
-TEST(MeshFamily, SoftBodiesGetManyCells)
-{
-  const Settings soft =
-    test::set("p = 2.5; travelling wave; Amplitude = 4.7e-6; Wave number = 1.4; Ramp duration = 0.5; k = 1.5e-5");
-  const auto found = test::run_with(test::with(soft, {{"Accuracy", "1e-4"}})).result,
-             finer = test::run_with(test::with(soft, {{"Accuracy", "1e-5"}})).result;
-  ASSERT_EQ(found.time.status, Status::finished) << found.time.message;
-  ASSERT_EQ(finer.time.status, Status::finished) << finer.time.message;
-  EXPECT_GT(found.mesh.n_cells, 3200u);
-  EXPECT_LE(std::abs(found.displacement - finer.displacement), found.error->total + finer.error->total);
-}
-
-/// Meshes that do not see a layer agree on a displacement without it: that tells nothing.
-TEST(MeshFamily, UnseenLayersLeaveTheErrorUnknown)
-{
-  const Settings soft =
-    test::set("p = 0.77; travelling wave; Amplitude = 9.4e-9; Wave number = 1.14; Frequency = 1.16; "
-              "Ramp duration = 0.3; k = 1.4e-7");
-  const auto found = test::run_with(test::with(soft, {{"Accuracy", "1e-2"}})).result,
-             finer = test::run_with(test::with(soft, {{"Accuracy", "1e-3"}})).result;
-  ASSERT_EQ(found.time.status, Status::finished) << found.time.message;
-  ASSERT_EQ(finer.time.status, Status::finished) << finer.time.message;
-  EXPECT_LE(std::abs(found.displacement - finer.displacement), found.error->total + finer.error->total);
 }
 
 /// The little that is left in an empty cell decides when it refills: small tolerances alone see it.

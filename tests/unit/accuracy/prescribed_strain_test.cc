@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // The generator "prescribed strain": its stress, its three sources of strain, and what it refuses; and the pieces that
-// it is made of (Gauss panels, splines).
+// it is made of (Gauss panels).
 #include "../../support/complaint.h"
 #include "../../support/grid_text.h"
 #include "../../support/run_text.h"
@@ -9,7 +9,6 @@
 #include "../../support/test.h"
 
 #include <crawler/accuracy/model_choice.h>
-#include <crawler/base/cubic_spline.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/gauss_panels.h>
 #include <crawler/scene/active_stress/prescribed_strain.h>

@@ -151,76 +151,7 @@ TEST(LaneStepper, GeneralBodiesAreThoseOfPetsc)
   EXPECT_EQ(n_batches, 48u);
 }
 
-namespace
-{
-  /// Keeps what an observer sees in output times.
-  struct Seen
-  {
-    std::vector<double> times, computed_times, numbers;
-    std::vector<double> y; ///< of all output times
-    unsigned int steps = 0;
-  };
-
-  Seen
-  watch(const LaneRun &run, const Engine engine, const std::vector<double> &output_times)
-  {
-    TimeParameters time = run.parameters.time;
-    time.engine         = engine;
-    Seen seen;
-    const auto observers = watched_by([&](const Snapshot &snapshot) {
-      seen.steps = snapshot.step.number;
-      if (!snapshot.pictures.is_snapshot || snapshot.step.time == 0.)
-        return;
-      seen.times.push_back(snapshot.step.time);
-      seen.computed_times.push_back(snapshot.computed_time);
-      seen.y.insert(seen.y.end(), snapshot.y.begin(), snapshot.y.end());
-      const EnergyBalance &works = snapshot.energy_balance;
-      const StretchRange &range  = snapshot.stretch;
-      seen.numbers.insert(seen.numbers.end(),
-                          {snapshot.displacement,
-                           snapshot.velocity,
-                           works.stress_work,
-                           works.dissipation,
-                           range.min.value,
-                           range.max.value});
-    });
-    const auto result    = Simulation(MPI_COMM_WORLD, run.scene, time, run.numerics)
-                          .run({output_times, {}, run.scene.end_time}, {.energy_balance = true}, observers);
-    EXPECT_EQ(result.time.status, Status::finished);
-    return seen;
-  }
-} // namespace
-
-TEST(LaneStepper, ObserversSeeTheOutputTimesOfPetsc)
-{
-  constexpr double tolerance = 1e-7, end_time = 1.7;
-  std::vector<double> output_times = {1e-9, 0.1, 0.1 + 1e-9, 0.7 / 3.};
-  for (unsigned int i = 1; i < 17; ++i)
-    output_times.push_back(0.3 + i * (end_time - 0.3) / 17.);
-  output_times.push_back(end_time);
-  for (const std::string integrator : {"radau 5", "radau 9"})
-    for (const double a : {-1., 1.})
-    {
-      const LaneRun run(in_other_units(test::wave(a, 0.25)),
-                        integrator,
-                        {.degree = 5, .n_cells = 6, .tolerance = tolerance, .initial_step = 1e-4});
-      const Seen petsc = watch(run, Engine::petsc, output_times), fused = watch(run, Engine::automatic, output_times);
-      EXPECT_EQ(fused.times, output_times); // exactly
-      ASSERT_EQ(fused.computed_times.size(), output_times.size());
-      for (std::size_t i = 0; i + 1 < output_times.size(); ++i)
-        EXPECT_EQ(fused.computed_times[i], output_times[i] / end_time);
-      EXPECT_EQ(fused.computed_times.back(), 1.);
-      EXPECT_NEAR(fused.steps, petsc.steps, 0.1 * petsc.steps);
-      ASSERT_EQ(fused.y.size(), petsc.y.size());
-      for (std::size_t i = 0; i < petsc.y.size(); ++i)
-        EXPECT_NEAR(fused.y[i], petsc.y[i], tolerance) << integrator;
-      ASSERT_EQ(fused.numbers.size(), petsc.numbers.size());
-      for (std::size_t i = 0; i < petsc.numbers.size(); ++i)
-        EXPECT_NEAR(fused.numbers[i], petsc.numbers[i], 10. * tolerance) << integrator << ", " << i;
-    }
-}
-
-/// Output times do not depend on who computes the run; without observers they are steps all the same.
+/// After the step at which it is told to, on both engines.
 TEST(LaneStepper, ARunStopsAtOnce)
 {
   const LaneRun run(

@@ -3,7 +3,6 @@
 
 #include <crawler/mesh/discretization.h>
 #include <crawler/mesh/graded_mesh.h>
-#include <crawler/mesh/mesh_marking.h>
 
 using namespace crawler;
 

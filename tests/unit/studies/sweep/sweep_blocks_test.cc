@@ -7,12 +7,6 @@ namespace
 {
   using namespace crawler;
 
-  ParameterFile
-  sweep_file(const std::string &axes, const std::string &more = "")
-  {
-    return ParameterFile::from_text("subsection Sweep\n set Axes = " + axes + "\n " + more + "\nend\n", "test.prm");
-  }
-
   TEST(SweepBlocks, HaveEachPointOnceAndStayWithinTheirAxes)
   {
     for (const auto &[p, chi] : {std::pair(1, 1), {1, 1000}, {7, 13}, {300, 65}, {20, 1000}})
@@ -55,9 +49,11 @@ namespace
   {
     for (const bool differ : {false, true})
     {
-      const ParameterFile file = sweep_file(std::string(differ ? "Time/End time : 1, 5, 2; " : "") +
-                                            "Body/Anchoring exponent : linspace(1.5, 4, 500)");
-      SweepPoints points(MPI_COMM_SELF, file);
+      const std::string axes = differ ? "Time/End time : 1, 5, 2; " : "";
+      SweepPoints points(MPI_COMM_SELF,
+                         ParameterFile::from_text("subsection Sweep\n set Axes = " + axes +
+                                                    "Body/Anchoring exponent : linspace(1.5, 4, 500)\nend\n",
+                                                  "test.prm"));
       const auto blocks = sweep_blocks(points.design());
       std::set<unsigned long> seen;
       double last = 1e300;
