@@ -89,6 +89,7 @@ def colour(display, view, field, limits, run):
     bar.Orientation, bar.WindowLocation = "Horizontal", "Upper Right Corner"
     bar.ScalarBarLength, bar.ScalarBarThickness = 0.3, 12
     bar.TitleFontSize, bar.LabelFontSize = 14, 12
+    bar.RangeLabelFormat = "%.3g"  # the longer one of ParaView runs into its neighbour
     bar.Visibility = 1
     return bar
 

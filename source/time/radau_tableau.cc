@@ -140,7 +140,7 @@ namespace crawler
       for (unsigned int i = 0; i < n; ++i)
       {
         vectors[i * kept.size() + k] = std::complex<double>(vector[i] / vector.back());
-        rows.push_back(std::complex<double>(row[i] * vector.back() / product));
+        rows.emplace_back(row[i] * vector.back() / product);
       }
     }
 
