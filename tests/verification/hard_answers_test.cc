@@ -162,6 +162,16 @@ TEST(HardAnswers, DisplacementsAreWithinTheirBounds)
      "Active stress = 0.3*(1-exp(-5*t))",
      -0.00327110,
      1e-4},
+    {"jumps that feedback shows again along the body (true by linear elements, extrapolated)",
+     "p = 2; k = 0.3; Accuracy = 1e-4; strain feedback; Distance = 0.13; "
+     "Active stress = 0.12*(s<0.4)*sin(2*pi*t)^2 - 0.15*(w_near-1)",
+     -0.0062432610,
+     1e-5},
+    {"jumps that feedback shows again after its delay (true with more breaks at 1e-6)",
+     "p = 3; k = 0.1; T = 2; Accuracy = 1e-5; strain feedback; Delay = 0.15; "
+     "Active stress = 0.24*(mod(t,0.11)<0.055)*s*(1-s)*s - 0.08*(w_delayed-1) + 0.02*w_t",
+     0.003617837777,
+     1e-5},
     {"a stiff body that is nearly emptied (doc/theory.md, section 5)",
      "p = 2; k = 10; chi = 0.6; c = 1; Accuracy = 1e-4",
      0.26374413,

@@ -28,6 +28,24 @@ TEST(Breaks, AreSortedDistinctAndInside)
   EXPECT_TRUE(TimeSegments(*with({}, {}), 4.).breaks().empty());
 }
 
+/// A feedback shows jumps, and the ends of the body, again.
+TEST(Breaks, HaveEchoes)
+{
+  using List        = std::vector<double>;
+  const auto places = [](const List &jumps, const StretchFeedback::Facts &facts) {
+    return distinct_breaks_in_space(with_echoes(jumps, facts, 1.), 1.);
+  };
+  const auto expect = [&](const List &found, const List &wanted) {
+    ASSERT_EQ(found.size(), wanted.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      EXPECT_NEAR(found[i], wanted[i], 1e-14);
+  };
+  expect(places({0.9}, {.distance = 0.4}), {0.1, 0.2, 0.5, 0.6, 0.9});
+  expect(places({0.1}, {.distance = -0.4}), {0.1, 0.4, 0.5, 0.8, 0.9});
+  expect(places({0.8}, {.distance = 0.1, .sensor_length = 0.4}), {0.1, 0.2, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9});
+  EXPECT_EQ(places({0.9}, {.distance = 0.01}).size(), 21u); // not at the ends: there they would be as small
+}
+
 /// Within a piece no time of another is used, and none at its ends; without breaks times are what they are.
 TEST(Breaks, PiecesAreEvaluatedInside)
 {
