@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/finer_run_errors.h>
 #include <crawler/run/result_table.h>
 

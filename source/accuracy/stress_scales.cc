@@ -421,8 +421,7 @@ namespace crawler
     const double L = scene.body.length, T = scene.end_time;
     // Single period, which shows everything.
     const double P                     = std::min(stress.period().value_or(T), T);
-    const std::vector<double> in_space = distinct_breaks_in_space(stress.breaks_in_space(), L),
-                              in_time  = TimeSegments(stress, T).breaks();
+    const std::vector<double> in_space = scene.breaks_in_space(), in_time = TimeSegments(stress, T).breaks();
     std::vector<double> in_period;
     for (const double t : in_time)
       if (t * T < P)

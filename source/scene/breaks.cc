@@ -43,21 +43,28 @@ namespace crawler
   std::vector<double>
   with_echoes(std::vector<double> places, const StretchFeedback::Facts &facts, const double length)
   {
-    // Parts of the body, and places, below or beyond which more would not be worth their cells; the echoes of a sensor
-    // are ever smoother.
-    constexpr unsigned int most_parts = 20, most_places = 300, of_sensor = 2;
-    const double d = facts.distance, half = 0.5 * facts.sensor_length;
-    const bool has_sensor      = half > 0.;
+    // Distances, as parts of the body, and numbers beyond which more places would not be worth their cells. A sensor
+    // that is shorter is a point; the echoes of others are smoother, and theirs are left out.
+    constexpr double shortest = 1e-3, shortest_from_ends = 0.05;
+    constexpr unsigned int of_point = 20;
+    constexpr std::size_t most      = 300;
+    const double d                  = facts.distance,
+                 half  = facts.sensor_length >= shortest_from_ends * length ? 0.5 * facts.sensor_length : 0.,
+                 reach = std::max(std::abs(d), 2. * half) / length;
+    if (reach >= shortest_from_ends) // where the feedback, or an end of its sensor, comes to an end of the body
+      for (const double s : within({(d > 0. || half > 0. ? length : 0.) - d - half, half - d}, length))
+        places.push_back(s);
     std::vector<double> latest = places;
-    for (unsigned int i = 0; i < (has_sensor ? of_sensor : most_parts) && places.size() < most_places; ++i)
+    for (unsigned int i = 0; i < (half > 0. ? 1 : of_point) && reach >= shortest; ++i)
     {
       std::vector<double> next;
       for (const double s : latest)
-        for (const double shift : {-half, half})
-          next.push_back(s - d + shift);
-      if (i == 0 && std::max(std::abs(d), 2. * half) * most_parts >= length) // where the ends of the body come in sight
-        next.insert(next.end(), {(d > 0. || has_sensor ? length : 0.) - d - half, half - d});
+        for (const double centre : {s - half, s + half}) // of a sensor that is not moved inside
+          if (centre >= half && centre <= length - half)
+            next.push_back(centre - d);
       latest = distinct_breaks_in_space(std::move(next), length);
+      if (places.size() + latest.size() > most)
+        break;
       places.insert(places.end(), latest.begin(), latest.end());
     }
     return places;
@@ -85,12 +92,14 @@ namespace crawler
     std::vector<double> breaks = stress.breaks_in_time();
     if (const auto *feedback = stress.feedback(); feedback != nullptr && feedback->facts.delay > 0.)
     {
-      constexpr int most        = 6; // each echo is smoother than the one before
-      std::vector<double> heard = breaks;
+      constexpr int most_echoes  = 6; // each is smoother than the one before
+      constexpr std::size_t most = 1000;
+      std::vector<double> heard  = breaks;
       heard.push_back(0.); // the past begins there
-      for (int i = 1; i <= most; ++i)
+      for (int i = 1; i <= most_echoes && breaks.size() + heard.size() <= most; ++i)
         for (const double t : heard)
-          breaks.push_back(t + i * feedback->facts.delay);
+          if (const double echo = t + i * feedback->facts.delay; echo < end_time)
+            breaks.push_back(echo);
     }
     clamps_ = !breaks.empty();
     breaks_ = distinct(std::move(breaks), end_time, min_time_between_breaks);

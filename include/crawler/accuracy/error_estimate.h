@@ -5,9 +5,6 @@
 
 namespace crawler
 {
-  /// Round-off of the displacement, as a part of the length of the body.
-  inline constexpr double displacement_round_off = 1e-15;
-
   /**
    * Sets the errors of @p result, which a Simulation with @p choice gave and which finished (collective). A second,
    * finer run gives that of the displacement (doc/numerics.md, "Error bounds"): with x the difference of both

@@ -9,6 +9,9 @@
 
 namespace crawler
 {
+  /// Round-off of the displacement, as a part of the length of the body.
+  inline constexpr double displacement_round_off = 1e-15;
+
   /**
    * Errors of the numbers of @p result from those of a @p finer run, measured as the displacement's is
    * (error_estimate.h): @p factor times the difference x of both, and @p part of the scale S of the number, which is
@@ -39,8 +42,8 @@ namespace crawler
   add_errors_of_cycles(SimulationResult &result, double size);
 
   /// Extends the errors of efficiencies to those of their displacement and of the limit that the extreme stretches set,
-  /// once these are known; runs differ in their energies as they do in the efficiencies. Those of the stride's
-  /// displacement and speed are at least round-off, as the displacement's is.
+  /// once these are known; runs differ in their energies as they do in the efficiencies. Errors of a stride's
+  /// displacement and speed become at least round-off: where the centre stays, the error of the run.
   void
   extend_errors(const Scene &scene, SimulationResult &result);
 } // namespace crawler

@@ -157,8 +157,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       // for its error is shortened all the same.
       if (accepted && rate > 0. && factor * rate > wanted_rate)
         factor = rate > wanted_rate ? 1. : wanted_rate / rate;
-      if (accepted && (just_rejected || failures_now > 0) && factor > 1.) // what stopped the longer one may be near
-        factor = 1.;
       next          = factor * h;
       just_rejected = !accepted;
       if (accepted)

@@ -150,16 +150,16 @@ namespace crawler
       return std::nullopt;
     }
 
-    /// Places in (0, L), in any order, where m or a derivative of it jumps [length]: mesh cells end there.
+    /// Places in (0, L), in any order, where m or a derivative of it jumps [length], but for echoes: cells end there.
     virtual std::vector<double>
     breaks_in_space() const
     {
       return {};
     }
 
-    /// Times, in any order, when m or a derivative of it jumps [time]: steps end at those in (0, T), where T is the end
-    /// time that the generator was made for. values() may be on either side at these times; so also at 0 and T if they
-    /// are listed, as they should be if m jumps there (breaks.h).
+    /// Times, in any order, when m or a derivative jumps [time], but for echoes by the feedback: steps end at those in
+    /// (0, T), T the end time the generator was made for. values() may be on either side at them; so also at 0, T if
+    /// they are listed, as they should be if m jumps there (breaks.h).
     virtual std::vector<double>
     breaks_in_time() const
     {

@@ -25,9 +25,9 @@ namespace crawler
   std::vector<double>
   distinct_breaks_in_space(std::vector<double> places, double length);
 
-  /// Adds to the @p places of jumps and kinks of the stretch those where a feedback that sees the stretch elsewhere has
-  /// them in turn: those from which it, or an end of its sensor, meets one, those from which it meets these, and so on,
-  /// and those from which it meets an end of the body [length].
+  /// Adds to the @p places of jumps and kinks of the stretch their echoes, where a feedback that sees the stretch
+  /// elsewhere has them in turn: where it, or an end of its sensor, meets one of them or an end of the body, where a
+  /// point meets these, and so on [length].
   std::vector<double>
   with_echoes(std::vector<double> places, const StretchFeedback::Facts &facts, double length);
 

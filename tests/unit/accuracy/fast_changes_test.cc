@@ -82,6 +82,16 @@ TEST(StressScales, KnowWhatIsSmooth)
     EXPECT_FALSE(stress_scales(formula(text)).is_smooth) << text;
 }
 
+/// Breaks are those of the whole scene: profiles and echoes by a feedback have cells, too.
+TEST(StressScales, CountAllBreaks)
+{
+  const Scene scene =
+    test::parameters_with(test::set("Body/Friction profile = s < 0.9 ? 1 : 2; strain feedback; Distance = 0.3; "
+                                    "Active stress = 0.1*(w_near-1)"))
+      .create_scene();
+  EXPECT_EQ(stress_scales(scene).in_space, 6u); // 0.9, 0.6, 0.3; 0.7, 0.4, 0.1
+}
+
 /// Jumps of a formula are ends of steps and not fast; what is between two of them is seen, however short it is.
 TEST(FastChanges, OfJumpsAreNone)
 {

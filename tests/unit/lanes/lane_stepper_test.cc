@@ -151,7 +151,7 @@ TEST(LaneStepper, GeneralBodiesAreThoseOfPetsc)
   EXPECT_EQ(n_batches, 48u);
 }
 
-/// After the step at which it is told to, on both engines.
+/// A run stops after the step at which it is told to, on both engines.
 TEST(LaneStepper, ARunStopsAtOnce)
 {
   const LaneRun run(

@@ -4,6 +4,7 @@
 #include "../../support/with_breaks.h"
 
 #include <crawler/scene/active_stress/expression.h>
+#include <crawler/scene/active_stress/strain_feedback.h>
 #include <crawler/scene/profile.h>
 #include <crawler/scene/scene.h>
 
@@ -28,22 +29,25 @@ TEST(Breaks, AreSortedDistinctAndInside)
   EXPECT_TRUE(TimeSegments(*with({}, {}), 4.).breaks().empty());
 }
 
-/// A feedback shows jumps, and the ends of the body, again.
+/// Echoes of jumps, and of the ends of the body, where a feedback sees them.
 TEST(Breaks, HaveEchoes)
 {
-  using List        = std::vector<double>;
-  const auto places = [](const List &jumps, const StretchFeedback::Facts &facts) {
-    return distinct_breaks_in_space(with_echoes(jumps, facts, 1.), 1.);
-  };
-  const auto expect = [&](const List &found, const List &wanted) {
-    ASSERT_EQ(found.size(), wanted.size());
-    for (std::size_t i = 0; i < wanted.size(); ++i)
-      EXPECT_NEAR(found[i], wanted[i], 1e-14);
-  };
-  expect(places({0.9}, {.distance = 0.4}), {0.1, 0.2, 0.5, 0.6, 0.9});
-  expect(places({0.1}, {.distance = -0.4}), {0.1, 0.4, 0.5, 0.8, 0.9});
-  expect(places({0.8}, {.distance = 0.1, .sensor_length = 0.4}), {0.1, 0.2, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9});
-  EXPECT_EQ(places({0.9}, {.distance = 0.01}).size(), 21u); // not at the ends: there they would be as small
+  const auto expect =
+    [](const double jump, const StrainFeedbackParameters &parameters, const std::vector<double> &all) {
+      Scene scene;
+      scene.body.length   = 2.;
+      scene.active_stress = std::make_unique<StrainFeedback>(parameters, 2., 1.);
+      test::expect_near(scene.breaks_in_space(), all, 1e-14, test::text(jump));
+    };
+  expect(1.8, {.active_stress = "(s<1.8)+w_near", .distance = 0.8}, {0.2, 0.4, 1., 1.2, 1.8});
+  expect(0.2, {.active_stress = "(s<0.2)+w_near", .distance = -0.8}, {0.2, 0.8, 1., 1.6, 1.8});
+  const StrainFeedbackParameters sensor = {.active_stress = "(s<1.6)+w_near", .distance = 0.2, .sensor_length = 0.8};
+  expect(1.6, sensor, {0.2, 0.4, 0.8, 1., 1.4, 1.6});
+  // Short distances and sensors do not make tiny cells; a short sensor is a point.
+  expect(1.8, {.active_stress = "(s<1.8)+w_near", .distance = 1e-3}, {1.8});
+  expect(1.2, {.active_stress = "(s<1.2)+w_near", .distance = 0.8, .sensor_length = 1e-5}, {0.4, 1.2});
+  const StrainFeedback delayed({.active_stress = "(t<0.3)+w_delayed", .delay = 0.4}, 2., 1.);
+  test::expect_near(TimeSegments(delayed, 1.).breaks(), {0.3, 0.4, 0.7, 0.8}, 1e-14);
 }
 
 /// Within a piece no time of another is used, and none at its ends; without breaks times are what they are.
