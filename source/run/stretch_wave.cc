@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 namespace crawler
@@ -110,77 +111,48 @@ namespace crawler
       return value;
     }
 
-    Complex
-    weighted_sum(const std::vector<Complex> &x, const std::vector<double> &weights)
-    {
-      Complex sum;
-      for (std::size_t i = 0; i < x.size(); ++i)
-        for (unsigned int n = 0; n < n_harmonics; ++n)
-        {
-          sum.re[n] += weights[i] * x[i].re[n];
-          sum.im[n] += weights[i] * x[i].im[n];
-        }
-      return sum;
-    }
-
     /// Number of waves of the largest S, to a sixteenth, among those that the pieces distinguish: each harmonic gives
     /// |int E_n e^(iks) ds|^2 as a table over k.
     double
     search(const Pieces &E)
     {
-      const std::size_t half = E.size() / 2, n_table = steps_per_wave * half + 1;
-      // Folding the body about its middle: cosines see the even part, sines the odd one; both directions are one.
-      std::vector<Complex> even(half), odd(half);
-      std::vector<double> cosines(half, 1.), sines(half, 0.);
-      std::vector<std::array<double, 2>> step(half);
-      for (std::size_t i = 0; i < half; ++i)
+      constexpr int finer = search_steps_per_wave / steps_per_wave;
+      const int half      = static_cast<int>(steps_per_wave * E.size()) / 2;
+      std::vector<Harmonics> power;
+      for (int j = -half; j <= half; ++j)
       {
-        const std::size_t left = half - 1 - i, right = half + i;
+        const auto step = std::polar(1., std::numbers::pi * j / half);
+        std::complex<double> turn(1.);
+        Complex f;
+        for (const Complex &piece : E)
+        {
+          for (unsigned int n = 0; n < n_harmonics; ++n)
+          {
+            f.re[n] += piece.re[n] * turn.real() - piece.im[n] * turn.imag();
+            f.im[n] += piece.re[n] * turn.imag() + piece.im[n] * turn.real();
+          }
+          turn *= step;
+        }
+        auto &here = power.emplace_back();
         for (unsigned int n = 0; n < n_harmonics; ++n)
-        {
-          even[i].re[n] = E[right].re[n] + E[left].re[n];
-          even[i].im[n] = E[right].im[n] + E[left].im[n];
-          odd[i].re[n]  = E[right].re[n] - E[left].re[n];
-          odd[i].im[n]  = E[right].im[n] - E[left].im[n];
-        }
-        const double angle =
-          2. * std::numbers::pi / steps_per_wave * (static_cast<double>(i) + 0.5) / static_cast<double>(E.size());
-        step[i] = {{std::cos(angle), std::sin(angle)}};
+          here[n] = square(f.re[n]) + square(f.im[n]);
       }
-      std::vector<std::array<Harmonics, 2>> power(n_table); // in both directions
-      for (auto &here : power)
-      {
-        const Complex a = weighted_sum(even, cosines), b = weighted_sum(odd, sines);
-        for (std::size_t i = 0; i < half; ++i)
-        {
-          const double c = cosines[i], s = sines[i];
-          cosines[i] = c * step[i][0] - s * step[i][1];
-          sines[i]   = s * step[i][0] + c * step[i][1];
-        }
-        for (unsigned int n = 0; n < n_harmonics; ++n)
-        {
-          here[0][n] = square(a.re[n] - b.im[n]) + square(a.im[n] + b.re[n]);
-          here[1][n] = square(a.re[n] + b.im[n]) + square(a.im[n] - b.re[n]);
-        }
-      }
-      constexpr unsigned int finer = search_steps_per_wave / steps_per_wave;
       double largest = -1., best = 0.;
-      for (const unsigned int direction : {0, 1})
-        for (std::size_t j = 0; j < finer * (n_table - 1); ++j)
+      for (int j = -finer * half; j <= finer * half; ++j)
+      {
+        double S = 0.;
+        for (int n = 1; n <= static_cast<int>(n_harmonics) && n * std::abs(j) < finer * half; ++n)
         {
-          double S = 0.;
-          for (std::size_t n = 1; n <= n_harmonics && n * j < finer * (n_table - 1); ++n)
-          {
-            const std::size_t m = n * j / finer;
-            const double part   = static_cast<double>(n * j % finer) / finer;
-            S += (1. - part) * power[m][direction][n - 1] + part * power[m + 1][direction][n - 1];
-          }
-          if (S > largest)
-          {
-            largest = S;
-            best    = (direction == 0 ? 1. : -1.) * static_cast<double>(j) / search_steps_per_wave;
-          }
+          const int place = finer * half + n * j, m = place / finer;
+          const double part = static_cast<double>(place % finer) / finer;
+          S += (1. - part) * power[m][n - 1] + part * power[m + 1][n - 1];
         }
+        if (S > largest)
+        {
+          largest = S;
+          best    = static_cast<double>(j) / search_steps_per_wave;
+        }
+      }
       return best;
     }
 
