@@ -296,7 +296,7 @@ class Files(unittest.TestCase):
                 (longer.replace("m;", "strain;", 1).replace("\n1;0;0", "\n-5;0;0"), "a strain above -1", {}),
                 (longer, 'has the column m, but "--quantity" is strain', {"quantity": "strain"}),
                 (WIDE + "#DIV/0!;1;2;3;4\n", 'row 6 of ".*" has "#DIV/0!" under t', {}),
-                (WIDE + "4;1\n", "row 6 .* has 2 cells, but 5 are expected, as in most", {}),
+                (WIDE + "4;1\n", "row 6 .* has 2 cells, but 5 are expected, as in most", {}), (WIDE + "end\n", "row 6 .* has 1 cells, but 5 are", {}),
                 (longer.replace("\n1;0;0", "\n1_0;0;0"), '"1_0" under', {}), (WIDE, "NAME=COLUMN", {"columns": "q=t"}),
                 ("t,y1,y2,y3,y4\n" + "".join(f"{j},1,2,3,4\n" for j in range(5)), "but no x", {}), (WIDE, 'the column "q"', {"columns": "t=q"}),
                 ("t,x1,x2,x3,x4\n" + "".join(f"{j},1,2,3,4\n" for j in range(5)), '"--columns" has "x=x1", but', {"columns": "t=t, x=x1"}),

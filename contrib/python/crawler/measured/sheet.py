@@ -4,6 +4,7 @@ import csv
 import dataclasses
 import datetime
 import re
+import statistics
 
 import numpy as np
 
@@ -216,7 +217,8 @@ def read_sheet(data, name, decimal=""):
             comment = shown.lstrip("#%/ ")
     if not lines:
         raise InputError(f'"{name}" is empty, but a table of numbers is expected')
-    separator = forced or separator_of(lines[-1][1])
+    tail = lines[-min(20, max(1, len(lines) // 2)):]  # one of them may be cut off, or a remark
+    separator = forced or statistics.mode(separator_of(line) for _, line in tail)
     rows = [(number, cells_of(line, separator)) for number, line in lines]
     widths = [len(cells) for _, cells in rows]
     width = max(widths[::-1], key=widths.count)  # a title, or a last row that was cut off, has another one
