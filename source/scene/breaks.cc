@@ -43,18 +43,16 @@ namespace crawler
   std::vector<double>
   with_echoes(std::vector<double> places, const StretchFeedback::Facts &facts, const double length)
   {
-    // Distances, as parts of the body, and numbers beyond which more places would not be worth their cells. A sensor
-    // that is shorter is a point; the echoes of others are smoother, and theirs are left out.
+    // Distances, as parts of the body, below which places would not be worth their cells, and numbers of echoes. A
+    // sensor below the second distance is a point; the echoes by others are smoother, and have none.
     constexpr double shortest = 1e-3, shortest_from_ends = 0.05;
-    constexpr unsigned int of_point = 20;
-    constexpr std::size_t most      = 300;
-    const double d                  = facts.distance,
+    constexpr unsigned int of_point = 20, most = 300;
+    const double d     = facts.distance,
                  half  = facts.sensor_length >= shortest_from_ends * length ? 0.5 * facts.sensor_length : 0.,
                  reach = std::max(std::abs(d), 2. * half) / length;
     if (reach >= shortest_from_ends) // where the feedback, or an end of its sensor, comes to an end of the body
-      for (const double s : within({(d > 0. || half > 0. ? length : 0.) - d - half, half - d}, length))
-        places.push_back(s);
-    std::vector<double> latest = places;
+      places.insert(places.end(), {(d > 0. || half > 0. ? length : 0.) - d - half, half - d});
+    std::vector<double> latest = within(places, length);
     for (unsigned int i = 0; i < (half > 0. ? 1 : of_point) && reach >= shortest; ++i)
     {
       std::vector<double> next;
@@ -92,11 +90,10 @@ namespace crawler
     std::vector<double> breaks = stress.breaks_in_time();
     if (const auto *feedback = stress.feedback(); feedback != nullptr && feedback->facts.delay > 0.)
     {
-      constexpr int most_echoes  = 6; // each is smoother than the one before
-      constexpr std::size_t most = 1000;
-      std::vector<double> heard  = breaks;
+      constexpr unsigned int most_echoes = 6, most = 1000; // each is smoother than the one before
+      std::vector<double> heard = breaks;
       heard.push_back(0.); // the past begins there
-      for (int i = 1; i <= most_echoes && breaks.size() + heard.size() <= most; ++i)
+      for (unsigned int i = 1; i <= most_echoes && breaks.size() + heard.size() <= most; ++i)
         for (const double t : heard)
           if (const double echo = t + i * feedback->facts.delay; echo < end_time)
             breaks.push_back(echo);
