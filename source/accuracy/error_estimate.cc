@@ -44,14 +44,6 @@ namespace crawler
     /// Tolerance of the mesh in the next try.
     constexpr double refined_mesh_tolerance = 0.1;
 
-    /// True if the error is known beforehand: the rule of the numerics does not cover the effect of a point value of
-    /// the stretch, seen from elsewhere.
-    bool
-    is_predicted(const NumericsChoice &choice, const Scene &scene)
-    {
-      return choice.follows_rule() && !scene.feels_elsewhere();
-    }
-
     /// Changes the tolerance by @p factor. The limits of the steps change with it, as the steps of radau 9 do: steps
     /// set by the limits alone have an error, too.
     void
@@ -170,7 +162,7 @@ namespace crawler
                         const Scene &scene,
                         const SimulationResult &result)
   {
-    const bool predicted = is_predicted(choice, scene), is_adaptive = choice.numerics.mesh.tolerance > 0.;
+    const bool predicted = choice.follows_rule(), is_adaptive = choice.numerics.mesh.tolerance > 0.;
     const bool is_by_best = integrator_of(time, choice.numerics) == best_integrator;
     // Kinks move through cells and steps where the friction switches its direction: errors fall by low powers. A
     // displacement of 0 does not tell the error of the works. Inside soft bodies layers are as thin as at their ends.
@@ -227,7 +219,7 @@ namespace crawler
       if (finer->time.status != Status::finished ||
           (finer_mesh != nullptr && finer_mesh->time.status != Status::finished))
         return;
-      const bool predicted = is_predicted(choice, scene);
+      const bool predicted = choice.follows_rule();
       const bool is_graded = choice.numerics.grading.levels > 0, is_adaptive = choice.numerics.mesh.tolerance > 0.;
       const double part = !predicted                                      ? 0.
                           : is_adaptive || (is_graded && choice.is_rough) ? predicted_part_if_irregular
@@ -289,7 +281,7 @@ namespace crawler
     }
     // Failures of the finer run do not affect the answer.
     SimulationResult finer, finer_mesh;
-    const bool predicted = is_predicted(choice, problem.scene);
+    const bool predicted = choice.follows_rule();
     try
     {
       finer = finer_run(problem, choice, result);

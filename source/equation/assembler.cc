@@ -38,20 +38,6 @@ namespace crawler
     return {1. - m[0] / end_moduli_.first, 1. - m[1] / end_moduli_.second};
   }
 
-  std::vector<double>
-  Assembler::stretch_coefficients(const ConstVector y) const
-  {
-    const auto &element  = discretization.element;
-    const unsigned int q = element.degree;
-    std::vector<double> buffer;
-    const auto local = discretization.to_local(displacement(y), buffer);
-    std::vector<double> strain(static_cast<std::size_t>(discretization.n_local_cells()) * q);
-    for (std::size_t c = 0; c < discretization.n_local_cells(); ++c)
-      for (unsigned int p = 0; p < q; ++p)
-        strain[c * q + p] = discretization.slope(local, c, &element.stretch_derivatives[p * element.n]);
-    return strain;
-  }
-
   long
   Assembler::look_at_friction(const std::span<const double> w, const std::span<const double> g)
   {

@@ -120,10 +120,7 @@ namespace crawler
       std::vector<double> others = points;
       for (double &s : others)
         s += feedback->facts.distance;
-      if (feedback->facts.sensor_length > 0.)
-        sensors_.emplace(discretization.cells, discretization.element, others, feedback->facts.sensor_length);
-      else
-        near_places_.emplace(discretization.cells, discretization.element, others);
+      near_places_.emplace(discretization.cells, discretization.element, others, feedback->facts.sensor_length);
       near.resize(points.size());
     }
     delay_ = feedback->facts.delay;
@@ -135,14 +132,14 @@ namespace crawler
   }
 
   void
-  StretchElsewhere::evaluate(const double t, const std::span<const double> own, const StretchHistory *history)
+  StretchElsewhere::evaluate(const double t, const std::span<const double> u, const StretchHistory *history)
   {
     const auto to_stretch = [](std::vector<double> &values) {
       for (double &value : values)
         value += 1.;
     };
-    if (near_places_ || sensors_)
-      near_strain(own, near);
+    if (near_places_)
+      near_strain(u, near);
     to_stretch(near);
     if (delay_ == 0.)
       return;
@@ -159,20 +156,17 @@ namespace crawler
       constexpr std::size_t most = 4;
       if (places_.size() == most)
         places_.erase(places_.begin());
-      places_.emplace_back(step->cells, StretchPlaces(*step->cells, *step->element, points_));
+      places_.emplace_back(step->cells, StrainPlaces(*step->cells, *step->element, points_));
       known = places_.end() - 1;
     }
-    StretchHistory::coefficients(*step, t - delay_, coefficients_);
-    known->second.interpolate(coefficients_, delayed);
+    StretchHistory::displacement(*step, t - delay_, then_);
+    known->second.evaluate(then_, delayed);
     to_stretch(delayed);
   }
 
   void
-  StretchElsewhere::near_strain(const std::span<const double> own, const std::span<double> strain) const
+  StretchElsewhere::near_strain(const std::span<const double> u, const std::span<double> strain) const
   {
-    if (sensors_)
-      sensors_->mean(discretization_.gather(own), strain);
-    else
-      near_places_->interpolate(discretization_.gather(own), strain);
+    near_places_->evaluate(discretization_.gather(u), strain);
   }
 } // namespace crawler

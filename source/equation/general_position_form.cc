@@ -28,7 +28,7 @@ namespace crawler
       if (bad < 0 && !(w_[i] > 0.))
         bad = static_cast<long>(i);
     }
-    elsewhere_.evaluate(t, stretch_coefficients(u), history);
+    elsewhere_.evaluate(t, u, history);
     if (bad >= 0)
       return bad;
     force_.evaluate(t, e_, {w_, rate_, elsewhere_.near, elsewhere_.delayed}, in.m);
@@ -58,7 +58,7 @@ namespace crawler
     const ReferenceElement &element = discretization.element;
     const unsigned int n = element.n, q = element.degree;
     std::vector<double> change(by_near.size()), local(discretization.n_local(), 0.), owned(result.size());
-    elsewhere_.near_strain(stretch_coefficients(x), change);
+    elsewhere_.near_strain(x, change);
     for (std::size_t c = 0; c < discretization.n_local_cells(); ++c)
       for (unsigned int p = 0; p < n; ++p)
         for (unsigned int i = 0; i < n; ++i)

@@ -39,7 +39,7 @@ namespace crawler
       }
       w_[p] = cells.empty() ? 1. + e_[p] : cells[c];
     }
-    elsewhere_.evaluate(t, assembler_.stretch_coefficients(y), assembler_.history);
+    elsewhere_.evaluate(t, assembler_.displacement(y), assembler_.history);
     force.evaluate(t, e_, {w_, rate_, elsewhere_.near, elsewhere_.delayed});
     friction.evaluate(u_, v_, w_);
   }

@@ -7,27 +7,6 @@
 
 namespace crawler
 {
-  StretchPlaces::StretchPlaces(const std::vector<Cell> &cells,
-                               const ReferenceElement &element,
-                               const std::vector<double> &points)
-    : q_(element.degree)
-  {
-    for (const double s : points)
-      places_.push_back(place_in(cells, s));
-    weights_ = interpolation_matrix(element.stretch_points, in_cells(places_));
-  }
-
-  void
-  StretchPlaces::interpolate(const std::span<const double> coefficients, const std::span<double> values) const
-  {
-    for (std::size_t i = 0; i < places_.size(); ++i)
-    {
-      values[i] = 0.;
-      for (unsigned int p = 0; p < q_; ++p)
-        values[i] += weights_[i * q_ + p] * coefficients[places_[i].cell * q_ + p];
-    }
-  }
-
   const std::array<double, 6> &
   StretchHistory::places()
   {
@@ -62,7 +41,7 @@ namespace crawler
         steps_.emplace_back();
       Step &step   = steps_[i];
       bool is_same = latest && step.cells == latest;
-      archive(step.from, step.to, step.coefficients, is_same);
+      archive(step.from, step.to, step.u, is_same);
       if (!is_same)
       {
         std::vector<Cell> cells = step.cells ? *step.cells : std::vector<Cell>();
@@ -71,12 +50,11 @@ namespace crawler
       }
       if (archive.reads())
       {
-        const std::size_t n_cells = latest ? latest->size() : 0,
-                          degree  = n_cells > 0 ? step.coefficients[0].size() / n_cells : 0;
+        const std::size_t n_cells = latest ? latest->size() : 0, degree = n_cells > 0 ? step.u[0].size() / n_cells : 0;
         archive.require(
           degree >= 1 && degree <= ReferenceElement::highest_degree &&
-            std::ranges::all_of(step.coefficients, [&](const auto &list) { return list.size() == n_cells * degree; }),
-          "the stretch of a step");
+            std::ranges::all_of(step.u, [&](const auto &list) { return list.size() == n_cells * degree + 1; }),
+          "the displacement of a step");
         step.cells   = latest;
         step.element = &reference_element(static_cast<unsigned int>(degree));
       }
@@ -102,18 +80,18 @@ namespace crawler
   }
 
   void
-  StretchHistory::coefficients(const Step &step, const double t, std::vector<double> &values)
+  StretchHistory::displacement(const Step &step, const double t, std::vector<double> &u)
   {
     const double x = (t - step.from) / (step.to - step.from);
-    values.assign(step.coefficients[0].size(), 0.);
+    u.assign(step.u[0].size(), 0.);
     for (unsigned int j = 0; j < 6; ++j)
     {
       double weight = 1.;
       for (unsigned int i = 0; i < 6; ++i)
         if (i != j)
           weight *= (x - places()[i]) / (places()[j] - places()[i]);
-      for (std::size_t k = 0; k < values.size(); ++k)
-        values[k] += weight * step.coefficients[j][k];
+      for (std::size_t k = 0; k < u.size(); ++k)
+        u[k] += weight * step.u[j][k];
     }
   }
 } // namespace crawler

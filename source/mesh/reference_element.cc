@@ -60,15 +60,14 @@ namespace crawler
   {
     if (degree < 1 || degree > highest_degree)
       throw std::logic_error("degrees 1 to 8 are compiled");
-    const QuadratureRule lobatto = gauss_lobatto_rule(n), gauss = gauss_rule(n), inner = gauss_rule(degree);
-    nodes           = lobatto.points;
-    node_weights    = lobatto.weights;
-    points          = gauss.points;
-    weights         = gauss.weights;
-    stretch_points  = inner.points;
-    stretch_weights = inner.weights;
-    values          = interpolation_matrix(nodes, points);
-    derivatives     = interpolation_matrix(nodes, points, /*derivative=*/true);
+    const QuadratureRule lobatto = gauss_lobatto_rule(n), gauss = gauss_rule(n);
+    nodes          = lobatto.points;
+    node_weights   = lobatto.weights;
+    points         = gauss.points;
+    weights        = gauss.weights;
+    stretch_points = gauss_rule(degree).points;
+    values         = interpolation_matrix(nodes, points);
+    derivatives    = interpolation_matrix(nodes, points, /*derivative=*/true);
     stiffness.assign(n * n, 0.);
     for (unsigned int p = 0; p < n; ++p)
       for (unsigned int i = 0; i < n; ++i)

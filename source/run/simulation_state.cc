@@ -206,13 +206,13 @@ namespace crawler
       return;
     // Start of the step from the last accepted state: the integrator may know it less well than the states inside.
     StretchHistory::Step record{run_->accepted.time, step.time, past_.cells, &mesh_.discretization->element, {}};
-    for (std::size_t i = 0; i < record.coefficients.size(); ++i)
+    for (std::size_t i = 0; i < record.u.size(); ++i)
     {
-      const double place     = StretchHistory::places()[i];
-      const auto state       = place == 0.  ? std::span<const double>(run_->accepted.y)
-                               : place < 1. ? state_within(record.from + place * (record.to - record.from))
-                                            : y;
-      record.coefficients[i] = mesh_.discretization->gather(mesh_.assembler->stretch_coefficients(state));
+      const double place = StretchHistory::places()[i];
+      const auto state   = place == 0.  ? std::span<const double>(run_->accepted.y)
+                           : place < 1. ? state_within(record.from + place * (record.to - record.from))
+                                        : y;
+      record.u[i]        = mesh_.discretization->gather(mesh_.assembler->displacement(state));
     }
     past_.history.add(std::move(record), step.time - 2. * past_.delay);
   }

@@ -27,9 +27,13 @@ namespace crawler
       for (double &stretch : w)
         stretch *= 1. + change;
       const std::vector<double> rate(points.size(), change / scene.end_time), zero(points.size());
-      Derivatives at = {zero, zero, zero, zero};
-      scene.active_stress->feedback()->at(points)->values(
-        0., {w, rate, w, w}, {at.m, at.by_stretch, at.by_rate, at.by_near});
+      Derivatives at                  = {zero, zero, zero, zero};
+      const StretchFeedback &feedback = *scene.active_stress->feedback();
+      feedback.at(points)->values(0., {w, rate, w, w}, {at.m, at.by_stretch, at.by_rate, at.by_near});
+      // Places beyond the body stand for its end, which then sees itself.
+      for (std::size_t i = 0; feedback.facts.sensor_length == 0. && i < points.size(); ++i)
+        if (std::clamp(points[i] + feedback.facts.distance, 0., scene.body.length) == points[i])
+          at.by_stretch[i] += at.by_near[i];
       return at;
     }
   } // namespace

@@ -62,7 +62,7 @@ def check_errors(folder):
                           (lambda: crawler.run(FILE, fields="yes"), "\"fields\" is 'yes', but True or False or a list"),
                           (lambda: crawler.run(FILE, check="x"), '"check" is'), (lambda: crawler.run(FILE, output=3), '"output" is 3'),
                           (lambda: crawler.batch(3), '"scenes" is 3'), (lambda: crawler.batch("x"), '"scenes" is'), (lambda: crawler.sweep(FILE, [K]), '"axes" is'),
-                          (lambda: crawler.run(FILE, fields=["a"]), "a list of numbers"), (lambda: crawler.run(FILE, fields=[0.5], places=[True]), "a list of numbers"),
+                          (lambda: crawler.run(FILE, fields=["a"]), "a list of numbers"), (lambda: crawler.run(FILE, fields=[0.5], places=[True]), "a list of numbers"), (lambda: crawler.run(FILE, fields=[0.5], places=[]), "a list of numbers"),
                           (lambda: crawler.run(FILE, fields=np.array(0.5)), '"fields" is array(0.5)'), (lambda: crawler.sweep(FILE, {3: [1]}), "the entry 3 is set"),
                           (lambda: crawler.sweep(FILE, {K: {1: 2}}), "a number, a text"), (lambda: crawler.to_prm({"Body": 3, "Body/Length": 2}), "is no section"),
                           (lambda: crawler.to_prm({"Body": {"Length": 1}, "Body/Length": 2}), "is set twice"), (lambda: crawler.run(FILE, output=""), '"output" is empty'),

@@ -37,7 +37,7 @@ def numbers_in(values, name):
         array = np.asarray(values)
     except ValueError:
         array = np.array(None)
-    if array.ndim != 1 or (array.size and array.dtype.kind not in "iuf"):
+    if array.ndim != 1 or not array.size or array.dtype.kind not in "iuf":
         raise InputError(f'"{name}" is {values!r}, but a list of numbers is expected')
     return array.astype(float)
 

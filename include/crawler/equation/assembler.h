@@ -118,10 +118,6 @@ namespace crawler
     virtual void
     set_initial_state(Vector y) = 0;
 
-    /// Strain at the stretch points of this rank's cells [cell][q].
-    std::vector<double>
-    stretch_coefficients(ConstVector y) const;
-
     const Scene &scene;
     const Discretization &discretization;
     /// History for a feedback with delay; none: the body was at its initial stretch before.

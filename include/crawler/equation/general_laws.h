@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/equation/strain_places.h>
 #include <crawler/equation/stretch_history.h>
-#include <crawler/equation/stretch_means.h>
 #include <crawler/scene/scene.h>
 
 #include <functional>
@@ -81,25 +81,24 @@ namespace crawler
   public:
     StretchElsewhere(const Scene &scene, const Discretization &discretization, const std::vector<double> &points);
 
-    /// @p own are the coefficients of this rank's cells, as in StretchPlaces.
+    /// @p u is the displacement at this rank's nodes.
     void
-    evaluate(double t, std::span<const double> own, const StretchHistory *history);
+    evaluate(double t, std::span<const double> u, const StretchHistory *history);
 
-    /// Near strain [points] of these coefficients, or the change of it with theirs.
+    /// Near strain [points] of this displacement, or the change of it with a change of that.
     void
-    near_strain(std::span<const double> own, std::span<double> strain) const;
+    near_strain(std::span<const double> u, std::span<double> strain) const;
 
     std::vector<double> near, delayed; ///< stretches; of size 0 if they are not used
 
   private:
     const Discretization &discretization_;
     const std::vector<double> points_;
-    std::optional<StretchPlaces> near_places_;
-    std::optional<StretchMeans> sensors_;
+    std::optional<StrainPlaces> near_places_;
     double delay_ = 0.;
     std::vector<double> at_start_; ///< w(s, 0)
-    std::vector<double> coefficients_;
+    std::vector<double> then_;     ///< displacement at the time t - delay
     /// Points on the meshes of the history that were used last.
-    std::vector<std::pair<std::shared_ptr<const std::vector<Cell>>, StretchPlaces>> places_;
+    std::vector<std::pair<std::shared_ptr<const std::vector<Cell>>, StrainPlaces>> places_;
   };
 } // namespace crawler

@@ -12,31 +12,12 @@
 
 namespace crawler
 {
-  /**
-   * Fixed places of the body on a mesh, where a field is evaluated that has one coefficient at each stretch point of
-   * each cell of the whole mesh [cell][q]: the strain.
-   */
-  class StretchPlaces
-  {
-  public:
-    /// @p points [length] beyond the body stand for its end.
-    StretchPlaces(const std::vector<Cell> &cells, const ReferenceElement &element, const std::vector<double> &points);
-
-    void
-    interpolate(std::span<const double> coefficients, std::span<double> values) const;
-
-  private:
-    unsigned int q_;
-    std::vector<CellPlace> places_;
-    std::vector<double> weights_; ///< [point][q]
-  };
-
-  /// Past stretch of the whole body, from the dense output of the accepted steps; the same on all ranks. Meshes and
-  /// formulations may change from step to step.
+  /// Past displacement of the whole body, from the dense output of the accepted steps; the same on all ranks. Meshes
+  /// and formulations may change from step to step.
   class StretchHistory
   {
   public:
-    /// Places in a step, from 0 to 1, where its stretch is kept: polynomials in between are exact up to degree 5.
+    /// Places in a step, from 0 to 1, where its displacement is kept: polynomials in between are exact up to degree 5.
     static const std::array<double, 6> &
     places();
 
@@ -45,7 +26,7 @@ namespace crawler
       double from = 0., to = 0.; ///< [time]
       std::shared_ptr<const std::vector<Cell>> cells;
       const ReferenceElement *element = nullptr;
-      std::array<std::vector<double>, 6> coefficients; ///< coefficients at the places(), for StretchPlaces
+      std::array<std::vector<double>, 6> u; ///< displacement at the places() [node of the whole mesh]
     };
 
     void
@@ -62,9 +43,9 @@ namespace crawler
     const Step *
     find(double t) const;
 
-    /// Coefficients at the time @p t of a step.
+    /// Displacement @p u at the time @p t of a step.
     static void
-    coefficients(const Step &step, double t, std::vector<double> &values);
+    displacement(const Step &step, double t, std::vector<double> &u);
 
   private:
     std::deque<Step> steps_;

@@ -32,7 +32,6 @@ namespace crawler
     // Gauss points that determine the stretch, a polynomial of degree q - 1.
     std::vector<double> node_weights;        ///< [n] Gauss-Lobatto weights of the nodes
     std::vector<double> stretch_points;      ///< [q] Gauss points of the stretch
-    std::vector<double> stretch_weights;     ///< [q]
     std::vector<double> stretch_derivatives; ///< [q stretch points][n nodes] derivatives of the shape functions
 
     // Samples of the stretch: at the ends of the cell, and at the quadrature points in between.

@@ -179,8 +179,17 @@ TEST(GeneralInput, IsCheckedInOneSentence)
   // Ill-posed: k + dm/dw < 0 without a viscosity, or a negative viscosity, at the initial state.
   const std::string generator = "Active stress/Generator";
   expect_message(feedback("-1.01*(w-1)"), generator, "with respect to w is -1.01, but -k, -1, or more");
+  expect_message(feedback("-1.5*(w_near-1); Distance = 0.2"), // the end sees itself
+                 generator,
+                 "at s = 1, t = 0 the derivative of the active stress with respect to w is -1.5");
   expect_message(feedback("-0.1*w_t"), generator, "with respect to w_t is -0.1, but 0 or a positive number");
-  for (const char *well_posed : {"-0.99*(w-1)", "-2*(w-1)+0.1*w_t", "-2*max(0,w-1)", "-2*(w-1)*t", "-0.1*w_t*abs(w_t)"})
+  for (const char *well_posed : {"-0.99*(w-1)",
+                                 "-2*(w-1)+0.1*w_t",
+                                 "-2*max(0,w-1)",
+                                 "-2*(w-1)*t",
+                                 "-0.1*w_t*abs(w_t)",
+                                 "-0.9*(w_near-1); Distance = -0.2",
+                                 "-1.5*(w_near-1); Sensor length = 0.1"})
     EXPECT_EQ(test::complaint(feedback(well_posed)), "nothing") << well_posed;
   expect_message(test::with(feedback("-0.5*(w-1)"), "Body/Elastic modulus profile = 1-0.6*s"),
                  generator,
