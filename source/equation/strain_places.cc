@@ -32,12 +32,16 @@ namespace crawler
   StrainPlaces::evaluate(const std::span<const double> u, const std::span<double> strain) const
   {
     const std::size_t n_cells = first_nodes_.size() / std::max<std::size_t>(strain.size(), 1); // of a point
-    for (std::size_t i = 0, k = 0; i < strain.size(); ++i)
-    {
-      strain[i] = 0.;
-      for (std::size_t j = i * n_cells; j < (i + 1) * n_cells; ++j)
-        for (unsigned int p = 0; p < n_; ++p)
-          strain[i] += weights_[k++] * u[first_nodes_[j] + p];
-    }
+    for_degree(n_ - 1, [&](const auto degree) {
+      const double *weight = weights_.data();
+      for (std::size_t i = 0; i < strain.size(); ++i)
+      {
+        double sum = 0.;
+        for (std::size_t j = i * n_cells; j < (i + 1) * n_cells; ++j, weight += degree + 1)
+          for (int p = 0; p <= degree; ++p)
+            sum += weight[p] * u[first_nodes_[j] + p];
+        strain[i] = sum;
+      }
+    });
   }
 } // namespace crawler
