@@ -63,8 +63,10 @@ namespace crawler
       return;
     const auto &entries   = entries_with_errors();
     const double relative = result.cycles->bound / size;
+    const double of_works = std::max(relative, result.cycles->work_bound);
     for (std::size_t i = 0; i < result.errors.size(); ++i)
-      result.errors[i] += relative * entries[i]->scale_in(result);
+      result.errors[i] +=
+        (entries[i]->scale == ResultEntry::Scale::exchanged_work ? of_works : relative) * entries[i]->scale_in(result);
     if (!result.gait || result.cycles->extrapolated == 0)
       return;
     const Gait &gait    = *result.gait;

@@ -179,21 +179,28 @@ namespace crawler
     const auto left            = static_cast<double>(n_cycles_ - n);
     const double increment     = ends_[n].displacement - ends_[n - 1].displacement;
     const double before        = ends_[n - 1].displacement - ends_[n - 2].displacement;
-    const double difference    = std::abs(increment - before);
     const double change        = changes_.back().since;
     const double change_before = changes_[changes_.size() - 1 - n_phases].since;
-    if (change_before > 0.)
-      sensitivity_ = std::max(sensitivity_, difference / change_before);
-    constexpr double pi = std::numbers::pi;
-    const double rho    = std::max(decay_of_changes(), std::exp(-pi * pi * decay * wish_.period));
-    if (!(rho < 1.))
-      return;
-    double next = std::max(rho * difference, sensitivity_ * change);
-    if (n >= 3)
-      next = std::min(next, safety * sensitivity_ * change);
+    constexpr double pi        = std::numbers::pi;
+    const double rho           = std::max(decay_of_changes(), std::exp(-pi * pi * decay * wish_.period));
+    // Bound of what is extrapolated, from the @p difference of its last two increments.
+    const auto bound_of = [&](const double difference, double &sensitivity) {
+      if (change_before > 0.)
+        sensitivity = std::max(sensitivity, difference / change_before);
+      const double next = std::max(rho * difference, sensitivity * change);
+      return left * (n >= 3 ? std::min(next, safety * sensitivity * change) : next) / (1. - rho);
+    };
+    const auto of_work = [&](double EnergyBalance::*work) {
+      const auto at = [&](const std::size_t cycle) { return ends_[cycle].energy_balance.*work; };
+      return std::abs(at(n) - 2. * at(n - 1) + at(n - 2));
+    };
     // Increments are differences of displacements, which have round-off.
     const double round_off = 4. * std::numeric_limits<double>::epsilon() * largest_u_;
-    bound_                 = left * (next / (1. - rho) + round_off);
+    bound_                 = bound_of(std::abs(increment - before), sensitivity_) + left * round_off;
+    work_bound_ =
+      bound_of(std::max(of_work(&EnergyBalance::stress_work), of_work(&EnergyBalance::dissipation)), work_sensitivity_);
+    if (!(rho < 1.))
+      return;
 
     const double size        = std::max({std::abs(ends_[n].displacement + left * increment),
                                          displacement_floor * largest_u_,
@@ -217,12 +224,17 @@ namespace crawler
       for (double EnergyBalance::*integral : EnergyBalance::energies())
         if (integral != &EnergyBalance::elastic_energy) // that of the last state
           go_on((*energy_balance).*integral, [&](const End &end) { return end.energy_balance.*integral; });
-    return {wish_.period, static_cast<unsigned int>(n), static_cast<unsigned int>(n_cycles_ - n), bound_};
+    return {wish_.period,
+            static_cast<unsigned int>(n),
+            static_cast<unsigned int>(n_cycles_ - n),
+            bound_,
+            energy_balance ? work_bound_ / energy_balance->exchanged_work : 0.};
   }
 
   void
   CycleStop::exchange(Archive &archive)
   {
-    archive(repeats_, bound_, stretches_, changes_, ends_, largest_u_, least_, sensitivity_);
+    archive(
+      repeats_, bound_, work_bound_, stretches_, changes_, ends_, largest_u_, least_, sensitivity_, work_sensitivity_);
   }
 } // namespace crawler

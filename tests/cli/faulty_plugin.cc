@@ -77,8 +77,24 @@ namespace
       return {};
     }
 
+    std::vector<double>
+    breaks_in_time() const override
+    {
+      return fault_.kind == "break in time" ? std::vector<double>{fault_.t} : std::vector<double>();
+    }
+
+    const crawler::StretchFeedback *
+    feedback() const override
+    {
+      return feedback_.facts.sees_near() || feedback_.facts.delay != 0. ? &feedback_ : nullptr;
+    }
+
   private:
     const Fault fault_;
+    const crawler::StretchFeedback feedback_ = {{.distance      = fault_.kind == "distance" ? fault_.s : 0.,
+                                                 .delay         = fault_.kind == "delay" ? fault_.s : 0.,
+                                                 .sensor_length = fault_.kind == "sensor length" ? fault_.s : 0.},
+                                                {}};
   };
 
   std::unique_ptr<crawler::ActiveStress>

@@ -248,6 +248,15 @@ def check_lacking_python(output):
            and len(table(output)) == summary_of(output)["points"] > 3, f"a Python that lacks something: {result}")
 
 
+def check_refused(output):
+    """Settings that crawler run refuses are not recommended: tolerances of the stretch form have a limit."""
+    study(output, "--set", "Tradeoff/Models=nonlinear", "--set", "Tradeoff/Formulations=stretch", "--set", "Tradeoff/Meshes=uniform",
+          "--set", "Tradeoff/Engines=fused", "--set", "Tradeoff/Integrators=radau 5", "--set", "Tradeoff/Cells=8", "--set",
+          "Tradeoff/Tolerances=0.1, 1e-5")
+    rows = table(output)
+    expect([row["status"] for row in rows] == ["refused", "finished"] and "at most a thousandth" in rows[0]["message"], rows)
+
+
 def check_old_folder(output, whole):
     """The table of another version is refused in a sentence."""
     shutil.copytree(whole, output)
@@ -281,6 +290,7 @@ def main(folder):
     check_stops(folder / "stopped", all_answers[1])
     check_time_limit(folder / "late", all_answers[1])
     check_lacking_python(folder / "lacking")
+    check_refused(folder / "refused")
     check_old_folder(folder / "old", folder / "on-1")
 
 

@@ -20,7 +20,8 @@ namespace crawler
   {
     double period; ///< [time]
     unsigned int computed, extrapolated;
-    double bound; ///< error bound of the displacement for the extrapolation [length]
+    double bound;      ///< error bound of the displacement for the extrapolation [length]
+    double work_bound; ///< that of works, as a part of the exchanged work
   };
 
   /// Request to end a run when its cycles repeat.
@@ -135,13 +136,14 @@ namespace crawler
     bool from_rest_        = false; ///< the first cycle starts with the run
     std::vector<double> end_times_;
     bool repeats_ = false;
-    double bound_ = 0.;
+    double bound_ = 0., work_bound_ = 0.;
 
     std::deque<std::vector<double>> stretches_; ///< stretches of the pieces, over the last cycle
     std::vector<Change> changes_;               ///< changes of all states
     std::vector<End> ends_;                     ///< the start of the first cycle, and the ends of all
-    double largest_u_   = 0.;                   ///< root mean square over the body, largest over time
-    double least_       = 1.;                   ///< smallest mean stretch of a piece, over time
-    double sensitivity_ = 0.; ///< largest change of the displacement in a cycle over change of the strain at its start
+    double largest_u_ = 0.;                     ///< root mean square over the body, largest over time
+    double least_     = 1.;                     ///< smallest mean stretch of a piece, over time
+    /// Largest change of the displacement in a cycle, and of works, over change of the strain at its start.
+    double sensitivity_ = 0., work_sensitivity_ = 0.;
   };
 } // namespace crawler

@@ -315,13 +315,24 @@ namespace crawler
           if (!(gait->from >= 0. && std::isfinite(gait->from)))
             refuse(fmt::format("says that it repeats from {} on; a number of at least 0 is expected", gait->from));
         }
-        const auto require_inside = [&](const std::vector<double> &breaks, const char *name, const double end) {
-          for (const double value : breaks)
-            if (!(value > 0. && value < end))
-              refuse(fmt::format("returned {} in {}; a number above 0 and below {:g} is expected", value, name, end));
+        for (const double s : facts_.breaks_in_space)
+          if (!(s > 0. && s < length))
+            refuse(
+              fmt::format("returned {} in breaks_in_space(); a number above 0 and below {:g} is expected", s, length));
+        for (const double t : facts_.breaks_in_time)
+          if (!(t >= 0. && t <= end_time))
+            refuse(fmt::format("returned {} in breaks_in_time(); a number from 0 to {:g} is expected", t, end_time));
+        const auto require = [&](const bool ok, const char *name, const double value, const std::string &expected) {
+          if (!ok)
+            refuse(fmt::format("says in feedback() that the {} is {}; {} is expected", name, value, expected));
         };
-        require_inside(facts_.breaks_in_space, "breaks_in_space()", length);
-        require_inside(facts_.breaks_in_time, "breaks_in_time()", end_time);
+        const StretchFeedback::Facts seen = facts_.feedback ? facts_.feedback->facts : StretchFeedback::Facts();
+        require(std::abs(seen.distance) < length, "distance", seen.distance, fmt::format("less than {:g}", length));
+        require(seen.delay == 0. || seen.delay >= 1e-6 * end_time, "delay", seen.delay, "0 or 1e-6 of the end time");
+        require(seen.sensor_length == 0. || (seen.sensor_length >= 1e-6 * length && seen.sensor_length <= length),
+                "sensor length",
+                seen.sensor_length,
+                fmt::format("0, or 1e-6 to 1 times {:g},", length));
       }
 
       std::string file_;

@@ -284,6 +284,7 @@ namespace crawler
         for (const std::string &one : entries)
           file.add_override(one);
         const Run run{input.scene, Form(file).parameters, setting["engine"] == "batch"};
+        run.parameters.create_scene(); // refuses what `crawler run` refuses
         return measured(run, setting["mesh"] == "adaptive", interrupted);
       }
       catch (const InputError &error)

@@ -115,12 +115,12 @@ namespace crawler
 
     /// Settings of a level without a mesh: one, or several of different Accuracy.
     std::vector<TradeoffSetting>
-    reduced(const Parameters &parameters, const Texts &tolerances, const Scene &scene)
+    reduced(const Parameters &parameters, const Texts &tolerances)
     {
       TradeoffSetting setting{{{"model", word_of(parameters.model)}}, ""};
       try
       {
-        choose_model(parameters, scene);
+        choose_model(parameters, parameters.create_scene());
       }
       catch (const InputError &error)
       {
@@ -178,7 +178,7 @@ namespace crawler
       if (own.model = from_word<Model>(model).value(); own.model == Model::nonlinear)
         ways.push_back({{{"model", model}}, ""});
       else
-        add(reduced(own, lists["tolerance"], scene));
+        add(reduced(own, lists["tolerance"]));
     for (const char *column : {"formulation", "mesh", "engine", "integrator"}) // the last one varies fastest
       ways = combined(ways, column, lists[column]);
     for (TradeoffSetting &way : ways)

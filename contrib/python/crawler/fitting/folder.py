@@ -28,7 +28,7 @@ def require_usable(path, kind, marks, resume, overwrite):
     """Raises InputError if a folder is not free, not that of a fit or comparison (kind), or not to be replaced. marks:
     the file that identifies it, and others written before that one."""
     if path.exists() and not path.is_dir():
-        raise InputError(f'"{path}" is a file, but a folder is expected')
+        raise FileError(f'"{path}" is a file, but a folder is expected')
     names = {file.name for file in path.iterdir()} - {LOCK} if path.exists() else set()
     is_own = any((path / place / marks[0]).exists() for place in (".", *earlier.NAMES)) or names <= {*earlier.NAMES, *marks[1:], *(f"{name}.part" for name in marks)}
     if resume and not is_own:
