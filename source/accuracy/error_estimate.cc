@@ -230,10 +230,6 @@ namespace crawler
       if (finer_mesh != nullptr)
       {
         space = factor * std::abs(finer_mesh->displacement - result.displacement);
-        // Kinks that move with the place where the velocity changes its sign make errors that change their sign from
-        // mesh to mesh: a difference may be small by chance, and so may be that which ended the search.
-        if (scene.ground.direction.is_uneven() && choice.numerics.grading.levels > 0 && choice.follows_rule())
-          space = std::max(*space, graded_change * choice.wanted_error);
         total = *space + factor * std::abs(finer->displacement - finer_mesh->displacement);
       }
       else

@@ -66,7 +66,10 @@ namespace crawler
     const double of_works = std::max(relative, result.cycles->work_bound);
     for (std::size_t i = 0; i < result.errors.size(); ++i)
       result.errors[i] +=
-        (entries[i]->scale == ResultEntry::Scale::exchanged_work ? of_works : relative) * entries[i]->scale_in(result);
+        (entries[i]->scale == ResultEntry::Scale::exchanged_work || entries[i]->scale == ResultEntry::Scale::cost
+           ? of_works
+           : relative) *
+        entries[i]->scale_in(result);
     if (!result.gait || result.cycles->extrapolated == 0)
       return;
     const Gait &gait    = *result.gait;

@@ -13,6 +13,8 @@ namespace crawler
     /// Degrees: the higher one below Accuracy accurate_graded.
     constexpr unsigned int graded_degree = 6, accurate_graded_degree = 8;
     constexpr double accurate_graded = 3e-7;
+    /// Change of the displacement, as a part of the wanted error, below which a refinement was not needed.
+    constexpr double graded_change = 0.25;
     /// Accuracy below which runs are by radau 9, since starts take many steps that are short for any method.
     constexpr double radau_9_accuracy_if_graded = 3e-5;
     /// First tolerances, relative to the wanted error.

@@ -20,7 +20,8 @@ namespace crawler
   GeneralSampler::sample(const double t, const std::span<const double> y, const std::span<const double> v)
   {
     const Discretization &d = assembler_.discretization;
-    const auto u_local      = d.to_local(assembler_.displacement(y), u_local_);
+    const auto u            = assembler_.displacement(y);
+    const auto u_local      = d.to_local(u, u_local_);
     const auto v_local      = d.to_local(v, v_local_);
     const auto cells        = assembler_.stretch(y);
     const unsigned int n = d.element.n, q = d.element.degree;
@@ -39,7 +40,7 @@ namespace crawler
       }
       w_[p] = cells.empty() ? 1. + e_[p] : cells[c];
     }
-    elsewhere_.evaluate(t, assembler_.displacement(y), assembler_.history);
+    elsewhere_.evaluate(t, u, assembler_.history);
     force.evaluate(t, e_, {w_, rate_, elsewhere_.near, elsewhere_.delayed});
     friction.evaluate(u_, v_, w_);
   }

@@ -10,36 +10,41 @@ namespace crawler
                              const std::vector<double> &points,
                              const double sensor_length)
     : n_(element.n)
+    , n_cells_(sensor_length > 0. ? 2 : 1)
   {
-    const double end   = cells.back().left + cells.back().size;
-    const bool is_mean = sensor_length > 0.;
-    const auto add     = [&](const double s, const double factor) {
-      const CellPlace place = place_in(cells, s);
+    const double end = cells.back().left + cells.back().size;
+    const auto add   = [&](const CellPlace place, const bool is_slope, const double factor) {
       first_nodes_.push_back(static_cast<std::size_t>(place.cell) * element.degree);
-      for (const double weight : interpolation_matrix(element.nodes, {place.x}, /*derivative=*/!is_mean))
-        weights_.push_back(weight * factor / (is_mean ? sensor_length : cells[place.cell].size));
+      for (const double weight : interpolation_matrix(element.nodes, {place.x}, is_slope))
+        weights_.push_back(factor * weight);
     };
     for (const double s : points)
-    {
-      const double left = std::max(std::min(s + 0.5 * sensor_length, end) - sensor_length, 0.);
-      add(is_mean ? std::min(left + sensor_length, end) : s, 1.);
-      if (is_mean)
-        add(left, -1.);
-    }
+      if (n_cells_ == 1)
+      {
+        const CellPlace place = place_in(cells, s);
+        add(place, /*is_slope=*/true, 1. / cells[place.cell].size);
+      }
+      else
+      {
+        const double left = std::max(std::min(s + 0.5 * sensor_length, end) - sensor_length, 0.);
+        add(place_in(cells, std::min(left + sensor_length, end)), /*is_slope=*/false, 1. / sensor_length);
+        add(place_in(cells, left), /*is_slope=*/false, -1. / sensor_length);
+      }
   }
 
+  /// The displacement may be many times as large as its differences along a sensor: these have less round-off.
   void
   StrainPlaces::evaluate(const std::span<const double> u, const std::span<double> strain) const
   {
-    const std::size_t n_cells = first_nodes_.size() / std::max<std::size_t>(strain.size(), 1); // of a point
     for_degree(n_ - 1, [&](const auto degree) {
       const double *weight = weights_.data();
       for (std::size_t i = 0; i < strain.size(); ++i)
       {
-        double sum = 0.;
-        for (std::size_t j = i * n_cells; j < (i + 1) * n_cells; ++j, weight += degree + 1)
+        const std::size_t *const first = &first_nodes_[i * n_cells_];
+        double sum                     = 0.;
+        for (std::size_t j = 0; j < n_cells_; ++j, weight += degree + 1)
           for (int p = 0; p <= degree; ++p)
-            sum += weight[p] * u[first_nodes_[j] + p];
+            sum += weight[p] * (u[first[j] + p] - u[first[0]]);
         strain[i] = sum;
       }
     });

@@ -77,7 +77,7 @@ namespace crawler
     std::smatch found;
     // Decimal commas are single commas between digits; neither two arguments of a function nor a list of three or more.
     static const std::regex comma(R"((^|[^\w.,])(\d+),(\d+)(?![\d.,]))"),
-      arguments(R"(\(\d+,\d+\)|(lin|log)space\([^()]*\))");
+      arguments(R"(\(\d+,\d+\)|(lin|log)space\([^,()]*,[^,()]*,[^,()]*\))");
     if (const std::string rest = std::regex_replace(value, arguments, ""); std::regex_search(rest, found, comma))
       return fmt::format("; decimals are written with a point: {}.{}", found.str(2), found.str(3));
     static const std::regex home(R"(^~/.*$|~/[^\s,;:")]*)");

@@ -183,24 +183,28 @@ namespace crawler
     const double change_before = changes_[changes_.size() - 1 - n_phases].since;
     constexpr double pi        = std::numbers::pi;
     const double rho           = std::max(decay_of_changes(), std::exp(-pi * pi * decay * wish_.period));
-    // Bound of what is extrapolated, from the @p difference of its last two increments.
-    const auto bound_of = [&](const double difference, double &sensitivity) {
+    // The @p difference is that of the last two increments.
+    const auto bound = [&](const double difference, Extrapolated &number) {
       if (change_before > 0.)
-        sensitivity = std::max(sensitivity, difference / change_before);
-      const double next = std::max(rho * difference, sensitivity * change);
-      return left * (n >= 3 ? std::min(next, safety * sensitivity * change) : next) / (1. - rho);
+        number.sensitivity = std::max(number.sensitivity, difference / change_before);
+      const double next = std::max(rho * difference, number.sensitivity * change);
+      number.bound      = rho < 1.
+                            ? left * (n >= 3 ? std::min(next, safety * number.sensitivity * change) : next) / (1. - rho)
+                            : HUGE_VAL;
     };
-    const auto of_work = [&](double EnergyBalance::*work) {
+    const auto difference_of = [&](double EnergyBalance::*work) {
       const auto at = [&](const std::size_t cycle) { return ends_[cycle].energy_balance.*work; };
       return std::abs(at(n) - 2. * at(n - 1) + at(n - 2));
     };
-    // Increments are differences of displacements, which have round-off.
-    const double round_off = 4. * std::numeric_limits<double>::epsilon() * largest_u_;
-    bound_                 = bound_of(std::abs(increment - before), sensitivity_) + left * round_off;
-    work_bound_ =
-      bound_of(std::max(of_work(&EnergyBalance::stress_work), of_work(&EnergyBalance::dissipation)), work_sensitivity_);
+    bound(std::abs(increment - before), displacement_);
+    bound(std::max({difference_of(&EnergyBalance::stress_work),
+                    difference_of(&EnergyBalance::dissipation),
+                    difference_of(&EnergyBalance::end_work)}),
+          works_);
     if (!(rho < 1.))
       return;
+    // Increments are differences of displacements, which have round-off.
+    displacement_.bound += left * 4. * std::numeric_limits<double>::epsilon() * largest_u_;
 
     const double size        = std::max({std::abs(ends_[n].displacement + left * increment),
                                          displacement_floor * largest_u_,
@@ -209,8 +213,8 @@ namespace crawler
     const EnergyBalance &now = ends_[n].energy_balance, &then = ends_[n - 1].energy_balance;
     const double stored = left * std::abs(now.elastic_energy - then.elastic_energy);
     const double work   = now.exchanged_work + left * (now.exchanged_work - then.exchanged_work);
-    repeats_ = bound_ <= part * wish_.accuracy * size && relative_change() <= same && drift <= min_part * least_ &&
-               stored <= wish_.accuracy * work;
+    repeats_            = displacement_.bound <= part * wish_.accuracy * size && relative_change() <= same &&
+               drift <= min_part * least_ && stored <= wish_.accuracy * work;
   }
 
   Cycles
@@ -227,14 +231,13 @@ namespace crawler
     return {wish_.period,
             static_cast<unsigned int>(n),
             static_cast<unsigned int>(n_cycles_ - n),
-            bound_,
-            energy_balance ? work_bound_ / energy_balance->exchanged_work : 0.};
+            displacement_.bound,
+            energy_balance && works_.bound > 0. ? works_.bound / energy_balance->exchanged_work : 0.};
   }
 
   void
   CycleStop::exchange(Archive &archive)
   {
-    archive(
-      repeats_, bound_, work_bound_, stretches_, changes_, ends_, largest_u_, least_, sensitivity_, work_sensitivity_);
+    archive(repeats_, displacement_, works_, stretches_, changes_, ends_, largest_u_, least_);
   }
 } // namespace crawler

@@ -30,10 +30,11 @@ namespace crawler
       Derivatives at                  = {zero, zero, zero, zero};
       const StretchFeedback &feedback = *scene.active_stress->feedback();
       feedback.at(points)->values(0., {w, rate, w, w}, {at.m, at.by_stretch, at.by_rate, at.by_near});
-      // Places beyond the body stand for its end, which then sees itself.
-      for (std::size_t i = 0; feedback.facts.sensor_length == 0. && i < points.size(); ++i)
-        if (std::clamp(points[i] + feedback.facts.distance, 0., scene.body.length) == points[i])
-          at.by_stretch[i] += at.by_near[i];
+      if (feedback.facts.distance != 0. && feedback.facts.sensor_length == 0.) // an end sees itself
+      {
+        const std::size_t end = feedback.facts.distance > 0. ? points.size() - 1 : 0;
+        at.by_stretch[end] += at.by_near[end];
+      }
       return at;
     }
   } // namespace
@@ -63,9 +64,10 @@ namespace crawler
       if (all([&](const Derivatives &at) { return at.by_rate[i] == 0. && at.by_stretch[i] < -(1. + round_off) * k; }))
         refuse("Active stress/Generator",
                "the feedback makes the equation ill-posed: at s = {:g}, t = 0 the derivative of "
-               "the active stress with respect to w is {:.4g}, but -k, {:.4g}, or more is "
+               "the active stress with respect to w{} is {:.4g}, but -k, {:.4g}, or more is "
                "expected, or a term with w_t that resists changes of the stretch",
                points[i],
+               around[1].by_near[i] != 0. ? " (and to w_near at an end that sees itself)" : "",
                around[1].by_stretch[i],
                -k);
     }

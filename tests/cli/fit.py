@@ -27,7 +27,7 @@ REFUSED = [
     (["fit_worm.prm", "--set", "Body/Lenght=3"], 2, "Length"), (["fit_worm.prm", "--unit-of-s", "1000"], 2, '"--unit-of-s"'),
     (["fit_worm.prm", "--columns", "x=x1"], 2, '"--columns" has "x=x1"'),
     (["fit_worm.prm", "--unit-of-t", "1000"], 2, "Time/End time"),
-    (["fit_worm.prm", "--output", "fit_worm.prm"], 2, "is a file"), (["fit_worm.prm", "--output", "other", "--overwrite"], 2, "not the folder of a fit"),
+    (["fit_worm.prm", "--output", "fit_worm.prm"], 6, "is a file"), (["fit_worm.prm", "--output", "other", "--overwrite"], 2, "not the folder of a fit"),
     (["fit_worm.prm", "--workers", "0"], 2, "from 1"), (["fit_worm.prm", "--workers", "two"], 2, "whole number"),
     (["fit_worm.prm", "three.prm", "--output", "output-fit_worm"], 2, "not empty"),
     (["fit_worm.prm", "other/fit_worm.prm"], 2, '"fit_worm.prm" and "other/fit_worm.prm" have the same name'),

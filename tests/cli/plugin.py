@@ -179,10 +179,11 @@ with tempfile.TemporaryDirectory() as folder:
     is_refused("period", "kind=period", "its period is -1")
     is_refused("breaks", "kind=breaks", "breaks_in_space(): no breaks here")
     is_refused("time", "kind=break in time, t=-1", "returned -1 in breaks_in_time(); a number from 0 to 1 is expected")
-    done = run("ends", "library", {"File": FAULTY, "Parameters": "kind=break in time, t=1"}, command="check")
-    expect(done.returncode == 0, f"a break at the end is not admitted: {done}")
-    for what, value in (("distance", 5), ("delay", -1), ("sensor length", 3)):
-        is_refused(what, f"kind={what}, s={value}", f"the {what} is {value}; ")
+    for t in (0, 1):
+        done = run("ends", "library", {"File": FAULTY, "Parameters": f"kind=break in time, t={t}"})
+        expect(done.returncode == 0, f"a break at {t} is not admitted: {done}")
+    for what, value, expected in (("distance", -5, "a number between -1 and 1"), ("delay", -1, "at least 1e-06"), ("sensor length", 3, "from 1e-06 to 1")):
+        is_refused(what, f"kind={what}, s={value}", f"the {what.capitalize()} {value}; ", expected)
     is_refused("unknown", "knd=nan", 'does not know the parameter "knd"', '"kind"')
     is_refused("words", "kind", 'found "kind"', "name=value")
     is_refused("twice", "t=1, t=2", '"t"', "a second time")

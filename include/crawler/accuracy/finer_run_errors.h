@@ -35,8 +35,8 @@ namespace crawler
                           double part);
 
   /// Adds what the extrapolation of cycles leaves open, to the errors of a @p result with a displacement of this
-  /// @p size: works have the same relative error as the displacement; the stride is the last computed one, whose
-  /// displacement may change by the bound of the displacement over the number of extrapolated cycles. A cost of
+  /// @p size: works have its relative error, or their own bound if that is larger; the stride is the last computed one,
+  /// whose displacement may change by the bound of the displacement over the number of extrapolated cycles. A cost of
   /// transport that is not known at all then has no error.
   void
   add_errors_of_cycles(SimulationResult &result, double size);

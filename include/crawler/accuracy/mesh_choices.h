@@ -13,9 +13,6 @@
  */
 namespace crawler
 {
-  /// Change of the displacement, as a part of the wanted error, below which a refinement was not needed.
-  inline constexpr double graded_change = 0.25;
-
   /// Constants that several choices have in common. Measured by tests/verification/calibration.cc and
   /// tests/benchmark/setting_search.cc.
   namespace mesh_choice

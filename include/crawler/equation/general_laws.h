@@ -81,7 +81,7 @@ namespace crawler
   public:
     StretchElsewhere(const Scene &scene, const Discretization &discretization, const std::vector<double> &points);
 
-    /// @p u is the displacement at this rank's nodes.
+    /// @p u is the displacement at the nodes that this rank owns.
     void
     evaluate(double t, std::span<const double> u, const StretchHistory *history);
 

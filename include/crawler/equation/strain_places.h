@@ -14,8 +14,8 @@ namespace crawler
   class StrainPlaces
   {
   public:
-    /// @p points and @p sensor_length [length]; 0: no sensors. Points beyond the body stand for its end, and sensors
-    /// that extend beyond it are moved inside.
+    /// @p points and @p sensor_length [length], at most that of the body; 0: no sensors. Points beyond the body stand
+    /// for its end, and sensors that extend beyond it are moved inside.
     StrainPlaces(const std::vector<Cell> &cells,
                  const ReferenceElement &element,
                  const std::vector<double> &points,
@@ -27,7 +27,8 @@ namespace crawler
 
   private:
     unsigned int n_;                       ///< nodes of a cell
-    std::vector<std::size_t> first_nodes_; ///< of one cell for each point, or of two: [point][1 or 2]
-    std::vector<double> weights_;          ///< [point][1 or 2][n]
+    std::size_t n_cells_;                  ///< cells that a point needs: 2 with sensors, else 1
+    std::vector<std::size_t> first_nodes_; ///< [point][cell]
+    std::vector<double> weights_;          ///< [point][cell][node]; those of a point add up to 0
   };
 } // namespace crawler

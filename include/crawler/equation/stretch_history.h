@@ -13,7 +13,7 @@
 namespace crawler
 {
   /// Past displacement of the whole body, from the dense output of the accepted steps; the same on all ranks. Meshes
-  /// and formulations may change from step to step.
+  /// may change from step to step.
   class StretchHistory
   {
   public:

@@ -113,6 +113,13 @@ namespace crawler
       EnergyBalance energy_balance = {};
     };
 
+    /// Number whose increments in the cycles to come are those of the last one.
+    struct Extrapolated
+    {
+      double bound       = 0.; ///< error bound
+      double sensitivity = 0.; ///< largest change of its increment over change of the strain at the start of the cycle
+    };
+
     /// Root mean squares over the body of a state's strain and of its change since a cycle before, and the largest such
     /// change. Those of the first cycle are not known: 0.
     struct Change
@@ -136,14 +143,12 @@ namespace crawler
     bool from_rest_        = false; ///< the first cycle starts with the run
     std::vector<double> end_times_;
     bool repeats_ = false;
-    double bound_ = 0., work_bound_ = 0.;
+    Extrapolated displacement_, works_;
 
     std::deque<std::vector<double>> stretches_; ///< stretches of the pieces, over the last cycle
     std::vector<Change> changes_;               ///< changes of all states
     std::vector<End> ends_;                     ///< the start of the first cycle, and the ends of all
     double largest_u_ = 0.;                     ///< root mean square over the body, largest over time
     double least_     = 1.;                     ///< smallest mean stretch of a piece, over time
-    /// Largest change of the displacement in a cycle, and of works, over change of the strain at its start.
-    double sensitivity_ = 0., work_sensitivity_ = 0.;
   };
 } // namespace crawler

@@ -106,8 +106,9 @@ namespace crawler
   void
   require_computable_stress(const Scene &scene);
 
-  /// Throws InputError if at t = 0 a feedback makes the equation ill-posed: k + dm/dw or dm/dw_t is negative, so that
-  /// the finest scales grow without bound. Feedback that does so only later, or on one side of a kink, is not found.
+  /// Throws InputError if at t = 0 a feedback makes the equation ill-posed: k + dm/dw (at an end that sees itself, with
+  /// dm/dw_near) or dm/dw_t is negative, so that the finest scales grow without bound. Feedback that does so only
+  /// later, or on one side of a kink, is not found.
   void
   require_well_posed_feedback(const Scene &scene);
 

@@ -3,6 +3,7 @@
 #include <crawler/base/nearest_name.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/library.h>
+#include <crawler/scene/active_stress/strain_feedback.h>
 #include <crawler/scene/known_stress.h>
 #include <crawler/scene/stress_plugin.h>
 
@@ -322,17 +323,9 @@ namespace crawler
         for (const double t : facts_.breaks_in_time)
           if (!(t >= 0. && t <= end_time))
             refuse(fmt::format("returned {} in breaks_in_time(); a number from 0 to {:g} is expected", t, end_time));
-        const auto require = [&](const bool ok, const char *name, const double value, const std::string &expected) {
-          if (!ok)
-            refuse(fmt::format("says in feedback() that the {} is {}; {} is expected", name, value, expected));
-        };
-        const StretchFeedback::Facts seen = facts_.feedback ? facts_.feedback->facts : StretchFeedback::Facts();
-        require(std::abs(seen.distance) < length, "distance", seen.distance, fmt::format("less than {:g}", length));
-        require(seen.delay == 0. || seen.delay >= 1e-6 * end_time, "delay", seen.delay, "0 or 1e-6 of the end time");
-        require(seen.sensor_length == 0. || (seen.sensor_length >= 1e-6 * length && seen.sensor_length <= length),
-                "sensor length",
-                seen.sensor_length,
-                fmt::format("0, or 1e-6 to 1 times {:g},", length));
+        if (facts_.feedback)
+          if (const auto bad = bad_fact(facts_.feedback->facts, length, end_time))
+            refuse(fmt::format("has a feedback with the {} {}; {} is expected", bad->name, bad->value, bad->expected));
       }
 
       std::string file_;

@@ -196,6 +196,8 @@ namespace crawler
     std::vector<double> e(n), after(n);
     for (const double t : facts_.breaks_in_time)
     {
+      if (t == 0. || t == scene_.end_time) // the strain has no other side
+        continue;
       at_points->values(t - beside * scene_.end_time, e);
       at_points->values(t + beside * scene_.end_time, after);
       for (unsigned int i = 0; i < n; ++i)

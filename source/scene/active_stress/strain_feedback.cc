@@ -7,6 +7,8 @@
 #include <crawler/scene/active_stress/strain_feedback.h>
 #include <crawler/scene/breaks.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 namespace crawler
@@ -59,41 +61,46 @@ namespace crawler
              "not longer than this.");
   }
 
+  std::optional<BadFact>
+  bad_fact(const StretchFeedback::Facts &facts, const double length, const double end_time)
+  {
+    const auto &[uses_rate, distance, delay, sensor] = facts;
+    if (!(std::abs(distance) < length))
+      return BadFact{"Distance", distance, fmt::format("a number between {:g} and {:g}", -length, length)};
+    if (!(delay == 0. || (delay >= 1e-6 * end_time && std::isfinite(delay))))
+      return BadFact{"Delay", delay, fmt::format("0, or at least {:g},", 1e-6 * end_time)};
+    if (!(sensor == 0. || (sensor >= 1e-6 * length && sensor <= length)))
+      return BadFact{"Sensor length", sensor, fmt::format("0, or a number from {:g} to {:g},", 1e-6 * length, length)};
+    return std::nullopt;
+  }
+
   StrainFeedback::StrainFeedback(const StrainFeedbackParameters &parameters, const double length, const double end_time)
   {
-    const FormulaInput input = {"active stress",
-                                parameters.active_stress,
-                                parameters.constants,
-                                formula_entry,
-                                strain_feedback_section + "Constants",
-                                names};
-    const auto formula       = read_formula(input, length, end_time);
-    const double sensor      = parameters.sensor_length;
-    if (formula->uses(w_near) && !(sensor == 0. || (sensor >= 1e-6 * length && sensor <= length)))
-      refuse(strain_feedback_section + "Sensor length",
-             "the formula uses w_near and Sensor length is {:g}, but 0, or a number from 1e-6 L to "
-             "L, L = {:g}, is expected",
-             sensor,
-             length);
-    if (formula->uses(w_near) &&
-        !((parameters.distance != 0. || sensor > 0.) && std::abs(parameters.distance) < length))
-      refuse(strain_feedback_section + "Distance",
-             "the formula uses w_near and Distance is {:g}, but a number other than 0 between -L "
-             "and L, L = {:g}, or a Sensor length, is expected",
-             parameters.distance,
-             length);
-    if (formula->uses(w_delayed) && !(parameters.delay >= 1e-6 * end_time))
-      refuse(strain_feedback_section + "Delay",
-             "the formula uses w_delayed and Delay is {:g}, but at least 1e-6 of the End time, {:g}, "
-             "is expected",
-             parameters.delay,
-             end_time);
+    const FormulaInput input           = {"active stress",
+                                          parameters.active_stress,
+                                          parameters.constants,
+                                          formula_entry,
+                                          strain_feedback_section + "Constants",
+                                          names};
+    const auto formula                 = read_formula(input, length, end_time);
     const StretchFeedback::Facts facts = {.uses_rate     = formula->uses(w_t),
                                           .distance      = formula->uses(w_near) ? parameters.distance : 0.,
                                           .delay         = formula->uses(w_delayed) ? parameters.delay : 0.,
-                                          .sensor_length = formula->uses(w_near) ? sensor : 0.};
-    const FormulaBreaks breaks         = formula_breaks(formula, length, end_time);
-    facts_.feedback                    = StretchFeedback{
+                                          .sensor_length = formula->uses(w_near) ? parameters.sensor_length : 0.};
+    std::optional<BadFact> bad         = bad_fact(facts, length, end_time);
+    if (formula->uses(w_near) && !facts.sees_near())
+      bad = {"Distance", 0., "a number other than 0, or a Sensor length,"};
+    if (formula->uses(w_delayed) && facts.delay == 0.)
+      bad = {"Delay", 0., fmt::format("at least 1e-6 of the End time, {:g},", end_time)};
+    if (bad)
+      refuse(strain_feedback_section + bad->name,
+             "the formula uses {} and {} is {:g}, but {} is expected",
+             bad->name == "Delay" ? "w_delayed" : "w_near",
+             bad->name,
+             bad->value,
+             bad->expected);
+    const FormulaBreaks breaks = formula_breaks(formula, length, end_time);
+    facts_.feedback            = StretchFeedback{
       facts,
       [formula, ends = breaks.in_space.value_or(std::vector<double>()), length](const std::vector<double> &points) {
         return formula_feedback(formula, off_breaks_at_ends(points, ends, length));

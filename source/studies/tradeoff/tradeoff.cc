@@ -283,8 +283,9 @@ namespace crawler
         ParameterFile file = input.file;
         for (const std::string &one : entries)
           file.add_override(one);
-        const Run run{input.scene, Form(file).parameters, setting["engine"] == "batch"};
-        run.parameters.create_scene(); // refuses what `crawler run` refuses
+        const Parameters parameters = Form(file).parameters;
+        const Scene scene           = parameters.create_scene(); // refuses what `crawler run` refuses
+        const Run run{scene, parameters, setting["engine"] == "batch"};
         return measured(run, setting["mesh"] == "adaptive", interrupted);
       }
       catch (const InputError &error)

@@ -181,7 +181,8 @@ TEST(GeneralInput, IsCheckedInOneSentence)
   expect_message(feedback("-1.01*(w-1)"), generator, "with respect to w is -1.01, but -k, -1, or more");
   expect_message(feedback("-1.5*(w_near-1); Distance = 0.2"), // the end sees itself
                  generator,
-                 "at s = 1, t = 0 the derivative of the active stress with respect to w is -1.5");
+                 "at s = 1, t = 0 the derivative of the active stress with respect to w (and to w_near at an "
+                 "end that sees itself) is -1.5");
   expect_message(feedback("-0.1*w_t"), generator, "with respect to w_t is -0.1, but 0 or a positive number");
   for (const char *well_posed : {"-0.99*(w-1)",
                                  "-2*(w-1)+0.1*w_t",
@@ -198,7 +199,7 @@ TEST(GeneralInput, IsCheckedInOneSentence)
   expect_message(test::with(feedback("-0.6*(w-1)^2"), "Body/Initial stretch = 2"),
                  generator,
                  "with respect to w is -1.2, but -k, -1");
-  expect_message(feedback("w_near; Sensor length = 1.5"), section + "Sensor length", "from 1e-6 L to L");
-  expect_message(feedback("w_near; Sensor length = 1e-9"), section + "Sensor length", "from 1e-6 L to L");
+  expect_message(feedback("w_near; Sensor length = 1.5"), section + "Sensor length", "from 1e-06 to 1");
+  expect_message(feedback("w_near; Sensor length = 1e-9"), section + "Sensor length", "from 1e-06 to 1");
   EXPECT_EQ(test::complaint(feedback("w_near; Sensor length = 0.3")), "nothing");
 }

@@ -3,6 +3,7 @@
 
 #include <crawler/scene/known_stress.h>
 
+#include <optional>
 #include <string>
 
 namespace crawler
@@ -21,6 +22,18 @@ namespace crawler
     void
     add_parameters(Declarations &declarations);
   };
+
+  /// Fact of a feedback that is not admitted, by the name of its entry.
+  struct BadFact
+  {
+    std::string name;
+    double value;
+    std::string expected;
+  };
+
+  /// First fact that is not admitted for a body of this @p length [length] and this @p end_time [time].
+  std::optional<BadFact>
+  bad_fact(const StretchFeedback::Facts &facts, double length, double end_time);
 
   /**
    * An active stress that responds to the stretch (proprioception): a formula m(s, t, w, w_t, w_near, w_delayed) of the
