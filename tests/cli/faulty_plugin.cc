@@ -103,7 +103,7 @@ namespace
     const Fault fault{
       input.parameters.text("kind", ""), input.parameters.number("s", 0.), input.parameters.number("t", 0.)};
     if (fault.kind == "factory")
-      throw std::runtime_error("this body is too short");
+      throw std::runtime_error("this body\nis too short");
     return fault.kind == "nothing" ? nullptr : std::make_unique<Faulty>(fault);
   }
 } // namespace

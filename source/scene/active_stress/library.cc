@@ -24,7 +24,7 @@ namespace crawler
     const std::string file_entry       = "Active stress/Library/File";
     const std::string parameters_entry = "Active stress/Library/Parameters";
 
-    /// Runs code of the user; returns what it threw, or nothing.
+    /// Runs code of the user; returns what it threw, in one line, or nothing.
     template <typename Function>
     std::optional<std::string>
     thrown_by(const Function &function)
@@ -36,7 +36,9 @@ namespace crawler
       }
       catch (const std::exception &error)
       {
-        return error.what();
+        std::string words = error.what();
+        std::ranges::replace(words, '\n', ' ');
+        return words;
       }
       catch (...)
       {
