@@ -183,6 +183,11 @@ namespace crawler
     // Adaptive meshes of two tolerances may have the same cells where they matter; halved cells differ.
     if (is_adaptive && !predicted)
       n.n_cells *= 2;
+    if (is_adaptive && scene.feels_elsewhere()) // the mesh does not follow the effect of places that are seen
+    {
+      n.mesh.tolerance = 0.;
+      n.n_cells        = static_cast<unsigned int>(more_cells_without_rule) * result.mesh.most_cells + 1;
+    }
     if (n.grading.levels == 0)
       n.initial_step = std::max(n.initial_step, first_step * scene.end_time);
     // Layers that neither mesh resolves would be missed by the difference.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/finer_run_errors.h>
 #include <crawler/run/result_table.h>
+#include <crawler/run/sudden_changes.h>
+#include <crawler/scene/breaks.h>
 
 #include <algorithm>
 #include <cmath>
@@ -103,7 +105,25 @@ namespace crawler
       extend("gait.displacement", round_off);
       extend("gait.speed", round_off / result.gait->period);
     }
-    if (!result.gait_efficiency || result.errors.empty())
+    if (result.errors.empty())
+      return;
+    // Polynomials overshoot in thin layers, on both meshes alike; with feedback no other stretch is known there.
+    if (scene.active_stress->feedback() != nullptr)
+    {
+      std::vector<double> starts = TimeSegments(*scene.active_stress, scene.end_time).breaks();
+      starts.push_back(0.);
+      const auto is_in_layer = [&](const Extreme &extreme) {
+        return std::ranges::any_of(starts, [&](const double start) {
+          const double since = extreme.t / scene.end_time - start;
+          return since > 0. && since <= SuddenChanges::longest;
+        });
+      };
+      if (is_in_layer(result.min_stretch))
+        set_error_bound(result, "min_stretch.value", HUGE_VAL);
+      if (is_in_layer(result.max_stretch))
+        set_error_bound(result, "max_stretch.value", HUGE_VAL);
+    }
+    if (!result.gait_efficiency)
       return;
     const Extreme &low = result.min_stretch, &high = result.max_stretch;
     const auto bound_of   = [&](const char *key) { return error_bound(result, key).value_or(HUGE_VAL); };

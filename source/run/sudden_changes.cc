@@ -13,9 +13,8 @@ namespace crawler
     constexpr double beside = 1e-9;
     /// Change of the stretch below which it is not sudden, and its overshoot is small.
     constexpr double sudden = 1e-5;
-    /// Part of a cell that a layer of thickness sqrt(4 D t) must fill to show, and the part of the duration up to which
-    /// layers are thin at most.
-    constexpr double seen = 1., longest = 1e-3;
+    /// Part of a cell that a layer of thickness sqrt(4 D t) must fill to show.
+    constexpr double seen = 1.;
   } // namespace
 
   SuddenChanges::SuddenChanges(const Scene &scene, const Units &units, const double smallest_cell)

@@ -61,6 +61,19 @@ TEST(SuddenStretch, InitialStretch)
                      0.03);
 }
 
+/// With feedback nothing better than the polynomials is known: no bound in layers (the true minimum is 0.7), but later.
+TEST(SuddenStretch, HasNoBoundWithFeedback)
+{
+  const auto bound_with = [](const char *stress) {
+    const auto result = answer_to(
+      test::set("Accuracy = 1e-4; k = 0.1; p = 0; T = 1; strain feedback; Active stress = {}+0.02*(w-1)", stress));
+    EXPECT_EQ(result.time.status, Status::finished);
+    return error_bound(result, "min_stretch.value");
+  };
+  EXPECT_FALSE(bound_with("(t>0.3 ? 0.03 : 0)"));
+  EXPECT_TRUE(bound_with("0.03*sin(2*pi*t)*sin(pi*s)"));
+}
+
 /// The true ones are those of a sine series of 3000 terms for v: at each switch m, and v with it, jumps, and at a jump
 /// in space v is then the mean of both sides.
 TEST(SuddenStretch, RobotsWithoutAnchoring)

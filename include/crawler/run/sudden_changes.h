@@ -22,6 +22,9 @@ namespace crawler
   class SuddenChanges
   {
   public:
+    /// Part of the duration up to which layers are thin at most.
+    static constexpr double longest = 1e-3;
+
     /// @p scene is in the @p units of the user and must outlive this; @p smallest_cell in natural units.
     SuddenChanges(const Scene &scene, const Units &units, double smallest_cell);
 
