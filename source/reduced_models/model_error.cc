@@ -16,6 +16,9 @@ namespace crawler
     constexpr double safety = 3.;
     /// Share of the error for the grid.
     constexpr double grid_share = 0.3;
+    /// Strain at the start over the largest one up to which the body starts at rest: the layers that a sudden start
+    /// makes are no part of the motion.
+    constexpr double at_rest = 1e-8;
     /// Ratio of the last change to the largest one beyond which the corrections are not trusted.
     constexpr double slowest_decay = 0.7;
 
@@ -230,6 +233,16 @@ namespace crawler
       return -a * sum / static_cast<double>(n_t);
     }
 
+    /// Largest of the first @p n magnitudes.
+    double
+    largest(const std::vector<double> &values, const std::size_t n)
+    {
+      double result = 0.;
+      for (std::size_t i = 0; i < n; ++i)
+        result = std::max(result, std::abs(values[i]));
+      return result;
+    }
+
     ModelErrors
     estimate(const Motion &motion, const Scene &scene)
     {
@@ -249,7 +262,8 @@ namespace crawler
       ModelErrors errors;
       errors.displacement = D.back();
       errors.changes      = change;
-      errors.known        = last <= slowest_decay * *std::max_element(change.begin(), change.end() - 1);
+      errors.known        = last <= slowest_decay * *std::max_element(change.begin(), change.end() - 1) &&
+                     largest(motion.e, motion.n_s) <= at_rest * largest(motion.e, motion.e.size());
       const double series = second_order_displacement(motion, scene.body.friction_exponent());
       errors.kinematic    = (1. + grid_share) * std::abs(D.back() - D.front()) + rest;
       errors.perturbation = (1. + grid_share) * std::abs(D.back() - series) + rest;

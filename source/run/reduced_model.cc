@@ -106,7 +106,7 @@ namespace crawler
             relative,
             accuracy)
         : fmt::format("the error of the {} model cannot be estimated for this scene, since its corrections do not "
-                      "decrease; Model = auto is needed",
+                      "decrease, or its strain is not 0 at t = 0; Model = auto is needed",
                       word_of(model_));
   }
 
