@@ -50,7 +50,8 @@ namespace crawler
       }
       if (archive.reads())
       {
-        const std::size_t n_cells = latest ? latest->size() : 0, degree = n_cells > 0 ? step.u[0].size() / n_cells : 0;
+        const std::size_t n_cells = latest ? latest->size() : 0,
+                          degree  = n_cells > 0 ? (step.u[0].size() - 1) / n_cells : 0;
         archive.require(
           degree >= 1 && degree <= ReferenceElement::highest_degree &&
             std::ranges::all_of(step.u, [&](const auto &list) { return list.size() == n_cells * degree + 1; }),

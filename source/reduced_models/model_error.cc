@@ -16,9 +16,6 @@ namespace crawler
     constexpr double safety = 3.;
     /// Share of the error for the grid.
     constexpr double grid_share = 0.3;
-    /// Strain at the start over the largest one up to which the body starts at rest: the layers that a sudden start
-    /// makes are no part of the motion.
-    constexpr double at_rest = 1e-8;
     /// Ratio of the last change to the largest one beyond which the corrections are not trusted.
     constexpr double slowest_decay = 0.7;
 
@@ -233,14 +230,18 @@ namespace crawler
       return -a * sum / static_cast<double>(n_t);
     }
 
-    /// Largest of the first @p n magnitudes.
-    double
-    largest(const std::vector<double> &values, const std::size_t n)
+    /// True if there is no strain at t = 0: the layers of a sudden start are no part of the motion.
+    bool
+    starts_at_rest(const Motion &motion)
     {
-      double result = 0.;
-      for (std::size_t i = 0; i < n; ++i)
-        result = std::max(result, std::abs(values[i]));
-      return result;
+      constexpr double round_off = 1e-8; // also of numbers in a table
+      const auto largest         = [&](const std::size_t n) {
+        double result = 0.;
+        for (std::size_t i = 0; i < n; ++i)
+          result = std::max(result, std::abs(motion.e[i]));
+        return result;
+      };
+      return largest(motion.n_s) <= round_off * largest(motion.e.size());
     }
 
     ModelErrors
@@ -262,8 +263,7 @@ namespace crawler
       ModelErrors errors;
       errors.displacement = D.back();
       errors.changes      = change;
-      errors.known        = last <= slowest_decay * *std::max_element(change.begin(), change.end() - 1) &&
-                     largest(motion.e, motion.n_s) <= at_rest * largest(motion.e, motion.e.size());
+      errors.known        = last <= slowest_decay * *std::max_element(change.begin(), change.end() - 1);
       const double series = second_order_displacement(motion, scene.body.friction_exponent());
       errors.kinematic    = (1. + grid_share) * std::abs(D.back() - D.front()) + rest;
       errors.perturbation = (1. + grid_share) * std::abs(D.back() - series) + rest;
@@ -293,7 +293,10 @@ namespace crawler
     ModelErrors last;
     for (std::size_t n = 32; n <= most; n *= 2)
     {
-      const ModelErrors now = estimate(motion_of(strain, n, n), scene);
+      const Motion motion = motion_of(strain, n, n);
+      if (!starts_at_rest(motion))
+        return {};
+      const ModelErrors now = estimate(motion, scene);
       if (last.known && now.known && std::abs(now.kinematic - last.kinematic) <= tolerance * now.kinematic)
         return now;
       last = now;

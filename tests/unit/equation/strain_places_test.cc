@@ -2,6 +2,7 @@
 #include "../../support/test.h"
 
 #include <crawler/equation/strain_places.h>
+#include <crawler/equation/stretch_history.h>
 
 #include <cmath>
 
@@ -51,5 +52,29 @@ TEST(StrainPlaces, MeansOfPolynomials)
       const double mean = (std::pow(right, 3.) - std::pow(left, 3.)) / length;
       EXPECT_NEAR(strain_of(3, {middle}, length).front(), mean, strain_round_off / length)
         << length << " at " << middle;
+    }
+}
+
+/// Also of a body of one cell, whose degree was taken for one more.
+TEST(StretchHistory, IsKeptInACheckpoint)
+{
+  for (const unsigned int n_cells : {1u, 2u, 7u})
+    for (const unsigned int degree : {1u, 6u})
+    {
+      std::vector<Cell> cells;
+      for (unsigned int c = 0; c < n_cells; ++c)
+        cells.push_back({1. * c, 1., 0, false});
+      StretchHistory::Step step{
+        0., 0.5, std::make_shared<const std::vector<Cell>>(cells), &reference_element(degree), {}};
+      for (auto &u : step.u)
+        u.assign(n_cells * degree + 1, 0.25);
+      StretchHistory history, resumed;
+      history.add(step, 0.);
+      Archive read(archived(history));
+      resumed.exchange(read);
+      const StretchHistory::Step *found = resumed.find(0.2);
+      ASSERT_NE(found, nullptr);
+      EXPECT_EQ(found->element, step.element);
+      EXPECT_EQ(found->u, step.u);
     }
 }
