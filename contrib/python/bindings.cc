@@ -316,7 +316,7 @@ namespace crawler
           if (task.error)
             std::rethrow_exception(task.error);
           SimulationResult &result = task.computed.result;
-          result.model             = task.parameters.model;
+          result.process.model     = task.parameters.model;
           if (Form form(inputs[i].file); !inputs[i].sensitivities.empty() && result.time.status == Status::finished)
             find_sensitivities(form, *task.scene, inputs[i].sensitivities, task.computed.choice, result, [&]() {
               return !interrupted();

@@ -177,7 +177,7 @@ namespace crawler
       superconvergence() const
       {
         const std::string &name = integrator_of(time_, choice_.numerics);
-        if (choice_.numerics.mesh.tolerance > 0. || pilots_.last.min_stretch.value < emptied || kinks_move())
+        if (choice_.numerics.mesh.tolerance > 0. || pilots_.last.stretch.min.value < emptied || kinks_move())
           return 1.;
         const double usual = name == "radau 9"   ? radau_9_superconvergence
                              : name == "radau 5" ? radau_5_superconvergence

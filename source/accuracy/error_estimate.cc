@@ -123,7 +123,7 @@ namespace crawler
       // Fused engine for most runs, so that nothing else has to be built. A long one is left to a simulation, which can
       // be stopped and continued.
       constexpr double much_work = 1e8; // unknowns times steps: about a minute
-      const double work          = static_cast<double>(result.mesh.n_unknowns) * result.time.steps;
+      const double work          = static_cast<double>(result.process.mesh.n_unknowns) * result.time.steps;
       if (work < much_work && size_of(ranks) == 1 && batch_method(scene, time, numerics))
       {
         const BatchRun run = {&scene, &time, &numerics};
@@ -186,7 +186,7 @@ namespace crawler
     if (is_adaptive && scene.feels_elsewhere()) // the mesh does not follow the effect of places that are seen
     {
       n.mesh.tolerance = 0.;
-      n.n_cells        = static_cast<unsigned int>(more_cells_without_rule) * result.mesh.most_cells + 1;
+      n.n_cells        = static_cast<unsigned int>(more_cells_without_rule) * result.process.mesh.most_cells + 1;
     }
     if (n.grading.levels == 0)
       n.initial_step = std::max(n.initial_step, first_step * scene.end_time);
@@ -307,7 +307,7 @@ namespace crawler
         result.cycles || size_of(ranks) > 1 ||
         scene.ground.direction.is_uneven() || // moving kinks have no higher orders
         !RecordedRun::is_possible(scene, parameters.time, choice.numerics) ||
-        static_cast<double>(result.time.steps) * result.mesh.most_cells > max_work)
+        static_cast<double>(result.time.steps) * result.process.mesh.most_cells > max_work)
       return false;
     DisplacementError &error = *result.error;
     const double known       = error.total;

@@ -21,7 +21,7 @@ namespace crawler
   std::vector<double>
   number_errors(const SimulationResult &result, const SimulationResult &finer, const double factor, const double part)
   {
-    const double n_points = result.mesh.n_cells * (result.mesh.degree + 1.);
+    const double n_points = result.process.mesh.n_cells * (result.process.mesh.degree + 1.);
     const auto &entries   = entries_with_errors();
     std::vector<double> errors(entries.size());
     for (std::size_t i = 0; i < errors.size(); ++i)
@@ -32,7 +32,7 @@ namespace crawler
                                    : factor * x + part * S;
       // Two meshes may have the same error at the ends of their cells.
       for (const auto &[key, extreme] :
-           {std::pair("min_stretch.value", &result.min_stretch), {"max_stretch.value", &result.max_stretch}})
+           {std::pair("min_stretch.value", &result.stretch.min), {"max_stretch.value", &result.stretch.max}})
         if (entry.key == key)
           errors[i] = std::max(errors[i], extreme->jump);
     }
@@ -118,14 +118,14 @@ namespace crawler
           return since > 0. && since <= SuddenChanges::longest;
         });
       };
-      if (is_in_layer(result.min_stretch))
+      if (is_in_layer(result.stretch.min))
         set_error_bound(result, "min_stretch.value", HUGE_VAL);
-      if (is_in_layer(result.max_stretch))
+      if (is_in_layer(result.stretch.max))
         set_error_bound(result, "max_stretch.value", HUGE_VAL);
     }
     if (!result.gait_efficiency)
       return;
-    const Extreme &low = result.min_stretch, &high = result.max_stretch;
+    const Extreme &low = result.stretch.min, &high = result.stretch.max;
     const auto bound_of   = [&](const char *key) { return error_bound(result, key).value_or(HUGE_VAL); };
     const double from     = low.value + std::max(low.jump, bound_of("min_stretch.value")),
                  to       = high.value - std::max(high.jump, bound_of("max_stretch.value")),

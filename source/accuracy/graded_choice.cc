@@ -193,7 +193,7 @@ namespace crawler
         if (!possible_)
           return false;
         result    = pilots_.run(first_step(numerics), ResolutionWish::size);
-        possible_ = result.time.status == Status::finished && result.min_stretch.value > emptied;
+        possible_ = result.time.status == Status::finished && result.stretch.min.value > emptied;
         return possible_;
       }
 

@@ -227,7 +227,7 @@ namespace crawler
     const double accuracy = pilots.parameters.accuracy;
     n.mesh.tolerance = strain * own.mesh_tolerance.value_or(std::min(accuracy / indicator_factor, tighter * resolved));
     // Method bdf restarts with each mesh, unlike one-step methods; but where the stretch collapses it is faster.
-    if (pilots.parameters.time.step_control == StepControl::adaptive && pilots.last.min_stretch.value > emptied)
+    if (pilots.parameters.time.step_control == StepControl::adaptive && pilots.last.stretch.min.value > emptied)
       n.integrator = "radau 5";
   }
 

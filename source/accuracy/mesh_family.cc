@@ -81,7 +81,7 @@ namespace crawler
         for (;;)
         {
           const bool good = is_good_in_space();
-          if (good ? is_fine_in_time() : 2 * latest_.mesh.n_cells > max_cells_now() || !is_worth_it())
+          if (good ? is_fine_in_time() : 2 * latest_.process.mesh.n_cells > max_cells_now() || !is_worth_it())
             break;
           if (!good)
             numerics().parts *= 2;
@@ -119,7 +119,7 @@ namespace crawler
       bool
       is_worth_it() const
       {
-        const double work = more_work * latest_.mesh.n_cells * latest_.time.steps;
+        const double work = more_work * latest_.process.mesh.n_cells * latest_.time.steps;
         if (work <= (parameters_.accuracy < accurate ? max_work_if_accurate : max_work))
           return true;
         const bool is_near = has_order() && space_error_ / 4. <= (1. - time_part) * wanted(); // one mesh more
@@ -179,7 +179,7 @@ namespace crawler
       static double
       strain(const SimulationResult &result)
       {
-        return std::max(1. - result.min_stretch.value, result.max_stretch.value - 1.);
+        return std::max(1. - result.stretch.min.value, result.stretch.max.value - 1.);
       }
 
       void
@@ -202,7 +202,7 @@ namespace crawler
       checking(const double tolerance) const
       {
         const double usual = finer_tolerance * tolerance;
-        return latest_.min_stretch.value < empty ? std::min(usual, check_if_empty * scene_.body.length) : usual;
+        return latest_.stretch.min.value < empty ? std::min(usual, check_if_empty * scene_.body.length) : usual;
       }
 
       /// Settles the time tolerance: on the coarsest mesh a tenth of it must make little difference.
@@ -265,7 +265,7 @@ namespace crawler
           time_error_ = std::max(error, std::min(time_error_, time_part * wanted()));
           return true;
         };
-        if (latest_.min_stretch.value >= empty)
+        if (latest_.stretch.min.value >= empty)
         {
           other.tolerance               = numerics().tolerance / finer_tolerance;
           const SimulationResult looser = run(other);
@@ -343,7 +343,7 @@ namespace crawler
         const Body &body    = scene_.body;
         const double stride = scene_.active_stress->period().value_or(scene_.end_time),
                      length = std::sqrt(body.elastic_modulus * stride / body.friction_coefficient) / body.length;
-        const bool is_seen  = now.result.mesh.n_cells * length >= 1.;
+        const bool is_seen  = now.result.process.mesh.n_cells * length >= 1.;
         if (is_seen || !finished(now.result))
           return 0.;
         const double size = std::max(std::abs(now.value), part_of_largest * now.result.size.largest_u);
@@ -355,8 +355,8 @@ namespace crawler
       bool
       end_is_nearly_lost() const
       {
-        const double L = scene_.body.length, s = latest_.min_stretch.s;
-        return latest_.min_stretch.value < 0.1 && (s < 0.02 * L || s > 0.98 * L);
+        const double L = scene_.body.length, s = latest_.stretch.min.s;
+        return latest_.stretch.min.value < 0.1 && (s < 0.02 * L || s > 0.98 * L);
       }
 
       /// Error of the extrapolated value, from the last two changes.
@@ -454,8 +454,10 @@ namespace crawler
       Answer
       end()
       {
-        answer_.choice.explanation += fmt::format(
-          "; {} runs with up to {} cells, tolerance {:.2g}", n_runs_, latest_.mesh.n_cells, numerics().tolerance);
+        answer_.choice.explanation += fmt::format("; {} runs with up to {} cells, tolerance {:.2g}",
+                                                  n_runs_,
+                                                  latest_.process.mesh.n_cells,
+                                                  numerics().tolerance);
         answer_.choice.wanted_error = wanted();
         answer_.result              = latest_;
         SimulationResult &result    = answer_.result;
@@ -497,7 +499,7 @@ namespace crawler
                                               "meshes do not agree on it: more cells or a smaller tolerance are needed",
                                               latest_.inversion->s,
                                               latest_.inversion->t,
-                                              latest_.mesh.n_cells);
+                                              latest_.process.mesh.n_cells);
             result.inversion.reset();
           }
         }

@@ -120,13 +120,13 @@ namespace crawler
         }
         const std::vector<double> weights = weights_at_zero(widths);
         SimulationResult sum              = combined(problem_.scene, results, weights);
-        for (const auto extreme : {&SimulationResult::min_stretch, &SimulationResult::max_stretch})
+        for (const auto extreme : {&SimulationResult::Stretch::min, &SimulationResult::Stretch::max})
         {
           double value = 0.;
           for (std::size_t i = 0; i < results.size(); ++i)
-            value += weights[i] * (results[i]->*extreme).value;
+            value += weights[i] * (results[i]->stretch.*extreme).value;
           if (value > 0.)
-            (sum.*extreme).value = value;
+            (sum.stretch.*extreme).value = value;
         }
         set_efficiencies(problem_.scene, sum);
         sum.error = DisplacementError{.time = 0.};

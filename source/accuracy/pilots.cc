@@ -113,7 +113,7 @@ namespace crawler
   Pilots::stiffness_over_friction() const
   {
     const double a = scene.friction_exponent();
-    return stiffness(scene) / std::max(std::pow(last.min_stretch.value, a), std::pow(last.max_stretch.value, a));
+    return stiffness(scene) / std::max(std::pow(last.stretch.min.value, a), std::pow(last.stretch.max.value, a));
   }
 
   bool
@@ -131,7 +131,7 @@ namespace crawler
     // the position form cannot go on.
     return a < 0. && may_be_stretch_form(*this) && last.time.reason != "inverted_at_end" &&
            (parameters.accuracy >= 1e-7 || !finished()) &&
-           last.min_stretch.value <
+           last.stretch.min.value <
              falling(a > -1. ? emptied_if_it_inverts : emptied, parameters.accuracy, stretch_power);
   }
 

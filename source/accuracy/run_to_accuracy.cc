@@ -153,7 +153,7 @@ namespace crawler
         end_before_inversion(files);
         answer.result = files;
       }
-      answer.result.seconds.output = files.seconds.output;
+      answer.result.process.seconds.output = files.seconds.output;
       return answer;
     }
   } // namespace
@@ -197,8 +197,8 @@ namespace crawler
           if (result_.time.status == Status::inverted && result_.time.reason == "inverted_inside" && first_.is_users)
             confirm_inversion(problem_, first_, result_);
         } while (tries_again());
-        result_.refinements   = refinements_;
-        result_.seconds.error = estimate_seconds_;
+        result_.process.refinements   = refinements_;
+        result_.process.seconds.error = estimate_seconds_;
         return std::move(answer_);
       }
 

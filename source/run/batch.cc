@@ -305,9 +305,10 @@ namespace crawler
         result.time                = outcome_at(*outcome.progress);
         result.time.status         = Status::finished;
         const unsigned int n_cells = tables_->setup.n_cells, degree = tables_->setup.degree;
-        result.mesh = {.n_cells = n_cells, .degree = degree, .n_unknowns = n_cells * degree + 1, .most_cells = n_cells};
-        result.integrator = integrator_of(*runs_[lane.run].time, *runs_[lane.run].numerics);
-        result.engine     = "fused";
+        result.process.mesh = {
+          .n_cells = n_cells, .degree = degree, .n_unknowns = n_cells * degree + 1, .most_cells = n_cells};
+        result.process.integrator = integrator_of(*runs_[lane.run].time, *runs_[lane.run].numerics);
+        result.process.engine     = "fused";
         return lane.recorder->finish();
       }
 

@@ -29,7 +29,7 @@ namespace crawler
                   const double energy,
                   const double duration)
     {
-      const double from = result.min_stretch.value, to = result.max_stretch.value;
+      const double from = result.stretch.min.value, to = result.stretch.max.value;
       if (scene.profiles.friction || !scene.ground.is_plain() || !(from > 0.))
         return std::nullopt;
       const double bound = largest_merit(*scene.friction, from, to) * std::sqrt(energy * duration / scene.body.length);

@@ -95,7 +95,7 @@ namespace crawler
           sharpen(tables, step, i, sample, now);
         return now;
       };
-    const double least = so_far.min_stretch.value, most = so_far.max_stretch.value;
+    const double least = so_far.stretch.min.value, most = so_far.stretch.max.value;
     return {sharpened(stage.min_stretch, stage.min_sample, stage.min_stretch < least, least),
             sharpened(stage.max_stretch, stage.max_sample, stage.max_stretch > most, most)};
   }

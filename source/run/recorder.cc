@@ -109,8 +109,8 @@ namespace crawler
       largest_.start(largest);
     }
     started_           = true;
-    result.min_stretch = smallest_.extreme();
-    result.max_stretch = largest_.extreme();
+    result.stretch.min = smallest_.extreme();
+    result.stretch.max = largest_.extreme();
   }
 
   void
@@ -143,7 +143,7 @@ namespace crawler
   Recorder::see_cycles(const double time, const bool is_step_end, const Sampler &sample)
   {
     const auto see = [&](const double t) {
-      const double extremes[] = {result.min_stretch.value, result.max_stretch.value};
+      const double extremes[] = {result.stretch.min.value, result.stretch.max.value};
       std::array<double, 2> friction{};
       scene_.friction->values(extremes, friction);
       const double friction_unit = units_.force * units_.time / (units_.length * units_.length);
@@ -207,8 +207,8 @@ namespace crawler
         *part *= units.length;
     if (result.energy_balance)
       result.energy_balance = result.energy_balance->scaled(units.energy());
-    scale(result.min_stretch);
-    scale(result.max_stretch);
+    scale(result.stretch.min);
+    scale(result.stretch.max);
     if (result.inversion)
       scale(*result.inversion);
     if (result.inversion && result.inversion->places)

@@ -26,7 +26,7 @@ namespace crawler
     void
     set_error_of_efficiency(const std::string &key, const std::optional<double> &efficiency, SimulationResult &result)
     {
-      if (efficiency && result.model == Model::kinematic && result.displacement != 0.)
+      if (efficiency && result.process.model == Model::kinematic && result.displacement != 0.)
         set_error_bound(
           result, key, 2. * (result.error->space + result.error->time) / std::abs(result.displacement) * *efficiency);
     }
@@ -47,10 +47,10 @@ namespace crawler
     const StrainExtremes extremes = perturbation::extremes(wave);
     result.displacement           = perturbation::displacement(wave, 1.);
     result.error = {.space = 0., .time = 0., .model = errors.known ? errors.perturbation : DisplacementError::unknown};
-    result.energy_balance = perturbation::energies(wave, 1.);
-    result.net_friction   = DisplacementError::unknown;
-    result.min_stretch    = stretch_of(extremes.smallest);
-    result.max_stretch    = stretch_of(extremes.largest);
+    result.energy_balance         = perturbation::energies(wave, 1.);
+    result.residuals.net_friction = DisplacementError::unknown;
+    result.stretch.min            = stretch_of(extremes.smallest);
+    result.stretch.max            = stretch_of(extremes.largest);
   }
 
   void
@@ -66,8 +66,8 @@ namespace crawler
       result.time.status = Status::stopped;
       return;
     }
-    result.min_stretch = stretch_of(motion.extremes.smallest);
-    result.max_stretch = stretch_of(motion.extremes.largest);
+    result.stretch.min = stretch_of(motion.extremes.smallest);
+    result.stretch.max = stretch_of(motion.extremes.largest);
     if (motion.inversion)
     {
       result.time.status = Status::inverted;
@@ -75,13 +75,13 @@ namespace crawler
       result.energy_balance.reset();
       return;
     }
-    const ModelErrors errors = reduced_scene.model_errors();
-    result.displacement      = motion.displacement;
-    result.error             = {.space = motion.space_error,
-                                .time  = motion.time_error,
-                                .model = errors.known ? errors.kinematic : DisplacementError::unknown};
-    result.energy_balance    = motion.energies;
-    result.net_friction      = motion.net_friction;
+    const ModelErrors errors      = reduced_scene.model_errors();
+    result.displacement           = motion.displacement;
+    result.error                  = {.space = motion.space_error,
+                                     .time  = motion.time_error,
+                                     .model = errors.known ? errors.kinematic : DisplacementError::unknown};
+    result.energy_balance         = motion.energies;
+    result.residuals.net_friction = motion.net_friction;
   }
 
   /// Fails the result unless its error is as small as requested.
@@ -118,8 +118,8 @@ namespace crawler
   {
     const Stopwatch watch;
     SimulationResult result;
-    result.model       = model_;
-    result.time.status = Status::finished;
+    result.process.model = model_;
+    result.time.status   = Status::finished;
     if (model_ == Model::perturbation)
       compute_perturbation(result);
     else
@@ -143,7 +143,7 @@ namespace crawler
                                         s,
                                         result.inversion->t);
     }
-    result.seconds.solve = watch.seconds();
+    result.process.seconds.solve = watch.seconds();
     if (gait)
       describe_gait(result);
     return result;
@@ -200,7 +200,7 @@ namespace crawler
     GaitMeter meter(*period, false);
     replay(meter.times(), equal_parts(0., 1., GaitMeter::n_pieces), [&](const double t, const State &state) {
       meter.see(state.fields.displacement, state.displacement);
-      meter.see_extremes(result.min_stretch.value, result.max_stretch.value); // extremes of the whole motion
+      meter.see_extremes(result.stretch.min.value, result.stretch.max.value); // extremes of the whole motion
       meter.see_extremes(state.stretch.min.value, state.stretch.max.value);
       meter.see_step(t, state.displacement, state.energy_balance);
       return true;

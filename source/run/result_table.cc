@@ -76,10 +76,10 @@ namespace crawler
   }
 
     std::vector<ResultEntry>
-    numbers_and_words()
+    entries_of_run()
     {
       using enum ResultEntry::Scale;
-      std::vector<ResultEntry> list = {
+      return {
         of_process(word("status", "how the run ended", VALUE(std::string(word_of(r.time.status))))),
         of_process(word("reason",
                         "name of what went wrong",
@@ -98,7 +98,7 @@ namespace crawler
         number("cycles.extrapolated", one, "cycles that were extrapolated", PART(cycles, 1ul * part.extrapolated)),
         number(
           "cycles.error", length, "bound of the error of the displacement by extrapolation", PART(cycles, part.bound)),
-        word("model", "level of the model hierarchy", VALUE(std::string(word_of(r.model)))),
+        word("model", "level of the model hierarchy", VALUE(std::string(word_of(r.process.model)))),
         number("stress_power", energy, "work of the active stress", WORK(stress_work), exchanged_work),
         number("dissipation", energy, "work against the friction", WORK(dissipation), exchanged_work),
         number("elastic_energy", energy, "elastic energy of the last state", WORK(elastic_energy), exchanged_work),
@@ -106,7 +106,7 @@ namespace crawler
                one,
                "residual of the energy balance, relative to the exchanged work",
                [](const Result &r) -> ResultValue {
-                 return known(r.energy_balance ? r.energy_balance->residual() : r.residual_of_unknown_works);
+                 return known(r.energy_balance ? r.energy_balance->residual() : r.residuals.unknown_works);
                }),
         number("paper_energy", energy, "energy of the paper", WORK(paper_energy()), exchanged_work),
         number("positive_power",
@@ -118,15 +118,23 @@ namespace crawler
         number("net_friction",
                one,
                "mean net friction, relative to the mean absolute friction",
-               PART(energy_balance, r.net_friction)),
+               PART(energy_balance, r.residuals.net_friction)),
         number(
-          "min_stretch.value", one, "smallest stretch over body and time", VALUE(r.min_stretch.value), strain, true),
-        number("min_stretch.s", length, "where the stretch is smallest", VALUE(r.min_stretch.s)),
-        number("min_stretch.t", time, "when the stretch is smallest", VALUE(r.min_stretch.t)),
+          "min_stretch.value", one, "smallest stretch over body and time", VALUE(r.stretch.min.value), strain, true),
+        number("min_stretch.s", length, "where the stretch is smallest", VALUE(r.stretch.min.s)),
+        number("min_stretch.t", time, "when the stretch is smallest", VALUE(r.stretch.min.t)),
         number(
-          "max_stretch.value", one, "largest stretch over body and time", VALUE(r.max_stretch.value), strain, true),
-        number("max_stretch.s", length, "where the stretch is largest", VALUE(r.max_stretch.s)),
-        number("max_stretch.t", time, "when the stretch is largest", VALUE(r.max_stretch.t)),
+          "max_stretch.value", one, "largest stretch over body and time", VALUE(r.stretch.max.value), strain, true),
+        number("max_stretch.s", length, "where the stretch is largest", VALUE(r.stretch.max.s)),
+        number("max_stretch.t", time, "when the stretch is largest", VALUE(r.stretch.max.t)),
+      };
+    }
+
+    std::vector<ResultEntry>
+    entries_of_gait()
+    {
+      using enum ResultEntry::Scale;
+      return {
         number("gait.period", time, "period of the last stride", PART(gait, part.period)),
         number("gait.frequency", "1/time", "frequency of the last stride", PART(gait, 1. / part.period)),
         word("gait.period_from",
@@ -168,59 +176,49 @@ namespace crawler
                PART(gait, known(part.efficiency)),
                itself,
                true)};
-      const std::string value = ".value";
-      int n_errors            = 0;
-      for (std::size_t i = 0, n = list.size(); i < n; ++i)
-        if (list[i].scale != none)
-        {
-          const ResultEntry &entry = list[i];
-          const std::string key =
-            entry.key.ends_with(value) ? entry.key.substr(0, entry.key.size() - value.size()) : entry.key;
-          ResultEntry error = number("errors." + key, entry.unit, "bound of the error of " + key, nullptr);
-          error.error       = n_errors++;
-          list.push_back(std::move(error));
-        }
-      for (ResultEntry &entry : std::vector<ResultEntry>{
-             word("formulation", "position or stretch", VALUE(std::string(word_of(r.formulation)))),
-             number("mesh_changes", one, "number of changes of an adaptive mesh", COUNT(r.mesh.changes)),
-             number("most_cells",
-                    one,
-                    "largest number of cells of all meshes",
-                    COUNT(std::max(r.mesh.most_cells, r.mesh.n_cells))),
-             number("inversion.value", one, "stretch where the body inverted", PART(inversion, part.value)),
-             number("inversion.s", length, "where the body inverted", PART(inversion, part.s)),
-             number("inversion.t", time, "when the body inverted", PART(inversion, part.t)),
-             number("inversion.error",
-                    time,
-                    "bound of the error of the time of inversion",
-                    PART(inversion, known(part.error))),
-             number("inversion.s_first",
-                    length,
-                    "first place where the stretch was lost",
-                    PART(inversion, part.places ? part.places->first : part.s)),
-             number("inversion.s_last",
-                    length,
-                    "last place where the stretch was lost",
-                    PART(inversion, part.places ? part.places->second : part.s)),
-             number("cells", one, "number of cells of the last mesh", COUNT(r.mesh.n_cells)),
-             number("degree",
-                    one,
-                    "polynomial degree of the elements",
-                    VALUE(r.mesh.n_cells > 0 ? ResultValue(1ul * r.mesh.degree) : ResultValue())),
-             number("degrees_of_freedom", one, "number of unknowns of the last mesh", COUNT(r.mesh.n_unknowns)),
-             number("steps", one, "number of accepted time steps", COUNT(r.time.steps)),
-             number("rejected_steps", one, "number of rejected time steps", COUNT(r.time.rejected_steps)),
-             number("newton_iterations", one, "Newton iterations of all steps", COUNT(r.time.newton_iterations)),
-             of_process(number("cells_shared", "", "whether several ranks shared the cells", VALUE(r.mesh.is_shared))),
-             number("refinements", one, "number of attempts before this run", COUNT(r.refinements)),
-             word("integrator", "time integrator", VALUE(r.integrator)),
-             word("engine", "engine that ran the integrator", VALUE(r.engine)),
-             of_process(number("seconds.setup", "s", "wall time for the setup", VALUE(r.seconds.setup))),
-             of_process(number("seconds.solve", "s", "wall time for the solution", VALUE(r.seconds.solve))),
-             of_process(number("seconds.output", "s", "wall time for the output", VALUE(r.seconds.output))),
-             of_process(number("seconds.error", "s", "wall time for the error bounds", VALUE(r.seconds.error)))})
-        list.push_back(std::move(entry));
-      return list;
+    }
+
+    std::vector<ResultEntry>
+    entries_of_process()
+    {
+      return {
+        word("formulation", "position or stretch", VALUE(std::string(word_of(r.process.formulation)))),
+        number("mesh_changes", one, "number of changes of an adaptive mesh", COUNT(r.process.mesh.changes)),
+        number("most_cells",
+               one,
+               "largest number of cells of all meshes",
+               COUNT(std::max(r.process.mesh.most_cells, r.process.mesh.n_cells))),
+        number("inversion.value", one, "stretch where the body inverted", PART(inversion, part.value)),
+        number("inversion.s", length, "where the body inverted", PART(inversion, part.s)),
+        number("inversion.t", time, "when the body inverted", PART(inversion, part.t)),
+        number(
+          "inversion.error", time, "bound of the error of the time of inversion", PART(inversion, known(part.error))),
+        number("inversion.s_first",
+               length,
+               "first place where the stretch was lost",
+               PART(inversion, part.places ? part.places->first : part.s)),
+        number("inversion.s_last",
+               length,
+               "last place where the stretch was lost",
+               PART(inversion, part.places ? part.places->second : part.s)),
+        number("cells", one, "number of cells of the last mesh", COUNT(r.process.mesh.n_cells)),
+        number("degree",
+               one,
+               "polynomial degree of the elements",
+               VALUE(r.process.mesh.n_cells > 0 ? ResultValue(1ul * r.process.mesh.degree) : ResultValue())),
+        number("degrees_of_freedom", one, "number of unknowns of the last mesh", COUNT(r.process.mesh.n_unknowns)),
+        number("steps", one, "number of accepted time steps", COUNT(r.time.steps)),
+        number("rejected_steps", one, "number of rejected time steps", COUNT(r.time.rejected_steps)),
+        number("newton_iterations", one, "Newton iterations of all steps", COUNT(r.time.newton_iterations)),
+        of_process(
+          number("cells_shared", "", "whether several ranks shared the cells", VALUE(r.process.mesh.is_shared))),
+        number("refinements", one, "number of attempts before this run", COUNT(r.process.refinements)),
+        word("integrator", "time integrator", VALUE(r.process.integrator)),
+        word("engine", "engine that ran the integrator", VALUE(r.process.engine)),
+        of_process(number("seconds.setup", "s", "wall time for the setup", VALUE(r.process.seconds.setup))),
+        of_process(number("seconds.solve", "s", "wall time for the solution", VALUE(r.process.seconds.solve))),
+        of_process(number("seconds.output", "s", "wall time for the output", VALUE(r.process.seconds.output))),
+        of_process(number("seconds.error", "s", "wall time for the error bounds", VALUE(r.process.seconds.error)))};
     }
 #undef PART
 #undef VALUE
@@ -253,7 +251,7 @@ namespace crawler
       case Scale::exchanged_work:
         return result.energy_balance ? result.energy_balance->exchanged_work : 0.;
       case Scale::strain:
-        return std::max(1. - result.min_stretch.value, result.max_stretch.value - 1.);
+        return std::max(1. - result.stretch.min.value, result.stretch.max.value - 1.);
       case Scale::itself:
         return std::abs(number_in(result));
       case Scale::cost:
@@ -269,7 +267,23 @@ namespace crawler
   const std::vector<ResultEntry> &
   result_table()
   {
-    static const std::vector<ResultEntry> table = numbers_and_words();
+    static const std::vector<ResultEntry> table = []() {
+      std::vector<ResultEntry> list = entries_of_run();
+      std::ranges::move(entries_of_gait(), std::back_inserter(list));
+      const std::string value = ".value";
+      int n_errors            = 0;
+      for (std::size_t i = 0, n = list.size(); i < n; ++i)
+        if (list[i].scale != Scale::none)
+        {
+          std::string key = list[i].key;
+          if (key.ends_with(value))
+            key.resize(key.size() - value.size());
+          list.push_back(number("errors." + key, list[i].unit, "bound of the error of " + key, nullptr));
+          list.back().error = n_errors++;
+        }
+      std::ranges::move(entries_of_process(), std::back_inserter(list));
+      return list;
+    }();
     return table;
   }
 

@@ -36,11 +36,11 @@ namespace crawler
   energy_balance_tolerance(const SimulationResult &result, const RunParameters &parameters)
   {
     return parameters.output.energy_balance_tolerance.value_or(
-      result.jumps_move ? residual_of_moving_jumps
+      result.process.jumps_move ? residual_of_moving_jumps
       : has_own_steps(parameters)
         ? residual_of_users
         : std::max(min_residual,
-                   (result.formulation == Formulation::stretch ? of_accuracy_in_stretch_form : of_accuracy) *
+                   (result.process.formulation == Formulation::stretch ? of_accuracy_in_stretch_form : of_accuracy) *
                      parameters.accuracy));
   }
 
@@ -95,14 +95,14 @@ namespace crawler
     bool
     stands_without_works(const SimulationResult &result)
     {
-      return result.formulation == Formulation::stretch && result.error && std::isfinite(result.error->total);
+      return result.process.formulation == Formulation::stretch && result.error && std::isfinite(result.error->total);
     }
 
     /// Makes energies, costs and efficiencies unknown.
     void
     forget_works(SimulationResult &result)
     {
-      result.residual_of_unknown_works = result.energy_balance->residual();
+      result.residuals.unknown_works = result.energy_balance->residual();
       result.energy_balance.reset();
       result.gait_efficiency.reset();
       if (result.gait)
@@ -121,7 +121,7 @@ namespace crawler
   check_identities(SimulationResult &result, const RunParameters &parameters)
   {
     // Series have no balance to check.
-    if (result.time.status != Status::finished || !result.energy_balance || result.model == Model::perturbation)
+    if (result.time.status != Status::finished || !result.energy_balance || result.process.model == Model::perturbation)
       return;
     // Works may be less accurate than the displacement: a sudden start of a stiff body makes layers that take work, but
     // do not move it.
@@ -147,12 +147,12 @@ namespace crawler
     else if (const double most = has_own_steps(parameters)
                                    ? net_friction_of_users
                                    : std::max(min_net_friction, net_friction_of_accuracy * parameters.accuracy);
-             result.net_friction > most)
+             result.residuals.net_friction > most)
     {
       result.time.reason = "net_friction";
       result.time.message =
         fmt::format("the friction forces do not balance: {:.3g} of their sum is left over, above {:.3g}",
-                    result.net_friction,
+                    result.residuals.net_friction,
                     most);
     }
     else

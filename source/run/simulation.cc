@@ -193,8 +193,8 @@ namespace crawler
                                  *scene_.active_stress,
                                  is_watched ? numerics_.min_event : 0.),
           .n_failures   = scene_.active_stress->failures() != nullptr ? scene_.active_stress->failures()->count : 0});
-    result().jumps_move  = numerics_.jumps_move;
-    result().formulation = numerics_.formulation;
+    result().process.jumps_move  = numerics_.jumps_move;
+    result().process.formulation = numerics_.formulation;
     mesh_.assembler->set_initial_state(y_);
     run_->accepted = {y_, 0., numerics_.initial_step, false};
     take_up();
@@ -251,18 +251,18 @@ namespace crawler
     const double before = now();
     for (const auto &observer : run_->observers)
       observer->end();
-    result.seconds.output += now() - before;
+    result.process.seconds.output += now() - before;
     if (mesh_.assembler) // not if the next mesh could not be built
-      result.mesh = {discretization().n_cells(),
-                     discretization().element.degree,
-                     discretization().n_unknowns(),
-                     discretization().n_ranks > 1,
-                     result.mesh.changes,
-                     result.mesh.most_cells};
-    result.integrator = time_.integrator;
-    result.engine     = !integrators_.lanes                         ? "petsc"
-                        : run_->lanes_gave_up || integrators_.petsc ? "fused, petsc"
-                                                                    : "fused";
+      result.process.mesh = {discretization().n_cells(),
+                             discretization().element.degree,
+                             discretization().n_unknowns(),
+                             discretization().n_ranks > 1,
+                             result.process.mesh.changes,
+                             result.process.mesh.most_cells};
+    result.process.integrator = time_.integrator;
+    result.process.engine     = !integrators_.lanes                         ? "petsc"
+                                : run_->lanes_gave_up || integrators_.petsc ? "fused, petsc"
+                                                                            : "fused";
     return run_->recorder.finish();
   }
 
@@ -288,7 +288,7 @@ namespace crawler
       outcome.steps += run_->before.steps;
       outcome.rejected_steps += run_->before.rejected_steps;
       outcome.newton_iterations += run_->before.newton_iterations;
-      unsigned int &most_cells = result().mesh.most_cells;
+      unsigned int &most_cells = result().process.mesh.most_cells;
       most_cells               = std::max(most_cells, mesh_.discretization->n_cells());
       if (!goes_on_after(ending, outcome))
         return outcome;

@@ -32,7 +32,7 @@ namespace crawler
         mesh_.assembler->integrals(run_->accepted.time, y_, new_v).elastic_energy;
     }
     run_->accepted.y = y_;
-    ++result().mesh.changes;
+    ++result().process.mesh.changes;
   }
 
   /**

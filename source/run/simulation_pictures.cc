@@ -21,7 +21,7 @@ namespace crawler
     else if (step.size > 0. && !run_->observers.empty() && run_->diagnosis &&
              run_->diagnosis->status == Status::inverted)
       show_pictures_before_inversion(step);
-    result().seconds.output += now() - before;
+    result().process.seconds.output += now() - before;
     return ending;
   }
 
@@ -113,7 +113,7 @@ namespace crawler
                                                         result().energy_balance.value_or(EnergyBalance()));
     numbers.step.size    = 0.;
     show(numbers, y_, v_, /*is_step_end=*/false, &row);
-    result().seconds.output += now() - before;
+    result().process.seconds.output += now() - before;
   }
 
   /// Shows a state, whose numbers are in natural units; @p picture is null if it is none.
@@ -135,7 +135,7 @@ namespace crawler
                          /*is_in_lost_step=*/run_->diagnosis.has_value(),
                          picture != nullptr ? picture->kinds : PictureKinds(),
                          *mesh_.assembler,
-                         result().mesh.changes,
+                         result().process.mesh.changes,
                          units_,
                          natural.step.time,
                          y,

@@ -35,8 +35,7 @@ namespace crawler
   SimulationResult::exchange(Archive &archive)
   {
     archive(time);
-    archive(model, displacement, integrator, engine, error, corrected, errors, size);
-    archive(energy_balance, jumps_move, net_friction, min_stretch, max_stretch, inversion);
-    archive(gait, gait_efficiency, cycles, formulation, mesh, seconds, refinements);
+    archive(process, displacement, error, corrected, errors, size, energy_balance, residuals);
+    archive(stretch.min, stretch.max, inversion, gait, gait_efficiency, cycles);
   }
 } // namespace crawler

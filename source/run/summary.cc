@@ -154,8 +154,8 @@ namespace crawler
   summary_json(const SimulationResult &result, const unsigned int n_ranks, const std::string &command_line)
   {
     Json json = summary_of(result);
-    if (result.engine == "petsc")
-      json["integrator"] = integrator_of_petsc(result.integrator);
+    if (result.process.engine == "petsc")
+      json["integrator"] = integrator_of_petsc(result.process.integrator);
     json["displacement_corrected"] = nullptr;
     if (result.corrected)
       json["displacement_corrected"] = {{"value", result.corrected->value}, {"error", result.corrected->error}};
@@ -197,45 +197,38 @@ namespace crawler
                   time.time,
                   units.behind("time"),
                   time.steps > 0 ? fmt::format(" after {} steps ({} rejected)", time.steps, time.rejected_steps) : "",
-                  result.seconds.solve + result.seconds.output),
+                  result.process.seconds.solve + result.process.seconds.output),
       "  displacement      " + displacement_in_words(result, units)};
-    if (result.corrected)
+    if (const auto &answer = result.corrected)
       lines.push_back(fmt::format("  corrected         {:.12g} +- {:.2g}{} (by the adjoint)",
-                                  result.corrected->value,
-                                  result.corrected->error,
+                                  answer->value,
+                                  answer->error,
                                   units.behind("length")));
-    if (result.cycles)
+    if (const auto &cycles = result.cycles)
       lines.push_back(
         fmt::format("  cycles            {} of period {:.6g} computed, {} extrapolated with an error of at "
                     "most {:.2g} in the displacement",
-                    result.cycles->computed,
-                    result.cycles->period,
-                    result.cycles->extrapolated,
-                    result.cycles->bound));
-    if (result.energy_balance)
+                    cycles->computed,
+                    cycles->period,
+                    cycles->extrapolated,
+                    cycles->bound));
+    if (const auto &energies = result.energy_balance)
     {
-      lines.push_back(fmt::format("  stress work       {:.10g}{}{}",
-                                  result.energy_balance->stress_work,
-                                  error_bound_in_words(result, "stress_power"),
-                                  units.behind("force length")));
-      lines.push_back(
-        fmt::format("  dissipation       {:.10g}{}", result.energy_balance->dissipation, units.behind("force length")));
-      lines.push_back(fmt::format(
-        "  energy residual   {:.2e} (relative), net friction {}",
-        result.energy_balance->residual(),
-        std::isfinite(result.net_friction) ? fmt::format("{:.2e} (relative)", result.net_friction) : "unknown"));
+      const std::string unit = units.behind("force length"), bound = error_bound_in_words(result, "stress_power");
+      const double net = result.residuals.net_friction;
+      lines.push_back(fmt::format("  stress work       {:.10g}{}{}", energies->stress_work, bound, unit));
+      lines.push_back(fmt::format("  dissipation       {:.10g}{}", energies->dissipation, unit));
+      lines.push_back(fmt::format("  energy residual   {:.2e} (relative), net friction {}",
+                                  energies->residual(),
+                                  std::isfinite(net) ? fmt::format("{:.2e} (relative)", net) : "unknown"));
     }
-    if (result.residual_of_unknown_works)
+    if (result.residuals.unknown_works)
       lines.push_back(fmt::format("  works             unknown: the energy balance lacks {:.2g} of the exchanged work",
-                                  *result.residual_of_unknown_works));
-    lines.push_back(
-      fmt::format("  stretch           {:.4g} (s = {:.4g}, t = {:.4g}) to {:.4g} (s = {:.4g}, t = {:.4g})",
-                  result.min_stretch.value,
-                  result.min_stretch.s,
-                  result.min_stretch.t,
-                  result.max_stretch.value,
-                  result.max_stretch.s,
-                  result.max_stretch.t));
+                                  *result.residuals.unknown_works));
+    const auto extreme = [](const Extreme &at) {
+      return fmt::format("{:.4g} (s = {:.4g}, t = {:.4g})", at.value, at.s, at.t);
+    };
+    lines.push_back("  stretch           " + extreme(result.stretch.min) + " to " + extreme(result.stretch.max));
     add_gait_lines(result, units, lines);
     if (result.gait_efficiency)
       lines.push_back(

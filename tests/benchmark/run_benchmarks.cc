@@ -214,7 +214,7 @@ namespace crawler::test
       Answer answer;
       for (auto _ : state)
         answer = answer_in_memory({parameters, scene}, {.energy_balance = true});
-      state.counters["cells"] = answer.result.mesh.most_cells;
+      state.counters["cells"] = answer.result.process.mesh.most_cells;
       state.counters["steps"] = answer.result.time.steps;
       state.counters["bound"] = answer.result.error ? answer.result.error->total : HUGE_VAL;
     }
@@ -250,7 +250,7 @@ namespace crawler::test
       for (auto _ : state)
         result = own.simulation.run({}, {});
       state.counters["steps"] = result.time.steps;
-      if (result.engine != "fused")
+      if (result.process.engine != "fused")
         state.SkipWithError("not by the fused engine");
     }
 

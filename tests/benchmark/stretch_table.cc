@@ -39,7 +39,7 @@ namespace
       compute_all({&task, 1}, /*time_limit=*/20., []() { return false; });
       seconds = std::min(seconds, test::processor_seconds() - from);
     }
-    least = task.computed.result.min_stretch.value;
+    least = task.computed.result.stretch.min.value;
     return task.computed.result.time.status == Status::finished ? std::optional(seconds) : std::nullopt;
   }
 } // namespace

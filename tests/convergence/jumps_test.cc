@@ -50,7 +50,7 @@ TEST(Jumps, InSpaceKeepTheOrder)
                              {});
     const auto result = run->simulate(Engine::automatic, {});
     EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
-    EXPECT_EQ(result.mesh.most_cells, n);
+    EXPECT_EQ(result.process.mesh.most_cells, n);
     return result.displacement;
   };
   const double exact = displacement(Formulation::position, 8, 20, true);
@@ -306,7 +306,7 @@ TEST(Jumps, AreMadeByAnInitialStretch)
     const SimulationResult result = run.simulate(Engine::automatic);
     EXPECT_GT(run.numerics.grading.levels, 0u);
     ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
-    EXPECT_EQ(result.engine, "fused");
+    EXPECT_EQ(result.process.engine, "fused");
     EXPECT_NEAR(result.displacement, exact.displacement, accuracy * std::abs(exact.displacement));
   }
 }

@@ -105,7 +105,7 @@ TEST_P(Space, OrderOnAnExactSolution)
     const auto observers          = watched_by([&](const Snapshot &snapshot) { l2 = l2_error(snapshot); });
     const SimulationResult result = simulation.run({}, {}, observers);
     ASSERT_EQ(result.time.status, Status::finished);
-    ASSERT_EQ(result.engine, engine);
+    ASSERT_EQ(result.process.engine, engine);
     cells.push_back(n);
     displacement_errors.push_back(std::abs(result.displacement - exact.displacement(end_time)));
     l2_errors.push_back(l2);

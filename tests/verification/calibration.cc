@@ -108,11 +108,11 @@ namespace
                       error.time,
                       tasks[i].computed.choice.wanted_error,
                       parameters.body.length,
-                      result.mesh.most_cells,
+                      result.process.mesh.most_cells,
                       result.time.steps,
-                      result.refinements,
-                      result.seconds.solve,
-                      result.seconds.error});
+                      result.process.refinements,
+                      result.process.seconds.solve,
+                      result.process.seconds.error});
     }
     return rows;
   }

@@ -73,7 +73,7 @@ namespace
       in_batches         = run_batch({&run, 1}, options).front().has_value();
     }
     std::string text = "| " + row.name + " |";
-    for (const bool has : {result.engine == "fused",
+    for (const bool has : {result.process.engine == "fused",
                            in_batches,
                            result.error && std::isfinite(result.error->total),
                            result.cycles.has_value(),

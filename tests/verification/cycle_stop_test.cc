@@ -99,8 +99,8 @@ TEST(CycleStop, LedgerIsThatOfTheWholeRun)
   EXPECT_NEAR(cycles.paper_energy() / full.paper_energy(), 1., 1e-8);
   EXPECT_NEAR(cycles.elastic_energy, full.elastic_energy, 1e-9 * full.exchanged_work);
   EXPECT_LT(cycles.residual(), 1e-9);
-  EXPECT_NEAR(pair.cycles.min_stretch.value, pair.full.min_stretch.value, 1e-4);
-  EXPECT_NEAR(pair.cycles.max_stretch.value, pair.full.max_stretch.value, 1e-3);
+  EXPECT_NEAR(pair.cycles.stretch.min.value, pair.full.stretch.min.value, 1e-4);
+  EXPECT_NEAR(pair.cycles.stretch.max.value, pair.full.stretch.max.value, 1e-3);
 }
 
 /// The bound of the displacement, which was taken for both, does not hold for them.
@@ -298,5 +298,5 @@ TEST(CycleStop, BodiesThatGoNowhereRepeat)
   ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
   ASSERT_TRUE(result.cycles);
   EXPECT_LE(std::abs(result.displacement), result.error->total);
-  EXPECT_LE(result.error->total, 500. * round_off_of_cycle * (result.max_stretch.value - 1.));
+  EXPECT_LE(result.error->total, 500. * round_off_of_cycle * (result.stretch.max.value - 1.));
 }

@@ -130,7 +130,7 @@ TEST(ErrorSweep, JudgesTries)
   const auto answer = [&]() { return run_to_accuracy(problem, *choice, simulate, {}, /*writes=*/true).result; };
   const SimulationResult result = answer();
   ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
-  EXPECT_EQ(result.refinements, 1u);
+  EXPECT_EQ(result.process.refinements, 1u);
   EXPECT_NEAR(result.displacement, 9.340023374e-4, result.error->total); // at 1e-8
   ASSERT_TRUE(result.corrected);
   EXPECT_NEAR(result.corrected->value, 9.340023374e-4, result.corrected->error);

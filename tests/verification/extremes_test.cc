@@ -66,7 +66,7 @@ TEST(Extremes, OneCell)
                                               formulation))
                             .result;
       ASSERT_EQ(result.time.status, Status::finished) << formulation << degree;
-      EXPECT_LT(result.net_friction, 1e-11) << formulation << degree;
+      EXPECT_LT(result.residuals.net_friction, 1e-11) << formulation << degree;
       EXPECT_LT(result.energy_balance->residual(), 1e-6) << formulation << degree;
       const double expected = degree == 1 ? 0. : 5.020242991e-3, error = degree == 1 ? 1e-15 : 5e-7;
       if (degree == 1 || degree == 8)

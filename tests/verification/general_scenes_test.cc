@@ -45,7 +45,7 @@ namespace
     SimulationResult result = test::run_with(settings).result;
     EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
     EXPECT_LT(result.energy_balance->residual(), max_residual);
-    EXPECT_LT(result.net_friction, 1e-9);
+    EXPECT_LT(result.residuals.net_friction, 1e-9);
     return result;
   }
 
@@ -238,7 +238,7 @@ TEST(GeneralScenes, SensorsSeeTheMean)
           feedback("-E/pi^2*cos(t)*sin(pi*s)-E*sin(t)*sin(pi*s)+1.5*(w_near-" + mean + ")", distance, 0., sensor) +
           own + test::set("p = 1; T = {}; tolerance = 1e-8; strain feedback; Constants = E={}, b={}", T, E, sensor));
         expect_near(result.energy_balance->elastic_energy, 0.25 * E * E * std::sin(T) * std::sin(T), 1e-5);
-        expect_near(result.max_stretch.value, 1. + E * std::sin(T), 1e-4);
+        expect_near(result.stretch.max.value, 1. + E * std::sin(T), 1e-4);
       }
 }
 
@@ -366,5 +366,6 @@ TEST(GeneralScenes, ViscosityAndDirectionAreForThePositionForm)
   const Settings scene = feedback(wave_formula + "+0.05*w_t") +
                          Settings{{"Ground/Backward ratio", "3"}, {"Ground/Switching velocity", "0.2"}};
   EXPECT_THROW(run(scene + stretch_form), InputError);
-  EXPECT_EQ(run(scene + Settings{{"Accuracy", "1e-4"}}, /*max_residual=*/1e-3).formulation, Formulation::position);
+  EXPECT_EQ(run(scene + Settings{{"Accuracy", "1e-4"}}, /*max_residual=*/1e-3).process.formulation,
+            Formulation::position);
 }

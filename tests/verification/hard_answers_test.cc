@@ -39,7 +39,7 @@ TEST(HardAnswers, ARhythmOfItsOwnNeedsOneTry)
                           "Sensor length = 0.2",
                           accuracy));
     ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
-    EXPECT_EQ(result.refinements, 0u) << accuracy;
+    EXPECT_EQ(result.process.refinements, 0u) << accuracy;
     EXPECT_NEAR(result.displacement, 0.27515297, result.error->total) << accuracy;
     EXPECT_LE(result.error->total, std::stod(accuracy) * result.displacement) << accuracy;
   }
@@ -62,13 +62,13 @@ TEST(HardAnswers, ExtremesOfSteepFriction)
     const test::Settings settings  = test::with(test::set(text), {{"Accuracy", "1e-2"}});
     const Answer answer            = test::computed(settings);
     const SimulationResult &result = answer.result;
-    EXPECT_NEAR(result.min_stretch.value, smallest, error_bound(result, "min_stretch.value").value()) << text;
+    EXPECT_NEAR(result.stretch.min.value, smallest, error_bound(result, "min_stretch.value").value()) << text;
     EXPECT_NEAR(result.gait_efficiency.value(), efficiency, error_bound(result, "gait.efficiency").value()) << text;
     const Parameters parameters    = test::parameters_with(settings);
     const Scene own                = parameters.create_scene();
     const SimulationResult watched = Simulation(MPI_COMM_WORLD, own, parameters.time, answer.choice.numerics)
                                        .run({}, {.energy_balance = true}, watched_by([](const Snapshot &) {}));
-    EXPECT_NEAR(watched.min_stretch.value, smallest, watched.min_stretch.jump) << text;
+    EXPECT_NEAR(watched.stretch.min.value, smallest, watched.stretch.min.jump) << text;
   }
 }
 
@@ -95,13 +95,13 @@ TEST(HardAnswers, WorksOfSteepFrictionAreUnknown)
                                               1. / time);
     const SimulationResult result = answer_to(settings);
     ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
-    ASSERT_NE(result.energy_balance.has_value(), result.residual_of_unknown_works.has_value());
+    ASSERT_NE(result.energy_balance.has_value(), result.residuals.unknown_works.has_value());
     if (result.energy_balance)
       EXPECT_LT(result.energy_balance->residual(), 0.1);
     else
     {
       ++n_unknown;
-      EXPECT_GT(*result.residual_of_unknown_works, 0.1);
+      EXPECT_GT(*result.residuals.unknown_works, 0.1);
       EXPECT_FALSE(error_bound(result, "stress_power"));
     }
     displacements.push_back(result.displacement / length);
@@ -340,7 +340,7 @@ TEST(HardAnswers, FrictionBalances)
   {
     const SimulationResult result = answer_to(test::set("{}", scene));
     EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
-    EXPECT_LT(result.net_friction, largest) << scene;
+    EXPECT_LT(result.residuals.net_friction, largest) << scene;
   }
   // Newton's method leaves a part of the friction that its tolerance admits; longer steps leave more.
   const test::Settings sudden = test::set(
@@ -399,8 +399,8 @@ TEST(HardAnswers, LayersThatDoNotMatter)
                         "Direction = from tail to head; Duty cycle = 0.76283932775; "
                         "Saturation = 78.830841576; Rate limit = 7515.2183465"));
   expect_within(result, -0.1862200015, 1e-5, "robot");
-  EXPECT_EQ(result.formulation, Formulation::position);
-  EXPECT_LE(result.mesh.n_cells, 128u);
+  EXPECT_EQ(result.process.formulation, Formulation::position);
+  EXPECT_LE(result.process.mesh.n_cells, 128u);
 }
 
 /// Efficiencies have the errors of the displacement and of the extreme stretches as well. True ones at 1e-8 and 1e-5;

@@ -19,7 +19,7 @@ TEST(Identities, NetFrictionAndLedger)
   {
     const auto result = test::run_with(with(test::wave(1. - p, 0.1, 0.7), numerics)).result;
     ASSERT_EQ(result.time.status, Status::finished) << p;
-    EXPECT_LT(result.net_friction, 1e-11) << p;
+    EXPECT_LT(result.residuals.net_friction, 1e-11) << p;
     EXPECT_LT(result.energy_balance->residual(), 1e-6) << p;
     EXPECT_GT(result.energy_balance->dissipation, 0.) << p;
     EXPECT_GE(result.energy_balance->positive_work, result.energy_balance->stress_work) << p;
@@ -36,7 +36,7 @@ TEST(Identities, LedgerWhereFrictionVanishes)
     const auto outcome  = test::run_with(settings);
     const auto &result  = outcome.result;
     ASSERT_EQ(result.time.status, Status::finished) << mesh;
-    EXPECT_LT(result.net_friction, 1e-10) << mesh;
+    EXPECT_LT(result.residuals.net_friction, 1e-10) << mesh;
     EXPECT_LT(result.energy_balance->residual(), 1e-2) << mesh;
     EXPECT_NEAR(result.energy_balance->stress_work, 0.129086, 1e-3) << mesh;
     EXPECT_NEAR(result.displacement, -0.185838, outcome.choice.wanted_error) << mesh;
@@ -60,7 +60,7 @@ TEST(Identities, LedgerOfStiffBodies)
           fmt::format("k = {:g}, a = {:g}, {}", k, a, more.empty() ? "automatic" : more.front().first);
         ASSERT_EQ(result.time.status, Status::finished) << what << ": " << result.time.message;
         EXPECT_LT(result.energy_balance->residual(), 1e-7) << what;
-        EXPECT_LT(result.net_friction, 1e-7) << what;
+        EXPECT_LT(result.residuals.net_friction, 1e-7) << what;
       }
 }
 

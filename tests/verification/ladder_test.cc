@@ -55,8 +55,8 @@ TEST(Ladder, NonlinearFollowsAPrescribedStrain)
     EXPECT_NEAR(
       full.energy_balance->positive_work / motion.energy_balance->positive_work, 1., 2e-3); // an integrand with kinks
     EXPECT_NEAR(full.energy_balance->elastic_energy / motion.energy_balance->elastic_energy, 1., 1e-7);
-    EXPECT_NEAR(full.min_stretch.value, motion.min_stretch.value, 1e-4);
-    EXPECT_NEAR(full.max_stretch.value, motion.max_stretch.value, 1e-4);
+    EXPECT_NEAR(full.stretch.min.value, motion.stretch.min.value, 1e-4);
+    EXPECT_NEAR(full.stretch.max.value, motion.stretch.max.value, 1e-4);
   }
 }
 

@@ -49,7 +49,7 @@ TEST(LinearLevel, ClosedForm)
       EXPECT_LT(std::abs(result.displacement), 1e-14);
       EXPECT_LE(std::abs(result.displacement), result.error->total);
       EXPECT_LT(result.error->total, 1e-12);
-      EXPECT_LT(result.net_friction, 1e-9);
+      EXPECT_LT(result.residuals.net_friction, 1e-9);
     }
 }
 

@@ -95,7 +95,7 @@ namespace
       p.accuracy                   = std::clamp(part * parameters.accuracy, 1e-9, 1e-2);
       return by_program(p, name, limit);
     };
-    const bool is_stretch = result.formulation == Formulation::stretch;
+    const bool is_stretch = result.process.formulation == Formulation::stretch;
     // The stretches of stiff bodies differ by round-off only.
     const Body &body    = parameters.body;
     const double T      = parameters.time.end_time;
@@ -154,9 +154,9 @@ namespace
         std::rethrow_exception(own.error);
       row.status       = own.is_out_of_time ? "time_limit" : word_of(result.time.status);
       row.reason       = own.is_out_of_time ? "time_limit" : result.time.reason;
-      row.form         = result.model != Model::nonlinear             ? word_of(result.model)
-                         : result.formulation == Formulation::stretch ? "stretch"
-                                                                      : "position";
+      row.form         = result.process.model != Model::nonlinear             ? word_of(result.process.model)
+                         : result.process.formulation == Formulation::stretch ? "stretch"
+                                                                              : "position";
       row.displacement = result.displacement;
       if (result.inversion)
         row.inversion = result.inversion->t;

@@ -21,8 +21,8 @@ namespace
     const std::string what        = settings.back().second;
     ASSERT_EQ(result.time.status, Status::finished) << what << ": " << result.time.message;
     ASSERT_FALSE(result.errors.empty()) << what;
-    EXPECT_LE(std::abs(result.min_stretch.value - smallest), error_bound(result, "min_stretch.value").value()) << what;
-    EXPECT_LE(std::abs(result.max_stretch.value - largest), error_bound(result, "max_stretch.value").value()) << what;
+    EXPECT_LE(std::abs(result.stretch.min.value - smallest), error_bound(result, "min_stretch.value").value()) << what;
+    EXPECT_LE(std::abs(result.stretch.max.value - largest), error_bound(result, "max_stretch.value").value()) << what;
     EXPECT_LE(error_bound(result, "min_stretch.value").value(), widest) << what;
     EXPECT_LE(error_bound(result, "max_stretch.value").value(), widest) << what;
   }

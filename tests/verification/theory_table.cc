@@ -59,7 +59,7 @@ main(int argc, char **argv)
                                       {"paper_energy", result.energy_balance->paper_energy()}})
         of_works = std::max(of_works, std::abs(work / values[key].get<double>() - 1.));
       for (const auto &[key, extreme] :
-           {std::pair("min_stretch", result.min_stretch), {"max_stretch", result.max_stretch}})
+           {std::pair("min_stretch", result.stretch.min), {"max_stretch", result.stretch.max}})
         of_stretches = std::max(of_stretches, std::abs(extreme.value - values[key].get<double>()));
       // At a = 0 the body never moves. The extremes are not promised; they may end as under_resolved, by name.
       const bool still    = std::abs(reference) < 1e-12;

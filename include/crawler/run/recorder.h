@@ -105,7 +105,7 @@ namespace crawler
       friction_impulse_ += duration * end.abs_friction;
       net_impulse_ += duration * std::abs(end.net_friction);
       if (friction_impulse_ > 0.)
-        result.net_friction = net_impulse_ / friction_impulse_;
+        result.residuals.net_friction = net_impulse_ / friction_impulse_;
     }
     /// Observes the end of the step, with the extreme stretches there; @p is_step_end: it is an output time or one of
     /// step_ends(). Returns true if the run may end here, since its cycles repeat.

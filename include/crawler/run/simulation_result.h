@@ -87,17 +87,53 @@ namespace crawler
     }
   };
 
+  /// Way in which a result was computed.
+  struct ResultProcess
+  {
+    Model model             = Model::nonlinear;
+    Formulation formulation = Formulation::position;
+    /// Integrator of time/integrators.h; engine: petsc, fused, or "fused, petsc" where the fused engine gave up.
+    std::string integrator, engine;
+    /// Last mesh, without cells if there was none; changes and most_cells count those of an adaptive one.
+    struct Mesh
+    {
+      unsigned int n_cells = 0, degree = 0;
+      std::size_t n_unknowns = 0;
+      bool is_shared         = false; ///< true if several ranks share it
+      unsigned int changes = 0, most_cells = 0;
+
+      void
+      exchange(auto &archive)
+      {
+        archive(n_cells, degree, n_unknowns, is_shared, changes, most_cells);
+      }
+    };
+    Mesh mesh;
+    bool jumps_move          = false; ///< true if the active stress is not smooth in time for the energy balance
+    unsigned int refinements = 0;     ///< tries before this one, whose errors were too large
+    /// Wall times; error: spent on the error (error_estimate.h).
+    struct Seconds
+    {
+      double setup = 0., solve = 0., output = 0., error = 0.;
+    };
+    Seconds seconds;
+
+    void
+    exchange(auto &archive)
+    {
+      archive(model, formulation, integrator, engine, mesh, jumps_move, refinements, seconds);
+    }
+  };
+
   /// Result of one simulation.
   struct SimulationResult
   {
     TimeOutcome time; ///< status may also be "inverted"
-    Model model = Model::nonlinear;
+    ResultProcess process;
 
     /// Displacement of the centre of mass, (1/L) int u ds [length]; not a number if it was not computed before the run
     /// broke off.
     double displacement = std::numeric_limits<double>::quiet_NaN();
-    /// Integrator of time/integrators.h; engine: petsc, fused, or "fused, petsc" where the fused engine gave up.
-    std::string integrator, engine;
     std::optional<DisplacementError> error; ///< error of the displacement
     /// Displacement corrected by its errors in space and time, and a bound of its own error [length].
     struct Corrected
@@ -116,41 +152,30 @@ namespace crawler
     standard_deviation(const std::string &key) const;
     SolutionSize size;
     std::optional<EnergyBalance> energy_balance;
-    /// Energy residual of a balance that is discarded, since works that do not balance are not known [1].
-    std::optional<double> residual_of_unknown_works;
-    bool jumps_move     = false; ///< true if the active stress is not smooth in time for the energy balance
-    double net_friction = 0.;    ///< largest |int g v ds| over largest int |g v| ds, both over time [1]
+    struct Residuals
+    {
+      /// Energy residual of a balance that is discarded, since works that do not balance are not known [1].
+      std::optional<double> unknown_works;
+      double net_friction = 0.; ///< largest |int g v ds| over largest int |g v| ds, both over time [1]
 
-    Extreme min_stretch, max_stretch;
+      void
+      exchange(auto &archive)
+      {
+        archive(unknown_works, net_friction);
+      }
+    };
+    Residuals residuals;
+
+    struct Stretch
+    {
+      Extreme min, max; ///< over body and time
+    };
+    Stretch stretch;
     std::optional<Inversion> inversion; ///< if the body inverted
 
     std::optional<Gait> gait;              ///< last stride, on request and if there is one
     std::optional<double> gait_efficiency; ///< efficiency of the whole run (gait.h), if it is known [1]
     std::optional<Cycles> cycles;          ///< set if the run ended as they repeat; numbers above are at the end time
-
-    Formulation formulation = Formulation::position;
-    /// Last mesh, without cells if there was none; changes and most_cells count those of an adaptive one.
-    struct Mesh
-    {
-      unsigned int n_cells = 0, degree = 0;
-      std::size_t n_unknowns = 0;
-      bool is_shared         = false; ///< true if several ranks share it
-      unsigned int changes = 0, most_cells = 0;
-
-      void
-      exchange(auto &archive)
-      {
-        archive(n_cells, degree, n_unknowns, is_shared, changes, most_cells);
-      }
-    };
-    Mesh mesh;
-    /// Wall times; error: spent on the error (error_estimate.h).
-    struct Seconds
-    {
-      double setup = 0., solve = 0., output = 0., error = 0.;
-    };
-    Seconds seconds;
-    unsigned int refinements = 0; ///< tries before this one, whose errors were too large
 
     /// Exchanges everything but sensitivities, which no run has.
     void

@@ -300,7 +300,7 @@ namespace crawler
         guarded(task, [&]() { finish(task, time_limit, interrupted); });
       if (task.error)
         continue;
-      task.computed.result.model = task.parameters.model;
+      task.computed.result.process.model = task.parameters.model;
       check_identities(task.computed.result, task.parameters);
     }
   }

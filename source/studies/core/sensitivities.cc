@@ -314,7 +314,7 @@ namespace crawler
     LocalSensitivity local;
     std::vector<Varied> varied;
     bool has_adjoint =
-      result.model != Model::kinematic && RecordedRun::is_possible(scene, parameters.time, choice.numerics);
+      result.process.model != Model::kinematic && RecordedRun::is_possible(scene, parameters.time, choice.numerics);
     if (has_adjoint)
       try
       {

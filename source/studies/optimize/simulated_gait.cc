@@ -28,7 +28,7 @@ namespace crawler
     bool
     has_pictures(const Task &task)
     {
-      return task.computed.result.model != Model::kinematic && !task.computed.choice.has_fronts;
+      return task.computed.result.process.model != Model::kinematic && !task.computed.choice.has_fronts;
     }
 
     /**
@@ -57,8 +57,8 @@ namespace crawler
         constexpr double pictures_of_stride = 1000., max_pictures = 20000.;
         evaluate(x, /*with_gradients=*/false, {});
         const Task &task = latest_.front();
-        std::pair<double, double> extremes{task.computed.result.min_stretch.value - 1.,
-                                           task.computed.result.max_stretch.value - 1.};
+        std::pair<double, double> extremes{task.computed.result.stretch.min.value - 1.,
+                                           task.computed.result.stretch.max.value - 1.};
         if (has_pictures(task))
           repeat(
             task,
@@ -207,7 +207,7 @@ namespace crawler
         const auto place_of            = [&](const Extreme &one) {
           return StretchPlace{one.s / scene.body.length, one.t / scene.end_time, one.value};
         };
-        return boxes.place(place_of(result.min_stretch), place_of(result.max_stretch));
+        return boxes.place(place_of(result.stretch.min), place_of(result.stretch.max));
       }
 
       /// Adds the smallest and the largest of the latest extremes to @p places, no others: each derivative costs a
@@ -254,7 +254,7 @@ namespace crawler
                             GaitValues &values)
       {
         const NumericsChoice &choice = task.computed.choice;
-        if (task.computed.result.model == Model::kinematic || choice.is_of_several_runs() ||
+        if (task.computed.result.process.model == Model::kinematic || choice.is_of_several_runs() ||
             !RecordedRun::is_possible(*task.scene, task.parameters.time, choice.numerics))
           return;
         std::vector<std::vector<Scene>> scenes(x.size());

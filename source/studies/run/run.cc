@@ -145,12 +145,12 @@ namespace crawler
         }
         sharing_.has_output = sharing_.is_shared || is_first_;
         begin_output();
-        const double setup = result_.seconds.setup = clock_.seconds();
+        const double setup = result_.process.seconds.setup = clock_.seconds();
         if (has_mesh)
           compute_on_mesh();
         else if (is_first_)
           compute_without_mesh();
-        result_.seconds.setup = setup;
+        result_.process.seconds.setup = setup;
         return finish();
       }
 
@@ -215,7 +215,7 @@ namespace crawler
           if (result_.error && (output.has_snapshots() || output.statistics) &&
               !show_pictures(level, times_without_mesh(input_), Kymograph::equidistant(), observers(), keep_going))
             result_.time.status = Status::stopped;
-          result_.seconds.output = watch.seconds();
+          result_.process.seconds.output = watch.seconds();
         });
       }
 
@@ -368,7 +368,7 @@ namespace crawler
       void
       write_summary()
       {
-        result_.model = input_.parameters.model;
+        result_.process.model = input_.parameters.model;
         write_file(memory_.folder / "summary.json",
                    summary_json(result_, size_of(communicator_), options_.command_line));
       }

@@ -134,9 +134,9 @@ namespace crawler
     {
       run.result.time = failure_of(std::current_exception());
     }
-    run.result.model  = model.model;
-    TimeOutcome &end  = run.result.time;
-    const bool is_cut = end.status == Status::stopped ||
+    run.result.process.model = model.model;
+    TimeOutcome &end         = run.result.time;
+    const bool is_cut        = end.status == Status::stopped ||
                         (end.status == Status::finished && run.result.error && !std::isfinite(run.result.error->total));
     if (is_out_of_time && is_cut)
     {

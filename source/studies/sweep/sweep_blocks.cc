@@ -33,7 +33,7 @@ namespace crawler
       const SimulationResult &result = task.computed.result;
       if (task.error || result.time.status != Status::finished)
         return HUGE_VAL;
-      return static_cast<double>(result.mesh.n_unknowns) * result.time.steps;
+      return static_cast<double>(result.process.mesh.n_unknowns) * result.time.steps;
     }
 
     /// Result in place of the answer at a point that killed its process twice.

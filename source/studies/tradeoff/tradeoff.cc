@@ -250,7 +250,7 @@ namespace crawler
         row["steps"]             = to_text(result.time.steps);
         row["rejected steps"]    = to_text(result.time.rejected_steps);
         row["newton iterations"] = to_text(result.time.newton_iterations);
-        row["most cells"]        = to_text(std::max(result.mesh.most_cells, run.numerics.n_cells));
+        row["most cells"]        = to_text(std::max(result.process.mesh.most_cells, run.numerics.n_cells));
       }
       // Levels that miss the requested accuracy have an answer all the same; its message says so.
       const bool misses_accuracy = result.time.reason == accuracy_not_met && std::isfinite(result.displacement);

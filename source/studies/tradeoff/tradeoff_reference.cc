@@ -44,8 +44,8 @@ namespace crawler
         if (outcome.status == "finished" && result.error && std::isfinite(result.error->total))
           return {fmt::format("{}, {}, {}, degree {}, Accuracy {:.0e}",
                               word_of(choice.numerics.formulation),
-                              result.engine,
-                              result.integrator,
+                              result.process.engine,
+                              result.process.integrator,
                               choice.numerics.degree,
                               accuracy),
                   result.displacement,

@@ -139,5 +139,5 @@ TEST(Failures, MeshesThatChangeLoseNoSample)
   Simulation simulation(MPI_COMM_SELF, scene, parameters.time, numerics);
   const auto result = simulation.run({}, {.energy_balance = true, .cycles = CycleWish{1., 1e-9}});
   EXPECT_EQ(result.time.reason, "step_limit") << result.time.message;
-  EXPECT_GT(result.mesh.changes, 10u);
+  EXPECT_GT(result.process.mesh.changes, 10u);
 }

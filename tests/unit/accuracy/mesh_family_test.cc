@@ -20,11 +20,11 @@ namespace
   {
     ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
     ASSERT_TRUE(result.error);
-    EXPECT_EQ(result.formulation, Formulation::stretch);
+    EXPECT_EQ(result.process.formulation, Formulation::stretch);
     EXPECT_LE(std::abs(result.displacement - exact), result.error->total + half_digit);
     EXPECT_LE(result.error->total, accuracy * std::abs(exact) * 1.001);
     EXPECT_LT(result.energy_balance->residual(), 1e-4);
-    EXPECT_LT(result.net_friction, 1e-12);
+    EXPECT_LT(result.residuals.net_friction, 1e-12);
   }
 } // namespace
 
@@ -44,7 +44,7 @@ TEST(MeshFamily, RegularOrdersNeedNoFinerMesh)
 {
   const auto result = test::run_with(test::with(test::wave(-1., 0.6), {{"Accuracy", "1e-6"}})).result;
   expect_true(result, 0.2349598822, 1e-10, 1e-6);
-  EXPECT_LE(result.mesh.n_cells, 800u);
+  EXPECT_LE(result.process.mesh.n_cells, 800u);
 }
 
 /// The little that is left in an empty cell decides when it refills: small tolerances alone see it.
@@ -63,7 +63,7 @@ TEST(MeshFamily, TimeOfAnInversion)
     const auto result = test::run_with(test::with(test::wave(-0.8, 0.77), {{"Accuracy", test::text(accuracy)}})).result;
     EXPECT_EQ(result.time.status, Status::inverted);
     EXPECT_EQ(result.time.reason, "inverted_inside");
-    EXPECT_EQ(result.formulation, Formulation::stretch);
+    EXPECT_EQ(result.process.formulation, Formulation::stretch);
     ASSERT_TRUE(result.inversion && result.inversion->error && result.inversion->places);
     EXPECT_NEAR(result.inversion->t, 0.322123, *result.inversion->error + 0.5e-6);
     EXPECT_LE(*result.inversion->error, 1.001 * accuracy);

@@ -117,7 +117,7 @@ TEST(Fallback, ABatchGivesUpWhatIsNearlyInvertedWithinItsLastStep)
   const auto at_ends = test::run_alone(run, {.energy_balance = false});
   ASSERT_TRUE(at_ends);
   EXPECT_EQ(at_ends->time.steps, 1u);
-  EXPECT_GT(at_ends->min_stretch.value, 0.3);
+  EXPECT_GT(at_ends->stretch.min.value, 0.3);
   EXPECT_FALSE(test::run_alone(run, {.energy_balance = true}));
 }
 

@@ -137,14 +137,14 @@ namespace
       // A place where the stretch is extreme is known to the root of the error of the stretch, and one of two places
       // that mirror each other is chosen by round-off.
       SimulationResult p = *a[i], q = *b[i];
-      for (const auto extreme : {&SimulationResult::min_stretch, &SimulationResult::max_stretch})
+      for (const auto extreme : {&SimulationResult::Stretch::min, &SimulationResult::Stretch::max})
       {
-        const double distance = std::abs((p.*extreme).s - (q.*extreme).s),
-                     mirrored = std::abs((p.*extreme).s + (q.*extreme).s - runs[i]->scene.body.length);
+        const double distance = std::abs((p.stretch.*extreme).s - (q.stretch.*extreme).s),
+                     mirrored = std::abs((p.stretch.*extreme).s + (q.stretch.*extreme).s - runs[i]->scene.body.length);
         EXPECT_LE(std::min(distance, mirrored), std::sqrt(tolerance)) << which << ", run " << i;
-        EXPECT_NEAR((p.*extreme).t, (q.*extreme).t, std::sqrt(tolerance)) << which << ", run " << i;
-        (q.*extreme).s = (p.*extreme).s;
-        (q.*extreme).t = (p.*extreme).t;
+        EXPECT_NEAR((p.stretch.*extreme).t, (q.stretch.*extreme).t, std::sqrt(tolerance)) << which << ", run " << i;
+        (q.stretch.*extreme).s = (p.stretch.*extreme).s;
+        (q.stretch.*extreme).t = (p.stretch.*extreme).t;
       }
       const auto x = test::numbers_of(p), y = test::numbers_of(q);
       for (std::size_t j = 0; j < x.size(); ++j)

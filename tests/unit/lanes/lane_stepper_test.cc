@@ -59,9 +59,9 @@ namespace
               const bool same_steps = true)
   {
     ASSERT_EQ(fused.time.status, Status::finished);
-    EXPECT_EQ(fused.engine, "fused") << "PETSc had to help";
+    EXPECT_EQ(fused.process.engine, "fused") << "PETSc had to help";
     EXPECT_EQ(fused.time.time, petsc.time.time);
-    EXPECT_LT(fused.net_friction, 1e-13);
+    EXPECT_LT(fused.residuals.net_friction, 1e-13);
     if (!same_steps)
     {
       EXPECT_NEAR(fused.displacement, petsc.displacement, 0.1 * tolerance);
@@ -80,8 +80,8 @@ namespace
     EXPECT_NEAR(a.elastic_energy, b.elastic_energy, 1e-3 * energy);
     EXPECT_LT(a.residual(), tolerance);
     // Places and times of an extreme are known to the root of the error of its value.
-    expect_near(fused.min_stretch, petsc.min_stretch, 0.3 * tolerance, 0.1 * std::sqrt(tolerance), "smallest");
-    expect_near(fused.max_stretch, petsc.max_stretch, 0.3 * tolerance, 0.1 * std::sqrt(tolerance), "largest");
+    expect_near(fused.stretch.min, petsc.stretch.min, 0.3 * tolerance, 0.1 * std::sqrt(tolerance), "smallest");
+    expect_near(fused.stretch.max, petsc.stretch.max, 0.3 * tolerance, 0.1 * std::sqrt(tolerance), "largest");
   }
 
   class LaneStepperTest : public ::testing::TestWithParam<Question>
@@ -99,7 +99,7 @@ TEST_P(LaneStepperTest, GivesWhatPetscGives)
   const SimulationResult petsc = run.simulate(Engine::petsc), single = run.simulate(Engine::automatic);
   const auto batch = test::run_alone(run);
   ASSERT_TRUE(batch);
-  EXPECT_EQ(petsc.engine, "petsc");
+  EXPECT_EQ(petsc.process.engine, "petsc");
   expect_same(single, petsc, tolerance);
   expect_same(*batch, petsc, tolerance);
 }

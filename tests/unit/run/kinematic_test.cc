@@ -34,9 +34,9 @@ TEST(Kinematic, SineWaveOfStrain)
   EXPECT_NEAR(result.energy_balance->dissipation, exact, 1e-11);
   EXPECT_NEAR(result.energy_balance->stress_work, exact, 1e-11); // the elastic energy is what it was
   EXPECT_LE(result.energy_balance->residual(), 1e-11);
-  EXPECT_LE(result.net_friction, 1e-12);
-  EXPECT_NEAR(result.min_stretch.value, 0.7, 1e-8);
-  EXPECT_NEAR(result.max_stretch.value, 1.3, 1e-8);
+  EXPECT_LE(result.residuals.net_friction, 1e-12);
+  EXPECT_NEAR(result.stretch.min.value, 0.7, 1e-8);
+  EXPECT_NEAR(result.stretch.max.value, 1.3, 1e-8);
 }
 
 TEST(Kinematic, OptimisedGaits)
@@ -91,8 +91,8 @@ TEST(Kinematic, Units)
   const auto result  = on_level(test::with(strain(-1., "0.3*sin(2*pi*(s/2+t/4))"), "L = 2; gamma = 3; k = 5; T = 4"));
   EXPECT_NEAR(result.displacement, 2. * exact, 1e-10);
   EXPECT_NEAR(result.energy_balance->dissipation, 3. * 2. * 2. * 2. / 4. * exact, 1e-10); // gamma L^3/T
-  EXPECT_NEAR(result.min_stretch.value, 0.7, 1e-8);
-  const double s = result.min_stretch.s, t = result.min_stretch.t;
+  EXPECT_NEAR(result.stretch.min.value, 0.7, 1e-8);
+  const double s = result.stretch.min.s, t = result.stretch.min.t;
   EXPECT_NEAR(std::sin(2. * std::acos(-1.) * (s / 2. + t / 4.)), -1., 1e-7);
 }
 

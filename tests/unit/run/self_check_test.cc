@@ -19,8 +19,8 @@ namespace
     SimulationResult result;
     result.time.status       = Status::finished;
     result.displacement      = displacement;
-    result.min_stretch.value = 0.7;
-    result.max_stretch.value = 1.3;
+    result.stretch.min.value = 0.7;
+    result.stretch.max.value = 1.3;
     EnergyBalance &energies  = result.energy_balance.emplace();
     energies.stress_work     = 0.05;
     energies.exchanged_work  = 0.08;
