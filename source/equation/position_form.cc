@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
 #include <crawler/base/parabola.h>
+#include <crawler/equation/newton_velocity.h>
 #include <crawler/equation/position_form.h>
 
 #include <algorithm>
@@ -35,6 +36,12 @@ namespace crawler
     , stress_(scene.active_stress->at(discretization.points(discretization.element.points)))
     , stresses_(1)
   {
+    if (scene.is_plain())
+      return;
+    const auto points = discretization.points(discretization.element.points);
+    const std::vector<double> zero(points.size());
+    general_ =
+      General{{scene, points}, {scene, points}, {scene, discretization, points}, zero, zero, zero, zero, zero, {}};
   }
 
   CellInput
@@ -173,9 +180,64 @@ namespace crawler
   }
 
   long
-  PositionForm::evaluate_laws(double, ConstVector, CellInput &)
+  PositionForm::evaluate_laws(const double t, const ConstVector u, CellInput &in)
   {
-    return -1;
+    if (!general_)
+      return -1;
+    auto &[friction, force, elsewhere, e, w, u_at, v_at, rate, laws] = *general_;
+    kernels_.states(in, u_at.data(), v_at.data(), e.data(), rate.data());
+    long bad = -1;
+    for (std::size_t i = 0; i < e.size(); ++i)
+    {
+      w[i] = 1. + e[i];
+      if (bad < 0 && !(w[i] > 0.))
+        bad = static_cast<long>(i);
+    }
+    elsewhere.evaluate(t, u, history);
+    if (bad >= 0)
+      return bad;
+    force.evaluate(t, e, {w, rate, elsewhere.near, elsewhere.delayed}, in.m);
+    bad = friction.evaluate(u_at, v_at, w);
+    if (bad >= 0)
+      describe_bad_law_ = friction.describe(bad);
+    else
+      bad = look_at_friction(w, friction.g);
+    laws    = {force.N.data(),
+               friction.f.data(),
+            scene.ground.profile ? friction.f_u.data() : nullptr,
+               friction.f_v.data(),
+               friction.w_f_w.data(),
+               force.by_w.data(),
+            force.by_rate.empty() ? nullptr : force.by_rate.data(),
+               force.k.data(),
+               force.m.data()};
+    in.laws = &laws;
+    return bad;
+  }
+
+  void
+  PositionForm::add_far(const std::vector<double> &by_near, const ConstVector x, const Vector result) const
+  {
+    if (solves_exactly())
+      return;
+    const ReferenceElement &element = discretization.element;
+    const unsigned int n = element.n, q = element.degree;
+    std::vector<double> change(by_near.size()), local(discretization.n_local(), 0.), owned(result.size());
+    general_->elsewhere.near_strain(x, change);
+    for (std::size_t c = 0; c < discretization.n_local_cells(); ++c)
+      for (unsigned int p = 0; p < n; ++p)
+        for (unsigned int i = 0; i < n; ++i)
+          local[c * q + i] +=
+            element.weights[p] * by_near[c * n + p] * change[c * n + p] * element.derivatives[p * n + i];
+    discretization.add_to_owned(local, owned);
+    for (std::size_t i = 0; i < result.size(); ++i)
+      result[i] += owned[i];
+  }
+
+  bool
+  PositionForm::solves_exactly() const
+  {
+    return !scene.feels_elsewhere();
   }
 
   bool
@@ -216,6 +278,8 @@ namespace crawler
   PositionForm::setup_jacobian(const double t, const ConstVector u, const ConstVector v, const double sigma)
   {
     jacobian(t, u, v, 1., sigma, jacobian_);
+    if (general_)
+      jacobian_by_near_ = general_->force.by_near;
     return jacobian_.factorize();
   }
 
@@ -229,6 +293,7 @@ namespace crawler
   PositionForm::jacobian_vmult(const ConstVector x, const Vector y)
   {
     jacobian_.multiply(x, y);
+    add_far(jacobian_by_near_, x, y);
   }
 
   bool
@@ -265,9 +330,11 @@ namespace crawler
   {
     while (stages_.size() <= stage)
       stages_.push_back(
-        {BlockTridiagonalMatrix<double>(discretization), BlockTridiagonalMatrix<double>(discretization)});
+        {BlockTridiagonalMatrix<double>(discretization), BlockTridiagonalMatrix<double>(discretization), {}});
     jacobian(t, u, v, 1., 0., stages_[stage].by_u);
     jacobian(t, u, v, 0., 1., stages_[stage].by_v);
+    if (general_)
+      stages_[stage].by_near = general_->force.by_near;
   }
 
   void
@@ -278,11 +345,21 @@ namespace crawler
     stages_[stage].by_v.multiply(x_dot, product_);
     for (std::size_t i = 0; i < result.size(); ++i)
       result[i] += product_[i];
+    add_far(stages_[stage].by_near, x, result);
   }
 
   bool
   PositionForm::velocity(const double t, const ConstVector u, const Vector v)
   {
+    if (general_)
+    {
+      std::fill(v.begin(), v.end(), 0.);
+      return newton_velocity(
+        discretization,
+        v,
+        [&](const ConstVector at, const Vector F) { return residual(t, u, at, F); },
+        [&](const ConstVector at, const Vector change) { return solve_with_mass(t, u, at, change); });
+    }
     if (!residual(t, u, {}, v))
       return false;
     for (double &value : v)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
-#include <crawler/equation/general_position_form.h>
+#include <crawler/equation/position_form.h>
 #include <crawler/lanes/lane_adjoint.h>
 #include <crawler/run/simulation.h>
 #include <crawler/time/failure.h>
@@ -116,7 +116,7 @@ namespace crawler
     }
     else
     {
-      auto form       = create_position_form(scene_, *mesh_.discretization);
+      auto form       = std::make_unique<PositionForm>(scene_, *mesh_.discretization);
       mesh_.position  = form.get();
       mesh_.assembler = std::move(form);
       mesh_.position->keep_stresses(n_stages);

@@ -16,7 +16,7 @@
 
 #include <crawler/base/communication.h>
 #include <crawler/base/mpi_session.h>
-#include <crawler/equation/general_position_form.h>
+#include <crawler/equation/position_form.h>
 
 #include <algorithm>
 #include <limits>
@@ -36,7 +36,7 @@ namespace
     explicit Bench(const unsigned int n_cells)
       : scene(test::parameters_with(test::wave(-1., 0.4)).create_scene())
       , discretization(MPI_COMM_WORLD, 1., n_cells, degree)
-      , assembler(create_position_form(scene, discretization))
+      , assembler(std::make_unique<PositionForm>(scene, discretization))
       , y(assembler->n_owned(), 0.)
       , rate(y)
       , F(y)

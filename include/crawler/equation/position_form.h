@@ -6,6 +6,7 @@
 #include <crawler/time/implicit_system.h>
 
 #include <limits>
+#include <optional>
 
 namespace crawler
 {
@@ -17,8 +18,16 @@ namespace crawler
     double strain       = 0.; ///< int (w - 1)^2 ds
   };
 
-  /// Position form F(t, u, u') = M(u) u' + K u + m = 0 of a plain body (crawler_equation.h; doc/numerics.md, "The
-  /// semi-discrete system"). The unknowns of a rank are the displacements of its nodes [length].
+  /**
+   * Position form F(t, u, u') = M(u) u' + K u + m = 0 (crawler_equation.h; doc/numerics.md, "The semi-discrete
+   * system"). The unknowns of a rank are the displacements of its nodes [length]. In a general scene (doc/theory.md,
+   * "General bodies and grounds"), for every test function phi
+   *
+   *   int f(s, s + u, w, v) phi ds + int N phi_s ds = 0,   N = m(s, t, w, w_t, ...) + k(s) (w - 1);
+   *
+   * laws and their derivatives are computed at all quadrature points first, and then integrated. A stretch at another
+   * place couples distant cells: the products with the Jacobian include this, the elimination does not.
+   */
   class PositionForm : public Assembler, public ImplicitSystem
   {
   public:
@@ -59,6 +68,8 @@ namespace crawler
     void
     jacobian_vmult(ConstVector x, Vector y) override;
     bool
+    solves_exactly() const override; ///< false where the stretch at another place contributes
+    bool
     setup_complex_jacobians(double t, ConstVector u, ConstVector v, std::span<const Complex> sigma) override;
     void
     solve_with_complex_jacobian(unsigned int i, std::span<const Complex> b, std::span<Complex> x) override;
@@ -66,6 +77,8 @@ namespace crawler
     setup_stage(unsigned int stage, double t, ConstVector u, ConstVector v) override;
     void
     stage_vmult(unsigned int stage, ConstVector x, ConstVector x_dot, Vector result) override;
+    /// In general scenes by Newton's method: the friction may depend on the velocity, the active stress on its
+    /// derivative.
     bool
     velocity(double t, ConstVector u, Vector v) override;
     CellIntegrals
@@ -87,27 +100,41 @@ namespace crawler
     std::vector<double>
     error_indicators(double t, ConstVector y, ConstVector v);
 
-  protected:
+  private:
     /// Local arrays of the displacement @p u and the velocity @p v (may be empty), with m of the time @p t.
     CellInput
     input(double t, ConstVector u, ConstVector v);
 
     /// Evaluates the laws of a general scene there: sets the laws of @p in, whose arrays are local; the unknowns @p u
     /// are owned. Returns the number of the first quadrature point [cell][point] where they are not defined, or -1.
-    virtual long
+    long
     evaluate_laws(double t, ConstVector u, CellInput &in);
 
     /// Replaces @p x by M^-1 x for the mass matrix of a state; false if that is singular.
     bool
     solve_with_mass(double t, ConstVector u, ConstVector v, Vector x);
 
-    const CellKernels &kernels_;
+    /// Adds the contribution of the stretch at another place to a product with the Jacobian.
+    void
+    add_far(const std::vector<double> &by_near, ConstVector x, Vector result) const;
 
-  private:
     const std::vector<double> &
     stress_at(double t);
 
+    const CellKernels &kernels_;
+    /// Laws of a general scene, and the state, at the quadrature points.
+    struct General
+    {
+      FrictionAtPoints friction;
+      BodyForceAtPoints force;
+      StretchElsewhere elsewhere;
+      std::vector<double> e, w, u, v, rate;
+      PointLaws<double> laws;
+    };
+    std::optional<General> general_;
+
     BlockTridiagonalMatrix<double> jacobian_;
+    std::vector<double> jacobian_by_near_;
     std::unique_ptr<BlockTridiagonalMatrix<double>> mass_; ///< made when a velocity is first needed
     const std::unique_ptr<ActiveStressAtPoints> stress_;
     /// Active stress m at the stress points.
@@ -124,6 +151,7 @@ namespace crawler
     struct Stage
     {
       BlockTridiagonalMatrix<double> by_u, by_v; ///< dF/du, dF/dv
+      std::vector<double> by_near;               ///< derivative of the force by the stretch at the other place
     };
     std::vector<Stage> stages_;
     std::vector<double> product_;

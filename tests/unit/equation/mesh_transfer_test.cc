@@ -6,8 +6,8 @@
 #include "../../support/run_text.h"
 #include "../../support/test.h"
 
-#include <crawler/equation/general_position_form.h>
 #include <crawler/equation/mesh_transfer.h>
+#include <crawler/equation/position_form.h>
 
 using namespace crawler;
 
@@ -96,8 +96,8 @@ TEST(MeshTransfer, DivisionKeepsLengthCentreAndEnergy)
   {
     const Meshes meshes(q);
     ASSERT_EQ(meshes.fine->n_cells(), 8u);
-    const auto from = create_position_form(meshes.scene, *meshes.coarse),
-               to   = create_position_form(meshes.scene, *meshes.fine);
+    const auto from = std::make_unique<PositionForm>(meshes.scene, *meshes.coarse),
+               to   = std::make_unique<PositionForm>(meshes.scene, *meshes.fine);
     const auto y    = state(*from, 0.1);
     const auto z    = transferred(*from, y, *to);
     ASSERT_EQ(z.size(), to->n_owned());
@@ -114,8 +114,8 @@ TEST(MeshTransfer, JoiningKeepsLengthAndCentreAndEnergyAtMost)
     {
       const Meshes meshes(q);
       ASSERT_EQ(meshes.again->n_cells(), 5u);
-      const auto from = create_position_form(meshes.scene, *meshes.fine),
-                 to   = create_position_form(meshes.scene, *meshes.again);
+      const auto from = std::make_unique<PositionForm>(meshes.scene, *meshes.fine),
+                 to   = std::make_unique<PositionForm>(meshes.scene, *meshes.again);
       const auto y    = state(*from, roughness);
       const auto z    = transferred(*from, y, *to);
       ASSERT_EQ(z.size(), to->n_owned());
@@ -131,9 +131,9 @@ TEST(MeshTransfer, ThereAndBackAgain)
   for (unsigned int q = 1; q <= ReferenceElement::highest_degree; ++q)
   {
     const Meshes meshes(q);
-    const auto from = create_position_form(meshes.scene, *meshes.coarse),
-               via  = create_position_form(meshes.scene, *meshes.fine),
-               to   = create_position_form(meshes.scene, *meshes.again);
+    const auto from = std::make_unique<PositionForm>(meshes.scene, *meshes.coarse),
+               via  = std::make_unique<PositionForm>(meshes.scene, *meshes.fine),
+               to   = std::make_unique<PositionForm>(meshes.scene, *meshes.again);
     const auto y    = state(*from, 0.1);
     test::expect_near(transferred(*via, transferred(*from, y, *via), *to), y, 1e-13, name(q));
   }

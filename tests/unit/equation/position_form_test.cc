@@ -3,7 +3,7 @@
 #include "../../support/features.h"
 #include "../../support/test.h"
 
-#include <crawler/equation/general_position_form.h>
+#include <crawler/equation/position_form.h>
 
 using namespace crawler;
 using test::Feature;
@@ -57,7 +57,7 @@ namespace
     Case(const Feature &feature, const unsigned int degree)
       : scene(test::parameters_with(feature.settings).create_scene())
       , d(MPI_COMM_SELF, 1., 3, degree)
-      , form(create_position_form(scene, d))
+      , form(std::make_unique<PositionForm>(scene, d))
       , y(form->n_owned())
       , y_dot(form->n_owned())
     {
