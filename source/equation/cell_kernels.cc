@@ -52,8 +52,11 @@ namespace crawler
       {
         long bad = -1;
         for_cells(in, [&](const auto &laws, const unsigned int c) {
-          const auto at = cell_residual<n, double>(
-            in.element->tables(), in.cell_size[c], laws, in.u + c * q, velocity(in, c), F + c * q);
+          const ElementTables tables = in.element->tables();
+          const double h = in.cell_size[c], *v = velocity(in, c);
+          double N[n], f[n];
+          const auto at = cell_forces<n>(tables, h, laws, in.u + c * q, v, N, f);
+          add_forces<n>(tables, h, N, v != nullptr ? f : nullptr, F + c * q);
           for (int p = 0; p < n; ++p)
             if (!(at.w[p] > 0.) && bad < 0)
               bad = static_cast<long>(c) * n + p;
@@ -85,7 +88,14 @@ namespace crawler
       integrals(const CellInput &in, CellIntegrals &sum)
       {
         for_cells(in, [&](const auto &laws, const unsigned int c) {
-          cell_integrals<n>(in.element->tables(), in.cell_size[c], laws, in.u + c * q, in.v + c * q, sum);
+          const ElementTables tables = in.element->tables();
+          const CellDensities<n, double> all(tables, in.cell_size[c], laws, in.u + c * q, in.v + c * q);
+          for (int p = 0; p < n; ++p)
+          {
+            const double ds = in.cell_size[c] * tables.weights[p];
+            sum.displacement += ds * all.u[p];
+            add_densities(ds, all.at[p], all.v[p], sum);
+          }
         });
       }
 
@@ -101,15 +111,15 @@ namespace crawler
       states(const CellInput &in, double *u, double *v, double *e, double *rate)
       {
         static constexpr double rest[n] = {};
+        const ElementTables tables      = in.element->tables();
         for (unsigned int c = 0; c < in.n_cells; ++c)
-          cell_states<n, double>(in.element->tables(),
-                                 in.cell_size[c],
-                                 in.u + c * q,
-                                 in.v != nullptr ? in.v + c * q : rest,
-                                 u + c * n,
-                                 v + c * n,
-                                 e + c * n,
-                                 rate + c * n);
+        {
+          const double *own_u = in.u + c * q, *own_v = in.v != nullptr ? in.v + c * q : rest;
+          evaluate<n>(tables.values, own_u, 1., 0., u + c * n);
+          evaluate<n>(tables.derivatives, own_u, 1. / in.cell_size[c], 0., e + c * n);
+          evaluate<n>(tables.values, own_v, 1., 0., v + c * n);
+          evaluate<n>(tables.derivatives, own_v, 1. / in.cell_size[c], 0., rate + c * n);
+        }
       }
 
       static constexpr CellKernels table = {residual, blocks, integrals, forces, states};

@@ -41,7 +41,12 @@ namespace crawler
       forward(const unsigned int n_cells, const Number *blocks, Number *x)
       {
         for (unsigned int c = 0; c < n_cells; ++c)
-          forward_cell<q>(blocks + c * n * n, x + c * q);
+        {
+          const Number *A = blocks + c * n * n;
+          solve_inner<q>(A, x + c * q);
+          eliminate_inner<q>(A, 0, x + c * q);
+          eliminate_inner<q>(A, q, x + c * q);
+        }
       }
 
       static void

@@ -46,24 +46,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
   };
 
-  /// Place, velocity, strain and stretch rate at the points of a cell.
-  template <int n, typename Number>
-  inline void
-  cell_states(const ElementTables &tables,
-              const double h,
-              const Number *u,
-              const Number *v,
-              Number *u_at,
-              Number *v_at,
-              Number *e,
-              Number *rate)
-  {
-    evaluate<n>(tables.values, u, 1., 0., u_at);
-    evaluate<n>(tables.derivatives, u, 1. / h, 0., e);
-    evaluate<n>(tables.values, v, 1., 0., v_at);
-    evaluate<n>(tables.derivatives, v, 1. / h, 0., rate);
-  }
-
   /// Adds int N phi_i,s, and int f phi_i unless @p f is null, to the nodes from @p first to before @p end.
   template <int n, typename Number, typename Size>
   [[gnu::always_inline]] inline void
@@ -105,18 +87,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   {
     const StateAtPoints<n, Number> at(tables, h, u, v);
     laws.forces(at.e, at.w, v != nullptr ? at.v : nullptr, N, f);
-    return at;
-  }
-
-  /// Adds the residual of a cell to @p F, without friction if @p v is null; returns the state.
-  template <int n, typename Number, typename Size, typename Laws>
-  inline StateAtPoints<n, Number>
-  cell_residual(
-    const ElementTables &tables, const Size &h, const Laws &laws, const Number *u, const Number *v, Number *F)
-  {
-    Number N[n], f[n];
-    const auto at = cell_forces<n>(tables, h, laws, u, v, N, f);
-    add_forces<n, Number>(tables, h, N, v != nullptr ? f : nullptr, F);
     return at;
   }
 
@@ -232,19 +202,4 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         this->v[p] = state.v[p];
     }
   };
-
-  /// Adds the integrals of a cell to @p sum, which has the members of CellIntegrals (cell_kernels.h).
-  template <int n, typename Number, typename Laws, typename Sums>
-  inline void
-  cell_integrals(
-    const ElementTables &tables, const double h, const Laws &laws, const Number *u, const Number *v, Sums &sum)
-  {
-    const CellDensities<n, Number> densities(tables, h, laws, u, v);
-    for (int p = 0; p < n; ++p)
-    {
-      const double ds = h * tables.weights[p];
-      sum.displacement += ds * densities.u[p];
-      add_densities(ds, densities.at[p], densities.v[p], sum);
-    }
-  }
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

@@ -86,16 +86,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       y[end] -= A[end * (q + 1) + i] * y[i];
   }
 
-  /// Eliminates the inner nodes from the right-hand side @p y of the cell's nodes.
-  template <int q, typename Number>
-  inline void
-  forward_cell(const Number *A, Number *y)
-  {
-    solve_inner<q>(A, y);
-    eliminate_inner<q>(A, 0, y);
-    eliminate_inner<q>(A, q, y);
-  }
-
   /// Recovers the inner nodes from the solution at the end nodes.
   template <int q, typename Number>
   inline void
