@@ -6,17 +6,6 @@
 
 namespace crawler
 {
-  std::vector<double>
-  weights_at_zero(const std::span<const double> x)
-  {
-    std::vector<double> weights(x.size(), 1.);
-    for (std::size_t k = 0; k < x.size(); ++k)
-      for (std::size_t j = 0; j < x.size(); ++j)
-        if (j != k)
-          weights[k] *= x[j] / (x[j] - x[k]);
-    return weights;
-  }
-
   SimulationResult
   combined(const Scene &scene,
            const std::span<const SimulationResult *const> results,

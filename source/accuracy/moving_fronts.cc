@@ -2,6 +2,7 @@
 #include <crawler/accuracy/extrapolation.h>
 #include <crawler/accuracy/finer_run_errors.h>
 #include <crawler/accuracy/moving_fronts.h>
+#include <crawler/mesh/reference_element.h>
 #include <crawler/run/gait_efficiency.h>
 #include <crawler/run/result_table.h>
 
@@ -118,7 +119,7 @@ namespace crawler
           widths.push_back(levels_[i].width);
           results.push_back(&levels_[i].result);
         }
-        const std::vector<double> weights = weights_at_zero(widths);
+        const std::vector<double> weights = interpolation_matrix(widths, {0.});
         SimulationResult sum              = combined(problem_.scene, results, weights);
         for (const auto extreme : {&SimulationResult::Stretch::min, &SimulationResult::Stretch::max})
         {

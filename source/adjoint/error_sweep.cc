@@ -30,9 +30,8 @@ namespace crawler
         for (const double x : points)
           for (unsigned int j = degree + 1; j <= degree + n; ++j)
           {
-            const double y = 2. * x - 1.;
-            values.push_back((std::legendre(j, y) - std::legendre(j - 2, y)) / (2. * std::sqrt(2. * j - 1.)));
-            slopes.push_back(std::legendre(j - 1, y) * std::sqrt(2. * j - 1.));
+            values.push_back(integrated_legendre(j - 1, x) * std::sqrt(2. * j - 1.));
+            slopes.push_back(std::legendre(j - 1, 2. * x - 1.) * std::sqrt(2. * j - 1.));
           }
       }
     };

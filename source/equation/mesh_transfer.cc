@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/equation/mesh_transfer.h>
+#include <crawler/mesh/reference_element.h>
 
 #include <cmath>
 #include <map>
@@ -14,14 +15,6 @@ namespace crawler
       for (double &x : places)
         x = 0.5 * (x + which);
       return places;
-    }
-
-    /// Integral from 0 to x of the Legendre polynomial P_k(2 x - 1).
-    double
-    integrated_legendre(const unsigned int k, const double x)
-    {
-      const double z = 2. * x - 1.;
-      return k == 0 ? x : (std::legendre(k + 1, z) - std::legendre(k - 1, z)) / (2. * (2. * k + 1.));
     }
 
     /// Product y = matrix x, both of one cell.

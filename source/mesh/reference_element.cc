@@ -2,6 +2,7 @@
 #include <crawler/base/gauss_rule.h>
 #include <crawler/mesh/reference_element.h>
 
+#include <cmath>
 #include <map>
 #include <stdexcept>
 
@@ -27,32 +28,12 @@ namespace crawler
     return matrix;
   }
 
-  namespace
+  double
+  integrated_legendre(const unsigned int k, const double x)
   {
-    /// Integrals from 0 to each of @p points of the Lagrange polynomials through @p nodes: [points][nodes].
-    std::vector<double>
-    integration_matrix(const std::vector<double> &nodes, const std::vector<double> &points)
-    {
-      const auto n               = static_cast<unsigned int>(nodes.size());
-      const QuadratureRule gauss = gauss_rule(n);
-      std::vector<double> matrix;
-      for (const double end : points)
-      {
-        std::vector<double> x;
-        for (unsigned int g = 0; g < n; ++g)
-          x.push_back(end * gauss.points[g]);
-        const std::vector<double> values = interpolation_matrix(nodes, x);
-        for (unsigned int i = 0; i < n; ++i)
-        {
-          double sum = 0.;
-          for (unsigned int g = 0; g < n; ++g)
-            sum += end * gauss.weights[g] * values[g * n + i];
-          matrix.push_back(sum);
-        }
-      }
-      return matrix;
-    }
-  } // namespace
+    const double z = 2. * x - 1.;
+    return k == 0 ? x : (std::legendre(k + 1, z) - std::legendre(k - 1, z)) / (2. * (2. * k + 1.));
+  }
 
   ReferenceElement::ReferenceElement(const unsigned int degree)
     : degree(degree)
@@ -75,10 +56,16 @@ namespace crawler
           stiffness[i * n + j] += weights[p] * derivatives[p * n + i] * derivatives[p * n + j];
 
     stretch_derivatives = interpolation_matrix(nodes, stretch_points, /*derivative=*/true);
-    integrate_points    = integration_matrix(points, points);
     sample_places       = {0., 1.};
     sample_places.insert(sample_places.begin() + 1, points.begin(), points.end());
     sample_derivatives = interpolation_matrix(nodes, sample_places, /*derivative=*/true);
+    for (const double end : points)
+      for (unsigned int j = 0; j < n; ++j)
+      {
+        double &sum = integrate_points.emplace_back(0.);
+        for (unsigned int k = 0; k < n; ++k) // Gauss's rule gives the Legendre series of a Lagrange polynomial exactly
+          sum += (2. * k + 1.) * weights[j] * std::legendre(k, 2. * points[j] - 1.) * integrated_legendre(k, end);
+      }
   }
 
   const ReferenceElement &

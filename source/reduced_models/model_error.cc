@@ -25,7 +25,8 @@ namespace crawler
       std::size_t n_s = 0, n_t = 0;
       std::vector<double> e;   ///< strain, [t][s] with n_t + 1 times
       std::vector<double> B_t; ///< int_0^s e_t
-      std::vector<double> f;   ///< m_s + k e_s; empty: 0
+      /// True if f = m_s + k e_s is B_t up to a function of time, which no mode of a correction sees; else f is 0.
+      bool is_wave = false;
 
       double
       place(const std::size_t i) const
@@ -39,44 +40,11 @@ namespace crawler
       }
     };
 
-    /// Motion with f = m_s + k e_s = c sum a sin q(s+ct) + b cos q(s+ct), the leading-order velocity; B_t = f(s) -
-    /// f(0).
     Motion
-    motion_of(const NaturalWave &wave, const std::size_t n_s, const std::size_t n_t)
+    motion_of(const ActiveStress &strain, const std::size_t n_s, const std::size_t n_t, const bool is_wave)
     {
-      Motion motion{n_s, n_t, {}, {}, {}};
-      for (auto *field : {&motion.e, &motion.B_t, &motion.f})
-        field->assign(n_s * (n_t + 1), 0.);
-      std::vector<double> sine(n_s), cosine(n_s);
-      for (const auto &h : wave.harmonics)
-      {
-        for (std::size_t i = 0; i < n_s; ++i)
-        {
-          sine[i]   = std::sin(h.q * motion.place(i));
-          cosine[i] = std::cos(h.q * motion.place(i));
-        }
-        for (std::size_t n = 0; n <= n_t; ++n)
-        {
-          const double theta = h.q * wave.speed * motion.time(n), st = std::sin(theta), ct = std::cos(theta);
-          const double in_sine = h.a * ct - h.b * st, in_cosine = h.a * st + h.b * ct, c = wave.speed;
-          double *e = motion.e.data() + n * n_s, *B_t = motion.B_t.data() + n * n_s, *f = motion.f.data() + n * n_s;
-          for (std::size_t i = 0; i < n_s; ++i)
-          {
-            const double velocity = c * (in_sine * sine[i] + in_cosine * cosine[i]);
-            e[i] += (in_sine - h.a) * sine[i] + (in_cosine - h.b) * cosine[i];
-            f[i] += velocity;
-            B_t[i] += velocity - c * in_cosine;
-          }
-        }
-      }
-      return motion;
-    }
-
-    /// Motion for e = -m/k, f = 0.
-    Motion
-    motion_of(const ActiveStress &strain, const std::size_t n_s, const std::size_t n_t)
-    {
-      Motion motion{n_s, n_t, std::vector<double>(n_s * (n_t + 1)), std::vector<double>(n_s * (n_t + 1)), {}};
+      const std::vector<double> zero(n_s * (n_t + 1));
+      Motion motion{n_s, n_t, zero, zero, is_wave};
       std::vector<double> points(n_s), e_t(n_s);
       for (std::size_t i = 0; i < n_s; ++i)
         points[i] = motion.place(i);
@@ -163,9 +131,9 @@ namespace crawler
           sum += (n == 0 || n == n_t ? 0.5 : 1.) * dt * velocity;
           for (std::size_t i = 0; i < n_s; ++i)
             v[i] = g[i] * (v[i] - v_mean + velocity) - u_t[i];
-          if (!motion_.f.empty())
+          if (motion_.is_wave)
             for (std::size_t i = 0; i < n_s; ++i)
-              v[i] -= motion_.f[n * n_s + i];
+              v[i] -= B_t[i];
           for (std::size_t j = 0; j < n_modes_; ++j)
           {
             double product  = 0.;
@@ -282,7 +250,9 @@ namespace crawler
     const double n_t   = per_wave * wave.n_waves() * std::ceil(strides);
     if (!(n_t <= max_steps))
       return {};
-    return estimate(motion_of(wave, static_cast<std::size_t>(n_s), static_cast<std::size_t>(n_t)), scene);
+    const Motion motion = motion_of(
+      leading_order_strain(wave), static_cast<std::size_t>(n_s), static_cast<std::size_t>(n_t), /*is_wave=*/true);
+    return estimate(motion, scene);
   }
 
   ModelErrors
@@ -293,7 +263,7 @@ namespace crawler
     ModelErrors last;
     for (std::size_t n = 32; n <= most; n *= 2)
     {
-      const Motion motion = motion_of(strain, n, n);
+      const Motion motion = motion_of(strain, n, n, /*is_wave=*/false);
       if (!starts_at_rest(motion))
         return {};
       const ModelErrors now = estimate(motion, scene);

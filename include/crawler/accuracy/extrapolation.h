@@ -9,11 +9,6 @@
 
 namespace crawler
 {
-  /// Weights c_k = prod_(j != k) x_j/(x_j - x_k) that give the polynomial through values at the places @p x (all
-  /// different, none 0) at 0 as the sum of the values times these weights.
-  std::vector<double>
-  weights_at_zero(std::span<const double> x);
-
   /// Extrapolated result: the last of the @p results, with the sum of @p weights times all of them for displacement and
   /// works, those of the last stride too, and the numbers that follow from them.
   SimulationResult

@@ -64,6 +64,10 @@ namespace crawler
   const ReferenceElement &
   reference_element(unsigned int degree);
 
+  /// Integral from 0 to @p x of the Legendre polynomial P_k(2 x - 1).
+  double
+  integrated_legendre(unsigned int k, double x);
+
   /// Values of the Lagrange polynomials through @p nodes, or of their derivatives, at @p points: [points][nodes].
   std::vector<double>
   interpolation_matrix(const std::vector<double> &nodes, const std::vector<double> &points, bool derivative = false);

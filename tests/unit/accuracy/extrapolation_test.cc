@@ -3,13 +3,14 @@
 #include "../../support/test.h"
 
 #include <crawler/accuracy/extrapolation.h>
+#include <crawler/mesh/reference_element.h>
 
 using namespace crawler;
 
-/// The weights sum to 1 and take x, x^2, ... to 0: polynomials are extrapolated exactly.
+/// The weights of the value at 0 sum to 1 and take x, x^2, ... to 0: polynomials are extrapolated exactly.
 TEST(Extrapolation, IsExactForPolynomials)
 {
-  const std::vector<double> x = {0.8, 0.4, 0.2, 0.1}, weights = weights_at_zero(x);
+  const std::vector<double> x = {0.8, 0.4, 0.2, 0.1}, weights = interpolation_matrix(x, {0.});
   for (int power = 0; power < 4; ++power)
   {
     double sum = 0.;
