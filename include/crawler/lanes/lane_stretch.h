@@ -88,21 +88,29 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       {
         const auto right = nodes_.with_derivatives(j + 1);
         const Pack c     = setup_.stretch.is_power ? -1. / (h[j] * slope_[j]) : broadcast<Pack>(-1. / h[j]);
-        auto &row        = cells_.row(j);
-        row.K[0]         = -c * left.by_left;
-        row.K[1]         = c * (right.by_left - left.by_right);
-        row.K[2]         = c * right.by_right;
+        Pack K[]         = {-c * left.by_left, c * (right.by_left - left.by_right), c * right.by_right};
+        Pack M[]         = {Pack{}, broadcast<Pack>(1.), Pack{}};
         if (setup_.stretch.is_power) // derivative dc/dq = a/w
-          row.K[1] += a_ * (right.v - left.v) * (-1. / h[j]) / w_[j];
+          K[1] += a_ * (right.v - left.v) * (-1. / h[j]) / w_[j];
         if (sees_rate)
         {
-          row.M[0] = -c * left.by_left_rate;
-          row.M[1] = 1. + c * (right.by_left_rate - left.by_right_rate);
-          row.M[2] = c * right.by_right_rate;
+          M[0] = -c * left.by_left_rate;
+          M[1] += c * (right.by_left_rate - left.by_right_rate);
+          M[2] = c * right.by_right_rate;
+        }
+        const auto real    = [&](const int i) { return K[i] + shifts_.real * M[i]; };
+        const auto complex = [&](const int i, const Number &shift) {
+          return Number{K[i] + shift.re * M[i], shift.im * M[i]};
+        };
+        cells_.real[j] = {real(0), real(1), real(2)};
+        for (int p = 0; p < pairs; ++p)
+        {
+          const Number &shift  = shifts_.complex[p];
+          cells_.complex[p][j] = {complex(0, shift), complex(1, shift), complex(2, shift)};
         }
         left = right;
       }
-      cells_.factorize(shifts_, sees_rate);
+      cells_.factorize(pairs);
     }
 
     /// Solves the real system and those of all pairs, @p y [pair][unknown]; null: the real one alone.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/lanes/lane_corners.h>
 #include <crawler/lanes/lane_engine.h>
 #include <crawler/lanes/lane_kernel_table.h>
 #include <crawler/lanes/lane_laws.h>
 #include <crawler/lanes/lane_memory.h>
+#include <crawler/lanes/lane_tridiagonal.h>
 
 #include <cstddef>
 
@@ -31,7 +31,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       , is_general_((setup.laws & LaneLaws::general) != 0)
       , general_(setup)
       , kernels_(lane_kernels<Pack>(setup.degree, setup.n_cells))
-      , corners_(static_cast<int>(setup.n_cells), static_cast<int>(setup.degree))
+      , corners_(static_cast<int>(setup.n_cells) + 1, static_cast<int>(setup.degree))
     {
       mesh_.n_cells = static_cast<int>(setup.n_cells);
       mesh_.sizes   = setup.sizes;
@@ -87,6 +87,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       general_.lay_out(memory);
       memory.pieces(block_size(), blocks_);
       memory.pieces(pairs * block_size(), complex_blocks_);
+      memory.pieces(4 * std::size_t(setup_.n_cells), schur_);
+      memory.pieces(pairs * 4 * std::size_t(setup_.n_cells), complex_schur_);
       corners_.lay_out(memory);
     }
 
@@ -128,17 +130,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       LaneShifts<Pack, pairs> shifts;
       shifts.set(setup_, inverse_h);
       const auto factorize = is_transposed ? kernels_.factorize_transposed : kernels_.factorize;
-      factorize(mesh_,
-                u,
-                v,
-                shifts.real,
-                pairs,
-                shifts.complex,
-                blocks_,
-                corners_.schur,
-                complex_blocks_,
-                corners_.complex_schur);
-      corners_.factorize(pairs);
+      factorize(mesh_, u, v, shifts.real, pairs, shifts.complex, blocks_, schur_, complex_blocks_, complex_schur_);
+      factorize_corners(pairs);
     }
 
     /// Solves with the real system and, unless @p y is null, K + (l_j/h) M for all pairs, @p y [pair][unknown].
@@ -149,7 +142,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       kernels_.forward(N, blocks_, x);
       for (int j = 0; j < n_pairs; ++j)
         kernels_.complex_forward(N, complex_blocks_ + j * block_size(), y + j * n);
-      corners_.solve(x, y, n_pairs, n);
+      corners_.solve(x, y, n);
       kernels_.backward(N, blocks_, x);
       for (int j = 0; j < n_pairs; ++j)
         kernels_.complex_backward(N, complex_blocks_ + j * block_size(), y + j * n);
@@ -164,8 +157,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       constexpr double settled = 1e-10, tiny = 1e-13;
       if (!is_general_)
       {
-        kernels_.balance(mesh_, u, nullptr, m, v, blocks_, corners_.schur);
-        corners_.factorize(0);
+        kernels_.balance(mesh_, u, nullptr, m, v, blocks_, schur_);
+        factorize_corners(0);
         solve(v);
         return Pack{};
       }
@@ -173,8 +166,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int i = 0; i < max_corrections; ++i)
       {
         evaluate(t, u, v, m, /*slopes=*/true);
-        kernels_.balance(mesh_, u, v, m, correction, blocks_, corners_.schur);
-        corners_.factorize(0);
+        kernels_.balance(mesh_, u, v, m, correction, blocks_, schur_);
+        factorize_corners(0);
         solve(correction);
         const auto is_done = left <= 1.; // a lane does not change because others do
         Pack change{}, size{};
@@ -209,6 +202,25 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return sum;
     }
 
+    /// Adds the Schur complements of the cells up to the matrices of the corners between them, and factorizes these.
+    void
+    factorize_corners(const int n_pairs) const
+    {
+      const auto add_up = [N = mesh_.n_cells](const auto *schur, auto *rows) {
+        rows[0].pivot = schur[0];
+        for (int c = 0; c < N; ++c, schur += 4)
+        {
+          rows[c].after      = schur[1];
+          rows[c + 1].before = schur[2];
+          rows[c + 1].pivot  = c + 1 < N ? schur[3] + schur[4] : schur[3];
+        }
+      };
+      add_up(schur_, corners_.real);
+      for (int j = 0; j < n_pairs; ++j)
+        add_up(complex_schur_ + 4 * j * mesh_.n_cells, corners_.complex[j]);
+      corners_.factorize(n_pairs);
+    }
+
     /// Evaluates the laws for a state.
     Pack
     evaluate(const double *t, const Pack *u, const Pack *v, const Pack *m, const bool slopes)
@@ -230,6 +242,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     const LaneKernelTable<Pack> &kernels_;
     Pack *blocks_;
     Number *complex_blocks_; ///< [pair][...]
-    LaneCorners<Pack, pairs> corners_;
+    Pack *schur_;            ///< [cell][4] Schur complements
+    Number *complex_schur_;  ///< [pair][cell][4]
+    LaneTridiagonal<Pack, pairs> corners_;
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET
