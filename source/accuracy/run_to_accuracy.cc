@@ -153,7 +153,7 @@ namespace crawler
         end_before_inversion(files);
         answer.result = files;
       }
-      answer.result.process.seconds.output = files.seconds.output;
+      answer.result.process.seconds.output = files.process.seconds.output;
       return answer;
     }
   } // namespace

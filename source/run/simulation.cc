@@ -207,8 +207,8 @@ namespace crawler
     {
       result().time = failure_while_integrating();
     }
-    SimulationResult answer = finish();
-    answer.seconds.solve    = now() - start - answer.seconds.output;
+    SimulationResult answer      = finish();
+    answer.process.seconds.solve = now() - start - answer.process.seconds.output;
     if (journal != nullptr)
       journal->end(answer);
     return answer;

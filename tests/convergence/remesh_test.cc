@@ -22,8 +22,8 @@ TEST(Remesh, AnAdaptiveRunTakesTheStepsOfAFineMesh)
       numerics.n_cells    = 8;
       numerics.mesh       = {.tolerance = 1e-8, .smallest_cell = 1e-3, .most_cells = 1000};
       const auto adaptive = Simulation(MPI_COMM_WORLD, scene, parameters.time, numerics).run({}, {});
-      EXPECT_GE(adaptive.mesh.changes, 5u) << name;
+      EXPECT_GE(adaptive.process.mesh.changes, 5u) << name;
       EXPECT_LE(adaptive.time.steps, 1.1 * fine.time.steps + 1.) << name;
-      EXPECT_LE(adaptive.time.rejected_steps, adaptive.mesh.changes + 1) << name;
+      EXPECT_LE(adaptive.time.rejected_steps, adaptive.process.mesh.changes + 1) << name;
     }
 }

@@ -256,7 +256,7 @@ TEST(CycleStop, AmongManyRuns)
   for (std::size_t i = 0; i < tasks.size(); ++i)
   {
     const SimulationResult &together = tasks[i].computed.result, alone = compute(tasks[i].parameters);
-    EXPECT_EQ(together.engine, "fused") << i;
+    EXPECT_EQ(together.process.engine, "fused") << i;
     ASSERT_TRUE(together.error) << i;
     ASSERT_EQ(together.cycles.has_value(), i < 2) << i;
     if (together.cycles)

@@ -56,7 +56,7 @@ TEST(Events, JumpsOfFormulasAreAsGoodAsDeclaredOnes)
     rest, "segments; Number of segments = 4; Amplitude = 0.2; Phase lag = 0.25; Direction = from tail to head"));
   const auto formula = answer_to(test::with(rest, "expression; Active stress = 0.2*(mod(t-0.25*floor(4*s),1)<0.5)"));
   ASSERT_EQ(formula.time.status, Status::finished);
-  EXPECT_EQ(formula.mesh.n_cells, generator.mesh.n_cells);
+  EXPECT_EQ(formula.process.mesh.n_cells, generator.process.mesh.n_cells);
   EXPECT_NEAR(formula.displacement, generator.displacement, 1e-12);
 }
 

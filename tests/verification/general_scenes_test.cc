@@ -323,8 +323,8 @@ namespace
                stretch =
                  run(scene + stretch_form + Settings{{"Accuracy", accuracy}, {"Time/Maximum number of steps", "20000"}},
                      /*max_residual=*/1e-4);
-    EXPECT_EQ(position.formulation, Formulation::position) << name;
-    EXPECT_EQ(stretch.formulation, Formulation::stretch) << name;
+    EXPECT_EQ(position.process.formulation, Formulation::position) << name;
+    EXPECT_EQ(stretch.process.formulation, Formulation::stretch) << name;
     ASSERT_TRUE(stretch.error) << name;
     EXPECT_NEAR(
       stretch.displacement, position.displacement, stretch.error->total + 1e-7 * std::abs(position.displacement))

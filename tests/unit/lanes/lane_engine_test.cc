@@ -106,7 +106,7 @@ TEST(LaneEngine, MethodsMayBeMixed)
   for (std::size_t i = 0; i < runs.size(); ++i)
   {
     ASSERT_TRUE(results[i]) << i;
-    EXPECT_EQ(results[i]->mesh.most_cells, runs[i]->numerics.n_cells);
+    EXPECT_EQ(results[i]->process.mesh.most_cells, runs[i]->numerics.n_cells);
     EXPECT_TRUE(test::same_bits(results[i], test::run_alone(*runs[i]))) << i;
   }
 }
