@@ -24,13 +24,10 @@ namespace crawler
     return format == SnapshotFormat::xdmf ? "solution.xdmf" : "solution.pvd";
   }
 
-  SnapshotWriter::SnapshotWriter(const SnapshotFormat format,
-                                 const std::filesystem::path &folder,
-                                 const double length,
-                                 const std::size_t n_frames)
-    : sampler_(line_points)
+  SnapshotWriter::SnapshotWriter(const double length)
+    : length_(length)
     , scenery_(length)
-    , files_(format == SnapshotFormat::xdmf ? xdmf_files(folder, length, n_frames) : vtu_files(folder, length))
+    , sampler_(line_points)
   {
   }
 
@@ -54,7 +51,7 @@ namespace crawler
   {
     on_first_rank(communicator_, [&]() {
       scenery_.finish();
-      files_->end(scenery_);
+      end_files();
     });
   }
 } // namespace crawler

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/files.h>
 #include <crawler/base/growing_text.h>
-#include <crawler/output/snapshot_files.h>
+#include <crawler/output/snapshot_writer.h>
 #include <crawler/output/vtk_xml.h>
 
 #include <fmt/format.h>
@@ -133,26 +133,34 @@ namespace crawler
       return fmt::format(
         "    <DataSet timestep=\"{}\" part=\"{}\" name=\"{}\" file=\"solution/{}.vtu\"/>\n", time, part, name, file);
     }
-    class VtuFiles : public SnapshotFiles
+    class VtuFiles : public SnapshotWriter
     {
     public:
       VtuFiles(const std::filesystem::path &folder, const double length)
-        : folder_(folder)
-        , length_(length)
+        : SnapshotWriter(length)
+        , folder_(folder)
         , body_(folder / "solution.pvd", list_begin, list_end)
         , line_(folder / "line.pvd", list_begin, list_end)
       {
       }
 
       void
-      add(const Frame &frame, const Scenery &scenery, const bool scenery_changed) override
+      exchange(Archive &archive) override
+      {
+        SnapshotWriter::exchange(archive);
+        archive(n_frames_, body_, line_);
+      }
+
+    private:
+      void
+      add(const Frame &frame, const bool scenery_changed) override
       {
         const std::filesystem::path files = folder_ / "solution";
         const std::string number          = fmt::format("{:06}", n_frames_++);
         if (scenery_changed)
-          write_scenery(scenery);
+          write_scenery();
         write_file(files / (number + ".vtu"), body_file(frame, length_));
-        write_file(files / ("grip_" + number + ".vtu"), grip_file(frame, scenery));
+        write_file(files / ("grip_" + number + ".vtu"), grip_file(frame, scenery_));
         write_file(files / ("line_" + number + ".vtu"), line_file(frame));
         body_.add(entry(frame.time, 0, "body", number) + entry(frame.time, 1, "grip", "grip_" + number) +
                   entry(frame.time, 2, "ground", "ground") + entry(frame.time, 3, "scale", "scale"));
@@ -160,33 +168,26 @@ namespace crawler
       }
 
       void
-      end(const Scenery &scenery) override
+      end_files() override
       {
         if (n_frames_ > 0)
-          write_scenery(scenery);
+          write_scenery();
       }
 
       void
-      exchange(Archive &archive) override
+      write_scenery() const
       {
-        archive(n_frames_, body_, line_);
-      }
-
-    private:
-      void
-      write_scenery(const Scenery &scenery) const
-      {
-        const Corners ground = scenery.ground(), scale = scenery.scale();
+        const Corners ground = scenery_.ground(), scale = scenery_.scale();
         write_file(folder_ / "solution" / "ground.vtu",
                    vtu_file(CellType::quadrilateral,
-                            vtk_array("tick_distance", std::vector<double>{scenery.tick_distance()}, 1, "length"),
+                            vtk_array("tick_distance", std::vector<double>{scenery_.tick_distance()}, 1, "length"),
                             ">\n",
                             ground,
                             in_order(ground)));
         std::string fields = " Scalars=\"stretch\">\n";
-        for (std::size_t f = 0; f < scenery.ranges().size(); ++f)
+        for (std::size_t f = 0; f < scenery_.ranges().size(); ++f)
         {
-          const auto [smallest, largest] = scenery.ranges()[f];
+          const auto [smallest, largest] = scenery_.ranges()[f];
           fields += vtk_array(
             field_names[f].name, std::vector<double>{smallest, largest, largest, smallest}, 1, field_names[f].unit);
         }
@@ -195,15 +196,14 @@ namespace crawler
       }
 
       const std::filesystem::path folder_;
-      const double length_;
       unsigned int n_frames_ = 0;
       GrowingText body_, line_; ///< the lists of files
     };
   } // namespace
 
-  std::unique_ptr<SnapshotFiles>
+  std::shared_ptr<SnapshotWriter>
   vtu_files(const std::filesystem::path &folder, const double length)
   {
-    return std::make_unique<VtuFiles>(folder, length);
+    return std::make_shared<VtuFiles>(folder, length);
   }
 } // namespace crawler

@@ -2,8 +2,8 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/base/growing_text.h>
-#include <crawler/output/snapshot_files.h>
 #include <crawler/output/snapshot_hdf5.h>
+#include <crawler/output/snapshot_writer.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -33,71 +33,6 @@ namespace crawler
       return fmt::format("{}", fmt::join(numbers, " "));
     }
 
-    /// Describes datasets, or their part for the frame of a row. The part is given by its offset in the file, as binary
-    /// numbers: only one of ParaView's three readers knows parts of HDF5 datasets.
-    class DataItems
-    {
-    public:
-      DataItems(const SnapshotHdf5 &file, const std::size_t row, const std::size_t n)
-        : file_(file)
-        , row_(row)
-        , n_(n)
-      {
-      }
-
-      std::string
-      item(const std::string &name) const
-      {
-        const SnapshotHdf5::Layout &layout = SnapshotHdf5::layouts().at(name);
-        auto shape                         = SnapshotHdf5::shape(layout, 1, n_);
-        const char *type =
-          layout.is_whole ? "NumberType=\"Int\" Precision=\"4\"" : "NumberType=\"Float\" Precision=\"8\"";
-        if (!layout.has_rows && name != line + "cells")
-          return fmt::format(
-            "<DataItem Format=\"HDF\" {} Dimensions=\"{}\">solution.h5:/{}</DataItem>\n", type, words(shape), name);
-        if (layout.has_rows)
-          shape.erase(shape.begin());
-        return fmt::format("<DataItem Format=\"Binary\" Endian=\"Little\" Seek=\"{}\" {} Dimensions=\"{}\"><!-- {} "
-                           "-->solution.h5</DataItem>\n",
-                           file_.place(name, layout.has_rows ? row_ : 0),
-                           type,
-                           words(shape),
-                           row_); // ParaView's XDMF Reader reuses the points of another frame if the texts begin alike
-      }
-
-      std::string
-      points(const std::string &group) const
-      {
-        return "<Geometry GeometryType=\"XYZ\">\n" + item(group + "points") + "</Geometry>\n";
-      }
-
-      std::string
-      field(const std::string &dataset, const std::string &name) const
-      {
-        return fmt::format(
-          "<Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Node\">\n{}</Attribute>\n", name, item(dataset));
-      }
-
-      /// Grid whose cells are listed in the dataset "cells" of the group.
-      std::string
-      cells(const std::string &group, const char *type, const std::vector<std::string> &fields) const
-      {
-        const auto shape = SnapshotHdf5::layouts().at(group + "cells").shape;
-        std::string text = fmt::format("<Grid Name=\"{}\">\n<Topology TopologyType=\"{}\" NumberOfElements=\"{}\">\n",
-                                       group.substr(0, group.size() - 1),
-                                       type,
-                                       shape[0]) +
-                           item(group + "cells") + "</Topology>\n" + points(group);
-        for (const std::string &name : fields)
-          text += field(group + name, name);
-        return text + "</Grid>\n";
-      }
-
-    private:
-      const SnapshotHdf5 &file_;
-      const std::size_t row_, n_;
-    };
-
     std::vector<std::string>
     all_fields()
     {
@@ -113,12 +48,12 @@ namespace crawler
                          *description_end = "</Grid>\n</Domain>\n</Xdmf>\n";
     /// The datasets have a row for each frame and as many columns as the largest mesh has points; unused ones are NaN,
     /// and n_points is the number of used ones. When frames or points exceed the capacity, a larger file replaces it.
-    class XdmfFiles : public SnapshotFiles
+    class XdmfFiles : public SnapshotWriter
     {
     public:
       XdmfFiles(const std::filesystem::path &folder, const double length, const std::size_t n_frames)
-        : path_(folder / "solution.h5")
-        , length_(length)
+        : SnapshotWriter(length)
+        , path_(folder / "solution.h5")
         , expected_(n_frames)
         , max_frames_(std::min<std::size_t>(n_frames, 4096)) // grows if there are more
         , body_(folder / "solution.xdmf", description_begin, description_end)
@@ -127,7 +62,22 @@ namespace crawler
       }
 
       void
-      add(const Frame &frame, const Scenery &scenery, const bool scenery_changed) override
+      exchange(Archive &archive) override
+      {
+        SnapshotWriter::exchange(archive);
+        archive(frames_);
+        if (!archive.reads() || frames_.empty())
+          return;
+        file_                              = std::make_unique<SnapshotHdf5>(path_);
+        std::tie(max_frames_, max_points_) = file_->size();
+        if (max_frames_ < frames_.size())
+          throw FileError("cannot continue \"" + path_.string() + "\": it has fewer frames than were written");
+        rewrite_descriptions(); // positions of the frames in the file may have changed
+      }
+
+    private:
+      void
+      add(const Frame &frame, const bool scenery_changed) override
       {
         const std::size_t row = frames_.size(), n = frame.s.size();
         const bool grows = !file_ || row == max_frames_ || n > max_points_;
@@ -137,7 +87,7 @@ namespace crawler
                  : n > max_points_ ? n + n / 2
                                    : max_points_);
         if (scenery_changed || grows)
-          write_scenery(scenery);
+          write_scenery();
         const auto write = [&](const std::string &name, const std::vector<double> &values) {
           file_->write(name, values, row, 1, n);
         };
@@ -153,7 +103,7 @@ namespace crawler
         for (std::size_t i = 0; i < n; ++i)
           line_points[3 * i] = frame.s[i];
         write(line + "points", line_points);
-        const Arrows arrows = scenery.arrows(frame);
+        const Arrows arrows = scenery_.arrows(frame);
         write(grip + "points", arrows.points);
         write(grip + "friction_force", arrows.friction_force);
         write("step", {static_cast<double>(frame.step)});
@@ -170,7 +120,7 @@ namespace crawler
       }
 
       void
-      end(const Scenery &scenery) override
+      end_files() override
       {
         if (frames_.empty())
           return;
@@ -179,25 +129,11 @@ namespace crawler
           largest = std::max(largest, frame.n_points);
         if (frames_.size() != max_frames_ || largest != max_points_)
           resize(frames_.size(), largest);
-        write_scenery(scenery);
+        write_scenery();
         rewrite_descriptions();
         file_.reset();
       }
 
-      void
-      exchange(Archive &archive) override
-      {
-        archive(frames_);
-        if (!archive.reads() || frames_.empty())
-          return;
-        file_                              = std::make_unique<SnapshotHdf5>(path_);
-        std::tie(max_frames_, max_points_) = file_->size();
-        if (max_frames_ < frames_.size())
-          throw FileError("cannot continue \"" + path_.string() + "\": it has fewer frames than were written");
-        rewrite_descriptions(); // positions of the frames in the file may have changed
-      }
-
-    private:
       /// Makes a file of the new size with all frames so far.
       void
       resize(const std::size_t n_frames, const std::size_t n)
@@ -236,19 +172,73 @@ namespace crawler
       }
 
       void
-      write_scenery(const Scenery &scenery) const
+      write_scenery() const
       {
-        Corners corners = scenery.ground();
+        Corners corners = scenery_.ground();
         const Corners last(corners.end() - 3, corners.end());
         while (corners.size() < 12 * Scenery::max_ground) // the remaining quadrilaterals have no area
           corners.insert(corners.end(), last.begin(), last.end());
         file_->write(ground + "points", corners);
-        file_->write(scale + "points", scenery.scale());
-        for (std::size_t f = 0; f < scenery.ranges().size(); ++f)
+        file_->write(scale + "points", scenery_.scale());
+        for (std::size_t f = 0; f < scenery_.ranges().size(); ++f)
         {
-          const auto [smallest, largest] = scenery.ranges()[f];
+          const auto [smallest, largest] = scenery_.ranges()[f];
           file_->write(scale + field_names[f].name, {smallest, largest, largest, smallest});
         }
+      }
+
+      /// Describes a dataset, or its part for the frame @p row. The part is given by its offset in the file, as binary
+      /// numbers: only one of ParaView's three readers knows parts of HDF5 datasets.
+      std::string
+      item(const std::size_t row, const std::string &name) const
+      {
+        const SnapshotHdf5::Layout &layout = SnapshotHdf5::layouts().at(name);
+        auto shape                         = SnapshotHdf5::shape(layout, 1, frames_[row].n_points);
+        const char *type =
+          layout.is_whole ? "NumberType=\"Int\" Precision=\"4\"" : "NumberType=\"Float\" Precision=\"8\"";
+        if (!layout.has_rows && name != line + "cells")
+          return fmt::format(
+            "<DataItem Format=\"HDF\" {} Dimensions=\"{}\">solution.h5:/{}</DataItem>\n", type, words(shape), name);
+        if (layout.has_rows)
+          shape.erase(shape.begin());
+        return fmt::format("<DataItem Format=\"Binary\" Endian=\"Little\" Seek=\"{}\" {} Dimensions=\"{}\"><!-- {} "
+                           "-->solution.h5</DataItem>\n",
+                           file_->place(name, layout.has_rows ? row : 0),
+                           type,
+                           words(shape),
+                           row); // ParaView's XDMF Reader reuses the points of another frame if the texts begin alike
+      }
+
+      std::string
+      points(const std::size_t row, const std::string &group) const
+      {
+        return "<Geometry GeometryType=\"XYZ\">\n" + item(row, group + "points") + "</Geometry>\n";
+      }
+
+      std::string
+      field(const std::size_t row, const std::string &dataset, const std::string &name) const
+      {
+        return fmt::format("<Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Node\">\n{}</Attribute>\n",
+                           name,
+                           item(row, dataset));
+      }
+
+      /// Grid whose cells are listed in the dataset "cells" of the group.
+      std::string
+      cells(const std::size_t row,
+            const std::string &group,
+            const char *type,
+            const std::vector<std::string> &fields) const
+      {
+        const auto shape = SnapshotHdf5::layouts().at(group + "cells").shape;
+        std::string text = fmt::format("<Grid Name=\"{}\">\n<Topology TopologyType=\"{}\" NumberOfElements=\"{}\">\n",
+                                       group.substr(0, group.size() - 1),
+                                       type,
+                                       shape[0]) +
+                           item(row, group + "cells") + "</Topology>\n" + points(row, group);
+        for (const std::string &name : fields)
+          text += field(row, group + name, name);
+        return text + "</Grid>\n";
       }
 
       /// Frame @p row as a grid of XDMF.
@@ -256,33 +246,31 @@ namespace crawler
       body_grid(const std::size_t row) const
       {
         const auto [time, n] = frames_[row];
-        const DataItems items(*file_, row, n);
-        std::string text = fmt::format("<Grid Name=\"frame\" GridType=\"Collection\" CollectionType=\"Spatial\">\n"
-                                       "<Time Value=\"{}\"/>\n<Grid Name=\"body\">\n<Topology TopologyType=\"2DSMesh\" "
-                                       "Dimensions=\"{} 2\"/>\n",
+        std::string text     = fmt::format("<Grid Name=\"frame\" GridType=\"Collection\" CollectionType=\"Spatial\">\n"
+                                           "<Time Value=\"{}\"/>\n<Grid Name=\"body\">\n<Topology TopologyType=\"2DSMesh\" "
+                                           "Dimensions=\"{} 2\"/>\n",
                                        time,
                                        n) +
-                           items.points(body);
+                           points(row, body);
         for (const std::string &name : all_fields())
-          text += items.field(body + name, name);
-        text += items.field(body + "s", "s") + "</Grid>\n";
-        return text + items.cells(grip, "Triangle", {"friction_force"}) + items.cells(ground, "Quadrilateral", {}) +
-               items.cells(scale, "Quadrilateral", all_fields()) + "</Grid>\n";
+          text += field(row, body + name, name);
+        text += field(row, body + "s", "s") + "</Grid>\n";
+        return text + cells(row, grip, "Triangle", {"friction_force"}) + cells(row, ground, "Quadrilateral", {}) +
+               cells(row, scale, "Quadrilateral", all_fields()) + "</Grid>\n";
       }
 
       std::string
       line_grid(const std::size_t row) const
       {
         const auto [time, n] = frames_[row];
-        const DataItems items(*file_, row, n);
         std::string text =
           fmt::format("<Grid Name=\"line\">\n<Time Value=\"{}\"/>\n<Topology TopologyType=\"Polyline\" "
                       "NumberOfElements=\"1\" NodesPerElement=\"{}\">\n",
                       time,
                       n) +
-          items.item(line + "cells") + "</Topology>\n" + items.points(line);
+          item(row, line + "cells") + "</Topology>\n" + points(row, line);
         for (const std::string &name : all_fields())
-          text += items.field(line + name, name);
+          text += field(row, line + name, name);
         return text + "</Grid>\n";
       }
 
@@ -305,8 +293,7 @@ namespace crawler
         std::size_t n_points;
       };
 
-      const std::filesystem::path path_; ///< of the HDF5 file
-      const double length_;
+      const std::filesystem::path path_;        ///< of the HDF5 file
       const std::size_t expected_;              ///< frames
       std::size_t max_frames_, max_points_ = 0; ///< capacity of the file
       std::unique_ptr<SnapshotHdf5> file_;
@@ -315,9 +302,9 @@ namespace crawler
     };
   } // namespace
 
-  std::unique_ptr<SnapshotFiles>
+  std::shared_ptr<SnapshotWriter>
   xdmf_files(const std::filesystem::path &folder, const double length, const std::size_t n_frames)
   {
-    return std::make_unique<XdmfFiles>(folder, length, n_frames);
+    return std::make_shared<XdmfFiles>(folder, length, n_frames);
   }
 } // namespace crawler

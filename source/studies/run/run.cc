@@ -288,8 +288,9 @@ namespace crawler
         if (!sharing_.has_output)
           return observers;
         if (output.has_snapshots())
-          observers.push_back(std::make_shared<SnapshotWriter>(
-            output.snapshot_format, memory_.folder, length, pictures_.n_snapshots() + 1));
+          observers.push_back(output.snapshot_format == SnapshotFormat::xdmf
+                                ? xdmf_files(memory_.folder, length, pictures_.n_snapshots() + 1)
+                                : vtu_files(memory_.folder, length));
         if (output.has_snapshots() && output.kymograph)
           observers.push_back(std::make_shared<KymographWriter>(
             length, input_.scene.end_time, input_.scene.ground.profile, memory_.folder));
