@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 
 namespace crawler
@@ -11,8 +10,7 @@ namespace crawler
   Assembler::Assembler(const Scene &scene, const Discretization &discretization)
     : scene(scene)
     , discretization(discretization)
-    , end_moduli_(scene.end_moduli())
-    , end_stress_(scene.active_stress->at({0., scene.body.length}))
+    , ends(scene)
   {
   }
 
@@ -28,14 +26,6 @@ namespace crawler
         sum += discretization.cell_size[c] * element.node_weights[i] * std::pow(local[c * element.degree + i], 2);
     discretization.sum_over_ranks({&sum, 1});
     return std::sqrt(sum / discretization.length);
-  }
-
-  std::pair<double, double>
-  Assembler::end_stretches(const double t)
-  {
-    std::array<double, 2> m{};
-    end_stress_->values(t, m);
-    return {1. - m[0] / end_moduli_.first, 1. - m[1] / end_moduli_.second};
   }
 
   long

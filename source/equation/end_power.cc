@@ -7,7 +7,7 @@ namespace crawler
     : assembler_(assembler)
     , stress_(assembler.scene.active_stress->at({0., assembler.scene.body.length}))
   {
-    if (assembler.has_known_ends())
+    if (assembler.scene.active_stress->feedback() == nullptr)
       return;
     // At the left end of the first and the right end of the last of this rank's cells.
     std::vector<CellPlace> places;

@@ -106,6 +106,38 @@ namespace crawler
       N[i] = equation::body_force(e[i], m[i], k[i]);
   }
 
+  EndStretches::EndStretches(const Scene &scene)
+    : stress_(*scene.active_stress)
+    , force_(scene, {0., scene.body.length})
+  {
+  }
+
+  bool
+  EndStretches::are_known() const
+  {
+    const StretchFeedback *feedback = stress_.feedback();
+    return feedback == nullptr || (!feedback->facts.uses_rate && !feedback->facts.sees_near() &&
+                                   feedback->facts.delay == 0. && stress_.failures() == nullptr);
+  }
+
+  std::pair<double, double>
+  EndStretches::at(const double t)
+  {
+    constexpr int n_stretches = 32; // since with feedback the force may fall with the stretch
+    std::pair<double, double> balance;
+    for (int i = 0; i <= (stress_.feedback() != nullptr ? n_stretches : 0); ++i)
+    {
+      const std::vector<double> w(2, static_cast<double>(i) / n_stretches), e(2, w[0] - 1.);
+      force_.evaluate(t, e, {w, {}, {}, {}});
+      const double left = -force_.N[0] / force_.k[0], right = -force_.N[1] / force_.k[1];
+      balance =
+        i == 0 ? std::pair(left, right) : std::pair(std::max(balance.first, left), std::max(balance.second, right));
+      if (balance.first > 0. && balance.second > 0.)
+        break;
+    }
+    return balance;
+  }
+
   StretchElsewhere::StretchElsewhere(const Scene &scene,
                                      const Discretization &discretization,
                                      const std::vector<double> &points)

@@ -40,8 +40,8 @@ namespace crawler
       return;
     const auto points = discretization.points(discretization.element.points);
     const std::vector<double> zero(points.size());
-    general_ =
-      General{{scene, points}, {scene, points}, {scene, discretization, points}, zero, zero, zero, zero, zero, {}};
+    general_.emplace(
+      General{{scene, points}, {scene, points}, {scene, discretization, points}, zero, zero, zero, zero, zero, {}});
   }
 
   CellInput

@@ -32,7 +32,7 @@ namespace crawler
       using Stress = std::array<double, 2>;
 
       EndWatch(const Scene &scene, const double min_event, const unsigned int n_stages)
-        : moduli_(scene.end_moduli())
+        : ends_(scene)
         , watch_(*scene.active_stress, min_event > 0. ? min_event : HUGE_VAL)
         , in_stages_(n_stages)
       {
@@ -65,8 +65,8 @@ namespace crawler
       {
         if (!watch_.is_calm(step.time - step.size, step.time))
           return false;
-        if (feedback_) // see Assembler::has_known_ends()
-          return true;
+        if (feedback_)
+          return !ends_.are_known() || ends_.smallest(step.time) > 0.;
         double smallest = stretch_at_start_;
         for (const Stress &m : in_stages_)
           smallest = std::min(smallest, stretch(m));
@@ -90,10 +90,10 @@ namespace crawler
       double
       stretch(const Stress &m) const
       {
-        return 1. - std::max(m[0] / moduli_.first, m[1] / moduli_.second);
+        return 1. - std::max(m[0] / ends_.moduli()[0], m[1] / ends_.moduli()[1]);
       }
 
-      const std::pair<double, double> moduli_;
+      EndStretches ends_;
       StressWatch watch_;
       std::unique_ptr<FeedbackAtPoints> feedback_; ///< feedback at the ends, if there is one
       double stretch_at_start_ = 1.;

@@ -58,11 +58,9 @@ namespace crawler
   Simulation::end_inverts(const double from, const double to)
   {
     constexpr int parts = 4;
-    const auto smallest = [this](const double t) {
-      const auto [left, right] = mesh_.assembler->end_stretches(t);
-      return std::min(left, right);
-    };
-    if (!mesh_.assembler->has_known_ends())
+    EndStretches &ends  = mesh_.assembler->ends;
+    const auto smallest = [&ends](const double t) { return ends.smallest(t); };
+    if (!ends.are_known())
       return false;
     double begin = from;
     for (int i = from < to ? 1 : parts; i <= parts; ++i)
@@ -74,9 +72,12 @@ namespace crawler
         continue;
       }
       const double t           = begin < end ? first_zero(smallest, begin, end) : end;
-      const auto [left, right] = mesh_.assembler->end_stretches(t);
+      const auto [left, right] = ends.at(t);
       const double s           = left <= right ? 0. : 1.;
-      inverted_at_end(s, t, "where 1 - m/k is not positive");
+      inverted_at_end(s,
+                      t,
+                      scene_.active_stress->feedback() == nullptr ? "where 1 - m/k is not positive"
+                                                                  : "where no stretch balances the feedback");
       return true;
     }
     return false;
@@ -114,7 +115,7 @@ namespace crawler
       above(t); // finds the smallest stretch of that time
     const bool at_end  = smallest.s == 0. || smallest.s == 1.;
     const double reach = at_end ? end_reach_at_end : end_reach;
-    if (at_end && !mesh_.assembler->has_known_ends())
+    if (at_end && !mesh_.assembler->ends.are_known())
       inverted_at_end(smallest.s, t, "where the active stress with its feedback is not below k");
     else if (!end_inverts(t, std::min(t + reach, 1.)))
     {

@@ -181,14 +181,6 @@ namespace crawler
                    {active_stress && active_stress->feedback() != nullptr, "an active stress with feedback"}});
   }
 
-  std::pair<double, double>
-  Scene::end_moduli() const
-  {
-    const double k     = body.elastic_modulus;
-    const auto factors = profile_at(profiles.elastic_modulus, {0., body.length});
-    return {k * factors[0], k * factors[1]};
-  }
-
   std::vector<double>
   Scene::breaks_in_space() const
   {

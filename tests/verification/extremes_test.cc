@@ -180,7 +180,15 @@ TEST(Extremes, InversionAtAnEnd)
     EXPECT_LE(result.time.time, result.inversion->t);
   };
   for (const char *p : {"-3", "0.5", "1", "1.5", "2", "21"})
+  {
     expect_inversion(test::set("p = {}; expression; Active stress = 2*t", p), 0.5);
+    // A reflex: 2 t - (w - 1)/2 + w - 1 = 0 has no solution w > 0 from t = 1/4 on.
+    expect_inversion(test::set("p = {}; strain feedback; Active stress = 2*t-0.5*(w-1)", p), 0.25);
+  }
+  expect_inversion(test::set("p = -1; strain feedback; Active stress = 1.1*(1-s)-0.5*(w-1)"), 0.);
+  // The force is positive without stretch, too, but 0 at w = 0.93.
+  EXPECT_EQ(test::answer_to(test::set("p = -1; strain feedback; Active stress = 1.2*exp(-3*w)*(1+s/5)")).time.status,
+            Status::finished);
   const double chi = 1.2;
   expect_inversion(test::wave(-1., chi), (std::numbers::pi + std::asin(1. / chi)) / (2. * std::numbers::pi));
   const double k = 1.065687391169341, amplitude = 1.3692980755928033;

@@ -104,22 +104,13 @@ namespace crawler
     double
     root_mean_square(ConstVector y) const;
 
-    /// Stretches that the end conditions prescribe, 1 - m/k at s = 0 and s = L. They are not known if feedback acts
-    /// there; has_known_ends() is then false.
-    std::pair<double, double>
-    end_stretches(double t);
-    bool
-    has_known_ends() const
-    {
-      return scene.active_stress->feedback() == nullptr;
-    }
-
     /// Sets the unknowns of the body at t = 0: its initial stretch, with the centre of mass where it is without one.
     virtual void
     set_initial_state(Vector y) = 0;
 
     const Scene &scene;
     const Discretization &discretization;
+    EndStretches ends;
     /// History for a feedback with delay; none: the body was at its initial stretch before.
     const StretchHistory *history = nullptr;
 
@@ -142,8 +133,6 @@ namespace crawler
     std::function<BadLaw(const Units &)> describe_bad_law_;
 
   private:
-    const std::pair<double, double> end_moduli_;
-    const std::unique_ptr<ActiveStressAtPoints> end_stress_;
     std::vector<double> u_local_;
     /// Ends of equal pieces of the body in own cells, and the shape functions there.
     struct PieceEnds

@@ -5,6 +5,7 @@
 #include <crawler/equation/stretch_history.h>
 #include <crawler/scene/scene.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -73,6 +74,39 @@ namespace crawler
   private:
     std::unique_ptr<ActiveStressAtPoints> stress_;
     std::unique_ptr<FeedbackAtPoints> feedback_;
+  };
+
+  /// Stretches that the end conditions prescribe: 1 - m/k at s = 0 and s = L, as no force acts on the ends.
+  class EndStretches
+  {
+  public:
+    explicit EndStretches(const Scene &scene);
+
+    /// False with a feedback that needs the state of the body: by another stretch than that of the end, or its rate.
+    bool
+    are_known() const;
+
+    /// With feedback, numbers that are positive only if some stretch w > 0 balances: m(w) + k (w - 1) = 0.
+    std::pair<double, double>
+    at(double t);
+
+    double
+    smallest(const double t)
+    {
+      const auto [left, right] = at(t);
+      return std::min(left, right);
+    }
+
+    /// k at both ends [force].
+    const std::vector<double> &
+    moduli() const
+    {
+      return force_.k;
+    }
+
+  private:
+    const ActiveStress &stress_;
+    BodyForceAtPoints force_;
   };
 
   /// Stretch at another place or time, at fixed points of this rank (collective).

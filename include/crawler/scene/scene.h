@@ -74,10 +74,6 @@ namespace crawler
       return friction->exponent(small);
     }
 
-    /// The elastic modulus at s = 0 and s = L [force].
-    std::pair<double, double>
-    end_moduli() const;
-
     /// Places in (0, L) where the active stress, also by its feedback, or a profile of the body has a jump or a kink,
     /// ascending, each once [length].
     std::vector<double>

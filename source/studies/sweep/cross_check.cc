@@ -2,6 +2,7 @@
 #include <crawler/accuracy/answer.h>
 #include <crawler/base/grid_samples.h>
 #include <crawler/base/plain_numbers.h>
+#include <crawler/equation/general_laws.h>
 #include <crawler/studies/sweep/cross_check.h>
 #include <crawler/studies/sweep/point_table.h>
 
@@ -262,15 +263,10 @@ namespace crawler
     end_below(const Scene &scene, const double level)
     {
       constexpr unsigned int n_times = 10000;
-      const auto ends                = scene.active_stress->at({0., scene.body.length});
-      const auto [left, right]       = scene.end_moduli();
-      std::array<double, 2> m{};
+      EndStretches ends(scene);
       for (const double t : equal_parts(0., scene.end_time, n_times))
-      {
-        ends->values(t, m);
-        if (std::min(1. - m[0] / left, 1. - m[1] / right) < level)
+        if (ends.smallest(t) < level)
           return t;
-      }
       return std::numeric_limits<double>::infinity();
     }
 
