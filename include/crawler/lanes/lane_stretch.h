@@ -5,6 +5,7 @@
 #include <crawler/lanes/lane_engine.h>
 #include <crawler/lanes/lane_friction.h>
 #include <crawler/lanes/lane_memory.h>
+#include <crawler/lanes/lane_mesh.h>
 #include <crawler/lanes/lane_tridiagonal.h>
 
 /// Equations and linear systems of the stretch form for one body (included by radau_lanes.h).
