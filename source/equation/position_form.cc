@@ -279,7 +279,7 @@ namespace crawler
   {
     jacobian(t, u, v, 1., sigma, jacobian_);
     if (general_)
-      jacobian_by_near_ = general_->force.by_near;
+      general_->jacobian_by_near = general_->force.by_near;
     return jacobian_.factorize();
   }
 
@@ -293,7 +293,8 @@ namespace crawler
   PositionForm::jacobian_vmult(const ConstVector x, const Vector y)
   {
     jacobian_.multiply(x, y);
-    add_far(jacobian_by_near_, x, y);
+    if (general_)
+      add_far(general_->jacobian_by_near, x, y);
   }
 
   bool

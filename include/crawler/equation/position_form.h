@@ -130,11 +130,11 @@ namespace crawler
       StretchElsewhere elsewhere;
       std::vector<double> e, w, u, v, rate;
       PointLaws<double> laws;
+      std::vector<double> jacobian_by_near = {}; ///< derivative of the force by the stretch at the other place
     };
     std::optional<General> general_;
 
     BlockTridiagonalMatrix<double> jacobian_;
-    std::vector<double> jacobian_by_near_;
     std::unique_ptr<BlockTridiagonalMatrix<double>> mass_; ///< made when a velocity is first needed
     const std::unique_ptr<ActiveStressAtPoints> stress_;
     /// Active stress m at the stress points.
