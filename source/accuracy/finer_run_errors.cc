@@ -107,8 +107,8 @@ namespace crawler
     }
     if (result.errors.empty())
       return;
-    // Polynomials overshoot in thin layers, on both meshes alike; with feedback no other stretch is known there.
-    if (scene.active_stress->feedback() != nullptr)
+    // Polynomials overshoot in thin layers, on both meshes alike; with most feedback no other stretch is known there.
+    if (!SuddenChanges::are_known(scene))
     {
       std::vector<double> starts = TimeSegments(*scene.active_stress, scene.end_time).breaks();
       starts.push_back(0.);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/bracketed_root.h>
 #include <crawler/equation/crawler_equation.h>
 #include <crawler/equation/general_laws.h>
 
@@ -127,8 +128,7 @@ namespace crawler
     std::pair<double, double> balance;
     for (int i = 0; i <= (stress_.feedback() != nullptr ? n_stretches : 0); ++i)
     {
-      const std::vector<double> w(2, static_cast<double>(i) / n_stretches), e(2, w[0] - 1.);
-      force_.evaluate(t, e, {w, {}, {}, {}});
+      evaluate(t, static_cast<double>(i) / n_stretches);
       const double left = -force_.N[0] / force_.k[0], right = -force_.N[1] / force_.k[1];
       balance =
         i == 0 ? std::pair(left, right) : std::pair(std::max(balance.first, left), std::max(balance.second, right));
@@ -136,6 +136,39 @@ namespace crawler
         break;
     }
     return balance;
+  }
+
+  std::vector<double>
+  EndStretches::balanced(const double t)
+  {
+    std::vector<double> stretches;
+    for (const std::size_t end : {0, 1})
+    {
+      const auto force = [&](const double w) {
+        evaluate(t, w);
+        stiffening_ = std::max(stiffening_, force_.by_w[end] / force_.k[end]);
+        return force_.N[end];
+      };
+      double near     = 1.;
+      const double at = force(near), factor = at > 0. ? 0.5 : 2.;
+      double far = factor;
+      while (far > 1e-12 && far < 1e12 && force(far) * at > 0.)
+      {
+        near = far;
+        far *= factor;
+      }
+      stretches.push_back(at == 0.                ? 1.
+                          : force(far) * at <= 0. ? bracketed_root(force, std::min(near, far), std::max(near, far))
+                                                  : std::nan(""));
+    }
+    return stretches;
+  }
+
+  void
+  EndStretches::evaluate(const double t, const double w)
+  {
+    const std::vector<double> stretch(2, w), strain(2, w - 1.);
+    force_.evaluate(t, strain, {stretch, {}, {}, {}});
   }
 
   StretchElsewhere::StretchElsewhere(const Scene &scene,

@@ -17,13 +17,22 @@ namespace crawler
     constexpr double seen = 1.;
   } // namespace
 
+  bool
+  SuddenChanges::are_known(const Scene &scene)
+  {
+    return scene.active_stress->feedback() == nullptr ||
+           (EndStretches(scene).are_known() && scene.breaks_in_space().empty());
+  }
+
   SuddenChanges::SuddenChanges(const Scene &scene, const Units &units, const double smallest_cell)
     : units_(units)
     , cell_(smallest_cell)
     , a_(scene.friction_exponent())
     , k_(scene.body.elastic_modulus / units.force)
+    , ends_(scene)
+    , has_feedback_(scene.active_stress->feedback() != nullptr)
   {
-    if (scene.active_stress->feedback() != nullptr)
+    if (!are_known(scene))
       return;
     starts_ = TimeSegments(*scene.active_stress, scene.end_time).breaks();
     starts_.insert(starts_.begin(), 0.);
@@ -40,6 +49,8 @@ namespace crawler
   std::vector<double>
   SuddenChanges::balanced_at(const double t)
   {
+    if (has_feedback_)
+      return ends_.balanced(t * units_.time);
     std::vector<double> w(moduli_.size());
     stress_->values(t * units_.time, w);
     std::ranges::transform(w, moduli_, w.begin(), [](const double m, const double k) { return 1. - m / k; });
@@ -73,7 +84,8 @@ namespace crawler
     keeps_stretch_ = start == 0. && smallest > 0.;
     if (largest > sudden)
       thin_until_ =
-        std::max(thin_until_, start + std::min(longest, cell_ * cell_ * seen * seen * resistance / (4. * k_)));
+        std::max(thin_until_,
+                 start + std::min(longest, cell_ * cell_ * seen * seen * resistance / (4. * k_ * ends_.stiffening())));
   }
 
   std::optional<std::pair<Extreme, Extreme>>

@@ -61,12 +61,29 @@ TEST(SuddenStretch, InitialStretch)
                      0.03);
 }
 
-/// With feedback nothing better than the polynomials is known: no bound in layers (the true minimum is 0.7), but later.
-TEST(SuddenStretch, HasNoBoundWithFeedback)
+/// A reflex by the stretch itself: the ends follow m + (k + 0.02) (w - 1) = 0, also with m at once from t = 0 on.
+TEST(SuddenStretch, LocalFeedback)
+{
+  for (const char *accuracy : {"1e-2", "1e-4"})
+    for (const char *stress : {"(t>0.3 ? 0.03 : 0)", "0.03"})
+      for (const char *p : {"-1", "0", "2"})
+        expect_stretch(
+          test::set("Accuracy = {}; k = 0.1; p = {}; T = 1; strain feedback; Active stress = {}+0.02*(w-1)",
+                    accuracy,
+                    p,
+                    stress),
+          0.75,
+          1.,
+          2e-3);
+}
+
+/// With other feedback nothing better than the polynomials is known: no bound in layers, but later.
+TEST(SuddenStretch, HasNoBoundWithOtherFeedback)
 {
   const auto bound_with = [](const char *stress) {
-    const auto result = answer_to(
-      test::set("Accuracy = 1e-4; k = 0.1; p = 0; T = 1; strain feedback; Active stress = {}+0.02*(w-1)", stress));
+    const auto result = answer_to(test::set("Accuracy = 1e-4; k = 0.1; p = 0; T = 1; strain feedback; Distance = 0.1; "
+                                            "Active stress = {}+0.02*(w_near-1)",
+                                            stress));
     EXPECT_EQ(result.time.status, Status::finished);
     return error_bound(result, "min_stretch.value");
   };

@@ -97,6 +97,17 @@ namespace crawler
       return std::min(left, right);
     }
 
+    /// The stretches at both ends that balance with feedback, the next ones to 1; not a number where none does.
+    std::vector<double>
+    balanced(double t);
+
+    /// Largest (k + dm/dw)/k that balanced() has met; 1 without feedback.
+    double
+    stiffening() const
+    {
+      return stiffening_;
+    }
+
     /// k at both ends [force].
     const std::vector<double> &
     moduli() const
@@ -105,8 +116,13 @@ namespace crawler
     }
 
   private:
+    /// Evaluates the force at both ends for the same stretch @p w.
+    void
+    evaluate(double t, double w);
+
     const ActiveStress &stress_;
     BodyForceAtPoints force_;
+    double stiffening_ = 1.;
   };
 
   /// Stretch at another place or time, at fixed points of this rank (collective).

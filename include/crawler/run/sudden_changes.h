@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/base/extreme_history.h>
+#include <crawler/equation/general_laws.h>
 #include <crawler/scene/scene.h>
 
 #include <memory>
@@ -17,13 +18,17 @@ namespace crawler
    * than the cells, and the polynomials there overshoot by some per cent of the jump, on any mesh. In a layer the
    * stretch lies between its earlier value and that set by the conditions at the ends and jumps; so as long as layers
    * are thin, the extremes are those of the ends, 1 - m/k, which are known (doc/numerics.md, "Extremes after sudden
-   * changes"). Not with feedback.
+   * changes").
    */
   class SuddenChanges
   {
   public:
     /// Part of the duration up to which layers are thin at most.
     static constexpr double longest = 1e-3;
+
+    /// False with feedback, unless it is by the stretch at the same point and time alone, and has no jumps in space.
+    static bool
+    are_known(const Scene &scene);
 
     /// @p scene is in the @p units of the user and must outlive this; @p smallest_cell in natural units.
     SuddenChanges(const Scene &scene, const Units &units, double smallest_cell);
@@ -38,12 +43,13 @@ namespace crawler
     bool
     keeps_stretch_inside(double t);
 
-    /// Stretch that the end conditions set at @p s, if that is an end of the body; nothing with feedback.
+    /// Stretch that the end conditions set at @p s, if that is an end of the body and known.
     std::optional<double>
     stretch_at_end(double s, double t);
 
   private:
-    /// Stretch 1 - m/k that balances the stress at the ends and both sides of the breaks in space, in pairs.
+    /// Stretch that balances the stress, 1 - m/k without feedback, at the ends and both sides of the breaks in space,
+    /// in pairs.
     std::vector<double>
     balanced_at(double t);
     void
@@ -56,6 +62,8 @@ namespace crawler
     double thin_until_  = 0.;
     bool keeps_stretch_ = false;                   ///< no jump in space of the last start can invert the body
     std::vector<double> initial_;                  ///< stretch at the start there
-    std::unique_ptr<ActiveStressAtPoints> stress_; ///< stress there; nothing with feedback
+    std::unique_ptr<ActiveStressAtPoints> stress_; ///< stress there; nothing if stretches are not known
+    EndStretches ends_;                            ///< used with feedback
+    const bool has_feedback_;
   };
 } // namespace crawler
