@@ -19,6 +19,9 @@ namespace crawler
     /// Ratio of the last change to the largest one beyond which the corrections are not trusted.
     constexpr double slowest_decay = 0.7;
 
+    /// Change of the displacement that is nothing but round-off, relative to the length.
+    constexpr double round_off = 1e-15;
+
     /// Approximate motion on a grid: n_s points in the middle of equal parts of the body, n_t equal steps.
     struct Motion
     {
@@ -202,14 +205,14 @@ namespace crawler
     bool
     starts_at_rest(const Motion &motion)
     {
-      constexpr double round_off = 1e-8; // also of numbers in a table
-      const auto largest         = [&](const std::size_t n) {
+      constexpr double part = 1e-8; // round-off, also of numbers in a table
+      const auto largest    = [&](const std::size_t n) {
         double result = 0.;
         for (std::size_t i = 0; i < n; ++i)
           result = std::max(result, std::abs(motion.e[i]));
         return result;
       };
-      return largest(motion.n_s) <= round_off * largest(motion.e.size());
+      return largest(motion.n_s) <= part * largest(motion.e.size());
     }
 
     ModelErrors
@@ -231,7 +234,7 @@ namespace crawler
       ModelErrors errors;
       errors.displacement = D.back();
       errors.changes      = change;
-      errors.known        = last <= slowest_decay * *std::max_element(change.begin(), change.end() - 1);
+      errors.known = last <= std::max(round_off, slowest_decay * *std::max_element(change.begin(), change.end() - 1));
       const double series = second_order_displacement(motion, scene.body.friction_exponent());
       errors.kinematic    = (1. + grid_share) * std::abs(D.back() - D.front()) + rest;
       errors.perturbation = (1. + grid_share) * std::abs(D.back() - series) + rest;
