@@ -184,7 +184,7 @@ namespace crawler
   {
     if (!general_)
       return -1;
-    auto &[friction, force, elsewhere, e, w, u_at, v_at, rate, laws] = *general_;
+    [[maybe_unused]] auto &[friction, force, elsewhere, e, w, u_at, v_at, rate, laws, of_jacobian] = *general_;
     kernels_.states(in, u_at.data(), v_at.data(), e.data(), rate.data());
     long bad = -1;
     for (std::size_t i = 0; i < e.size(); ++i)
