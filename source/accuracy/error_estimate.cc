@@ -241,10 +241,11 @@ namespace crawler
         total =
           factor * std::abs(finer->displacement - result.displacement) + (predicted ? part * choice.wanted_error : 0.);
       total         = std::max(total, choice.min_error);
-      result.errors = number_errors(result, finer_mesh ? *finer_mesh : *finer, factor, part * accuracy);
+      const double factor_of_numbers = choice.is_rough ? factor_without_rule : factor;
+      result.errors = number_errors(result, finer_mesh ? *finer_mesh : *finer, factor_of_numbers, part * accuracy);
       if (finer_mesh != nullptr)
       {
-        const auto in_time = number_errors(*finer_mesh, *finer, factor, 0.);
+        const auto in_time = number_errors(*finer_mesh, *finer, factor_of_numbers, 0.);
         for (std::size_t i = 0; i < in_time.size(); ++i)
           result.errors[i] += in_time[i];
       }
@@ -320,8 +321,8 @@ namespace crawler
       const double value = run.displacement + swept->time + swept->space;
       const double bound = std::max(swept->bound_of_corrected(), displacement_round_off * scene.body.length);
       const double found = std::abs(result.displacement - value);
-      if (bound < found) // otherwise it may be the sweep's own error
-        error.total = std::max(error.total, found);
+      if (bound < found && error.total < found) // otherwise it may be the sweep's own error
+        error.total = found + bound;
       extend_errors(scene, result);
       if (bound < error.total)
         result.corrected = {value, bound};
