@@ -54,7 +54,7 @@ namespace crawler
       struct Change
       {
         double sum       = 0.;
-        double at_breaks = 0.; ///< change by jumps or kinks at start and end, or that come together
+        double at_breaks = 0.; ///< change by jumps at start and end, or that come together; infinity: unknown
       };
       ForcesOfScene forces;
       std::optional<double> stride; ///< the last one, if it is known
@@ -170,22 +170,13 @@ namespace crawler
         return all;
       }
 
-      /// True if the active stress jumps at start or end, or jumps come together there: that changes the quantity by
-      /// more than @p nothing, in proportion to the step. Kinks change it by the square of the step, which is no
-      /// derivative.
-      bool
-      has_jumps_at_breaks(const Adjoint &adjoint,
-                          const std::size_t number,
-                          const Variation &variation,
-                          const double nothing) const
+      double
+      change_at_breaks(const Adjoint &adjoint, const std::size_t variation) const
       {
-        constexpr double square = 3.; // ratio for twice the step, between 2 and 4
-        const auto change       = [&](const std::size_t k) {
-          return others_[4 * number + k].changes[adjoint.slot].at_breaks;
-        };
-        const double near = variation.is_one_sided ? change(0) : std::max(change(1), change(2)),
-                     far  = variation.is_one_sided ? change(1) : std::max(change(0), change(3));
-        return far > nothing && far <= square * near;
+        double largest = 0.;
+        for (std::size_t k = 0; k < 4; ++k)
+          largest = std::max(largest, others_[4 * variation + k].changes[adjoint.slot].at_breaks);
+        return largest;
       }
 
       /// Derivatives of the quantities, as far as they are known.
@@ -207,7 +198,7 @@ namespace crawler
             // Positive work has small kinks everywhere, from point to point.
             const double rough =
               own * std::max((quantity == Quantity::positive_work ? 1e-5 : 1e-7) * std::abs(adjoint.value), round_off);
-            if (!has_jumps_at_breaks(adjoint, number, variation, nothing * std::abs(variation.step * value) / own) &&
+            if (own * change_at_breaks(adjoint, number) <= nothing * std::abs(variation.step * value) &&
                 !has_kink(all, variation, rough))
               result[static_cast<std::size_t>(quantity)] = value;
           };
@@ -230,9 +221,8 @@ namespace crawler
         for (const Adjoint &adjoint : adjoints_)
           if (adjoint.stretch)
           {
-            const auto all = changes_of(adjoint, number, [](const Units &, const auto &) { return 1.; });
-            const bool is_smooth =
-              !has_jumps_at_breaks(adjoint, number, variation, 0.) && !has_kink(all, variation, rough);
+            const auto all       = changes_of(adjoint, number, [](const Units &, const auto &) { return 1.; });
+            const bool is_smooth = change_at_breaks(adjoint, number) == 0. && !has_kink(all, variation, rough);
             result.push_back(is_smooth ? std::optional(derivative_of(all, variation)) : std::nullopt);
           }
         return result;
@@ -510,13 +500,12 @@ namespace crawler
           sum += factor * cells_.weight(p) * impulse[p] * effect[p];
           size += cells_.weight(p) * std::abs(impulse[p]);
         }
-        if (!is_edge)
-          change.sum += sum;
+        change.sum += sum;
         // Impulses have effects beyond their size where friction is not linear in the velocity; and works grow in them.
-        if (is_work(adjoint.quantity))
-          change.at_breaks += size;
+        if (is_work(adjoint.quantity) && size > 0.)
+          change.at_breaks = std::numeric_limits<double>::infinity();
         else if (is_edge || (setup_.laws & LaneLaws::nonlinear_in_velocity) != 0)
-          change.at_breaks += std::abs(sum);
+          change.at_breaks = std::max(change.at_breaks, std::abs(sum));
       }
 
       const RecordedRun &run_;
