@@ -240,7 +240,7 @@ namespace crawler
       else
         total =
           factor * std::abs(finer->displacement - result.displacement) + (predicted ? part * choice.wanted_error : 0.);
-      total         = std::max(total, choice.min_error);
+      total                          = std::max(total, choice.min_error);
       const double factor_of_numbers = choice.is_rough ? factor_without_rule : factor;
       result.errors = number_errors(result, finer_mesh ? *finer_mesh : *finer, factor_of_numbers, part * accuracy);
       if (finer_mesh != nullptr)

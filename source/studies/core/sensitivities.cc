@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/error_estimate.h>
+#include <crawler/accuracy/stress_scales.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/parameters/declarations.h>
@@ -27,6 +28,8 @@ namespace crawler
     /// changes by more than this part, as a kink's does, and values closer by closer_answers decide.
     constexpr double min_step_of_answers = 1e-3, largest_step_of_answers = 0.01, suspicious = 0.1,
                      closer_answers = 0.25;
+    /// Largest change at the breaks in time, relative to the largest active stress, of one that is continuous there.
+    constexpr double continuous = 1e-5;
   } // namespace
 
   double
@@ -174,10 +177,15 @@ namespace crawler
     constexpr double step = 1e-3;
 
     /// Makes the scenes in which an entry has other values, to one side if it is at a limit. An error in one of them is
-    /// a reason. @p step: between the values, relative; @p both_sides: their places, in steps.
+    /// a reason. @p step: between the values, relative; @p both_sides: their places, in steps;
+    /// @p may_differ: jumps and kinks may appear or vanish.
     Varied
-    vary(
-      Form &form, const Scene &scene, const std::string &entry, const double step, const std::array<int, 4> &both_sides)
+    vary(Form &form,
+         const Scene &scene,
+         const std::string &entry,
+         const double step,
+         const std::array<int, 4> &both_sides,
+         const bool may_differ = false)
     {
       const double value = *to_number(form.declarations.value(entry)), d = value != 0. ? step * std::abs(value) : step;
       Varied one{{entry, value, {}, {}, ""}};
@@ -197,7 +205,7 @@ namespace crawler
           }
           one.sensitivity.reason.clear();
           for (const Scene &other : one.scenes)
-            if (!have_similar_breaks(scene, other))
+            if (!may_differ && !have_similar_breaks(scene, other))
               one.sensitivity.reason = "jumps of the active stress or the body appear or vanish with it";
           one.sensitivity.may_vary = !one.is_one_sided || one.sensitivity.reason.empty();
           break;
@@ -326,20 +334,26 @@ namespace crawler
         has_adjoint = false;
         local       = {};
       }
+    const double apart = step_of_differences(accuracy);
     if (!has_adjoint)
-    {
-      const double apart = step_of_differences(accuracy);
-      varied             = varied_by(apart, around_answer);
-      for (Varied &one : varied)
-        if (!one.scenes.empty() && !differentiate_answers(one, result, one.sensitivity, keep_going))
-        {
-          const Varied closer = vary(form, scene, one.sensitivity.entry, closer_answers * apart, around_answer);
-          if (!differentiate_answers(closer, result, one.sensitivity, keep_going))
-            one.sensitivity.reason = "the displacement has a kink there, or changes a lot between nearby values";
-        }
-    }
+      varied = varied_by(apart, around_answer);
+    // Kinks of a continuous active stress that enter or leave at the start or the end mislead the adjoint only.
+    const bool is_continuous = stress_scales(scene).sudden_later < continuous;
     for (Varied &one : varied)
-      result.sensitivities.push_back(std::move(one.sensitivity));
+    {
+      EntrySensitivity &entry = one.sensitivity;
+      bool is_known           = has_adjoint && (entry.value || !is_continuous);
+      for (const double closer : {1., closer_answers, closer_answers * closer_answers})
+        if (!is_known)
+        {
+          const Varied around = vary(form, scene, entry.entry, closer * apart, around_answer, is_continuous);
+          entry.reason        = around.sensitivity.reason;
+          is_known            = around.scenes.empty() || differentiate_answers(around, result, entry, keep_going);
+        }
+      if (!is_known)
+        entry.reason = "the displacement has a kink there, or changes a lot between nearby values";
+      result.sensitivities.push_back(std::move(entry));
+    }
     return local;
   }
 
