@@ -87,8 +87,10 @@ namespace crawler
         fmt::format("the command is missing before \"{0}\"; did you mean \"crawler run {0}\"?", arguments[0]));
     if (const std::string now = successor_of(arguments[0]); !now.empty())
       throw InputError(fmt::format("the command \"{}\" was removed; {} is expected", arguments[0], now));
-    throw InputError(fmt::format(
-      "unknown command \"{}\"; {} is expected{}", arguments[0], quoted_list(names), nearest_hint(arguments[0], names)));
+    throw InputError(fmt::format("unknown command \"{}\"; {} is expected{} (see crawler --help)",
+                                 arguments[0],
+                                 quoted_list(names),
+                                 nearest_hint(arguments[0], names)));
   }
 
   std::string

@@ -131,6 +131,15 @@ def main(folder):
     expect(summary["sensitivities"][phase]["value"] is not None, "jumps that come together")
     _, summary = crawler(folder, ROBOT, "Time/End time=1", "Output/Sensitivities=" + phase)
     expect("kink" in summary["sensitivities"][phase].get("reason", ""), "a jump at the end of the run")
+    # With a rate limit the stress has kinks there instead: both sides have one derivative.
+    smooth = ("Time/End time=1", "Active stress/Segments/Rate limit=3")
+    _, summary = crawler(folder, ROBOT, *smooth, "Output/Sensitivities=" + phase)
+    lag, found = 0.25, summary["sensitivities"][phase]
+    moved = [crawler(folder, ROBOT, *smooth, "Accuracy=1e-7", f"{phase}={lag + d}")[1]["displacement"]
+             for d in (-1e-4, 0, 1e-4)]
+    for slope in (moved[1] - moved[0], moved[2] - moved[1]):
+        expect(found["value"] is not None and abs(found["value"] - 1e4 * slope) <= found["error"] + 1e-2,
+               f"a kink of the stress at the end: {found}, but {1e4 * slope} by runs")
     answers_without_adjoint(folder)
     for wrong, words in ((K, "colon"), (K + " : x", "positive number"), ("Accuracy : 1", "are expected"),
                          ("Active stress/Optimal wave/Cosine coefficients : 5 %", "without %")):

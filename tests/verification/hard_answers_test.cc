@@ -135,6 +135,12 @@ TEST(HardAnswers, DisplacementsAreWithinTheirBounds)
      "travelling wave; Amplitude = 0.054180670200742756; Wave number = 1.5; Frequency = 2; Phase = 0.2821255128916549",
      0.0002795362975,
      0.},
+    {"kinks of a compact pulse: the adjoint, whose own error counts, shows more than the finer run does",
+     "k = 0.001; gamma = 0.003275; p = 3; T = 100; Body/Elastic modulus profile = 1.5, 1, 0.7, 1, 2; "
+     "Accuracy = 1e-5; pulse; Amplitude = -0.0007; Shape = compact; Width = 0.1694; Speed = 0.01587; "
+     "Direction = from head to tail",
+     0.08263334242,
+     0.},
     {"kinks that move through cells and steps, where the velocity changes its sign: errors that two runs may share",
      "p = 2.415091944989272; k = 7.178644708013535; chi = 0.27075758664442684; c = -0.7330326605464842; "
      "T = 2.671621976749931; Ground/Backward ratio = 2.3431502664302823; "
@@ -353,6 +359,21 @@ TEST(HardAnswers, FrictionBalances)
     ASSERT_EQ(own.time.status, Status::finished) << own.time.message;
     EXPECT_NEAR(own.displacement, 0.003454548572, own.error->total) << tolerance; // with Accuracy 1e-7
   }
+}
+
+/// Kinks of a compact pulse: the works of a run and a finer one differ by half of their errors only.
+TEST(HardAnswers, WorksOfACompactPulse)
+{
+  const auto answer = [](const char *accuracy) {
+    return answer_to(test::set("k = 0.8733; gamma = 0.0364; p = 3.7; T = 1.059; Accuracy = {}; pulse; "
+                               "Amplitude = 0.5224; Shape = compact; Width = 0.1107; Speed = 1.066",
+                               accuracy));
+  };
+  const SimulationResult result = answer("2.58e-5"), finer = answer("1e-7");
+  for (const char *work : {"stress_power", "paper_energy", "dissipation"})
+    EXPECT_LE(std::abs(entry_of(work).number_in(result) - entry_of(work).number_in(finer)),
+              0.8 * error_bound(result, work).value())
+      << work;
 }
 
 /// The active stress is smooth, but not analytic, where its window ends: works converge more slowly than the

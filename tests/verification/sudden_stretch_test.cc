@@ -74,7 +74,7 @@ TEST(SuddenStretch, LocalFeedback)
                     stress),
           0.75,
           1.,
-          2e-3);
+          4e-3);
 }
 
 /// With other feedback nothing better than the polynomials is known: no bound in layers, but later.

@@ -39,15 +39,16 @@ namespace crawler
         largest          = std::max(largest, A == 0. ? 0. : std::abs(A) * smooth_step_rate(x));
       }
       largest *= p.frequency / p.front_width;
+      const double width = p.front_width * largest / *p.rate_limit;
       if (largest > *p.rate_limit * (1. + round_off))
         refuse(segments_section + "Rate limit",
                "the smooth fronts change by up to {:.6g} per time, but at most {:g}, the rate limit, is "
-               "expected; make \"{}Front width\" {:.6g} or more, or \"{}Switching\" square",
+               "expected; make {}Switching square",
                largest,
                *p.rate_limit,
-               segments_section,
-               p.front_width * largest / *p.rate_limit,
-               segments_section);
+               width <= std::min(p.duty_cycle, 1. - p.duty_cycle)
+                 ? fmt::format("Front width {:.6g} or more, or ", width)
+                 : "");
     }
   } // namespace
 

@@ -242,8 +242,12 @@ TEST(Segments, SaysWhatIsWrong)
   expect_complaint(
     {.amplitude = {0.5}, .switching = "smooth", .front_width = 0.1, .rate_limit = 5.},
     "Rate limit",
-    "the smooth fronts change by up to 10 per time, but at most 5, the rate limit, is expected; make \"Active "
-    "stress/Segments/Front width\" 0.2 or more, or \"Active stress/Segments/Switching\" square");
+    "the smooth fronts change by up to 10 per time, but at most 5, the rate limit, is expected; make Front "
+    "width 0.2 or more, or Switching square");
+  expect_complaint(
+    {.amplitude = {0.5}, .switching = "smooth", .front_width = 0.1, .rate_limit = 1.},
+    "Rate limit",
+    "the smooth fronts change by up to 10 per time, but at most 1, the rate limit, is expected; make Switching square");
   EXPECT_NO_THROW(Segments({.amplitude = {0.5}, .switching = "smooth", .front_width = 0.2, .rate_limit = 5.}, 1., 1.));
   expect_complaint({.number = 4, .frequency = 1e6, .phase_lag = 0.25},
                    "Frequency",
