@@ -24,7 +24,7 @@ namespace crawler
     /// Factor for other numbers where the stress is not smooth: smaller steps reduce the errors of works by half only.
     constexpr double factor_of_rough_numbers = 3.;
     /// Parts of the wanted error in the bound: adaptive meshes have more of their errors in common than others, and so
-    /// have graded ones if kinks move through their cells; otherwise each part was measured beforehand.
+    /// have all if kinks move through their cells; otherwise each part was measured beforehand.
     constexpr double predicted_part = 0.2, predicted_part_if_irregular = 0.5, predicted_part_if_graded = 0.15;
     /// Cells and tolerances of the finer run, relative to the run's.
     constexpr double more_cells = 1.1, finer_tolerance = 0.2, finer_mesh_tolerance = 0.1;
@@ -228,10 +228,10 @@ namespace crawler
         return;
       const bool predicted = choice.follows_rule();
       const bool is_graded = choice.numerics.grading.levels > 0, is_adaptive = choice.numerics.mesh.tolerance > 0.;
-      const double part = !predicted                                      ? 0.
-                          : is_adaptive || (is_graded && choice.is_rough) ? predicted_part_if_irregular
-                          : is_graded                                     ? predicted_part_if_graded
-                                                                          : predicted_part;
+      const double part = !predicted                       ? 0.
+                          : is_adaptive || choice.is_rough ? predicted_part_if_irregular
+                          : is_graded                      ? predicted_part_if_graded
+                                                           : predicted_part;
       const double factor =
         predicted && !choice.is_steep && !scene.keeps_its_centre() ? measured_factor : factor_without_rule;
       if (finer_mesh != nullptr)
