@@ -21,8 +21,6 @@ namespace crawler
   {
     // Constants measured by tests/verification/calibration.cc; doc/numerics.md, "Error bounds".
     constexpr double measured_factor = 1.5, factor_without_rule = 2.;
-    /// Factor for other numbers where the stress is not smooth: smaller steps reduce the errors of works by half only.
-    constexpr double factor_of_rough_numbers = 3.;
     /// Parts of the wanted error in the bound: adaptive meshes have more of their errors in common than others, and so
     /// have all if kinks move through their cells; otherwise each part was measured beforehand.
     constexpr double predicted_part = 0.2, predicted_part_if_irregular = 0.5, predicted_part_if_graded = 0.15;
@@ -242,12 +240,11 @@ namespace crawler
       else
         total =
           factor * std::abs(finer->displacement - result.displacement) + (predicted ? part * choice.wanted_error : 0.);
-      total                          = std::max(total, choice.min_error);
-      const double factor_of_numbers = choice.is_rough ? factor_of_rough_numbers : factor;
-      result.errors = number_errors(result, finer_mesh ? *finer_mesh : *finer, factor_of_numbers, part * accuracy);
+      total         = std::max(total, choice.min_error);
+      result.errors = number_errors(result, finer_mesh ? *finer_mesh : *finer, factor, part * accuracy);
       if (finer_mesh != nullptr)
       {
-        const auto in_time = number_errors(*finer_mesh, *finer, factor_of_numbers, 0.);
+        const auto in_time = number_errors(*finer_mesh, *finer, factor, 0.);
         for (std::size_t i = 0; i < in_time.size(); ++i)
           result.errors[i] += in_time[i];
       }
@@ -323,8 +320,8 @@ namespace crawler
       const double value = run.displacement + swept->time + swept->space;
       const double bound = std::max(swept->bound_of_corrected(), displacement_round_off * scene.body.length);
       const double found = std::abs(result.displacement - value);
-      if (bound < found && error.total < found) // otherwise it may be the sweep's own error
-        error.total = found + bound;
+      if (bound < found) // otherwise it may be the sweep's own error
+        error.total = std::max(error.total, found + bound);
       extend_errors(scene, result);
       if (bound < error.total)
         result.corrected = {value, bound};
