@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace crawler
@@ -124,14 +125,19 @@ namespace crawler
   std::pair<double, double>
   EndStretches::at(const double t)
   {
-    constexpr int n_stretches = 32; // since with feedback the force may fall with the stretch
-    std::pair<double, double> balance;
-    for (int i = 0; i <= (stress_.feedback() != nullptr ? n_stretches : 0); ++i)
+    constexpr int n_stretches = 32;    // since with feedback the force may fall with the stretch
+    constexpr double small    = 1e-12; // where laws like w*log(w) are defined
+    if (stress_.feedback() == nullptr)
     {
-      evaluate(t, static_cast<double>(i) / n_stretches);
-      const double left = -force_.N[0] / force_.k[0], right = -force_.N[1] / force_.k[1];
-      balance =
-        i == 0 ? std::pair(left, right) : std::pair(std::max(balance.first, left), std::max(balance.second, right));
+      evaluate(t, 0.);
+      return {-force_.N[0] / force_.k[0], -force_.N[1] / force_.k[1]};
+    }
+    std::pair<double, double> balance(std::nan(""), std::nan(""));
+    for (int i = 0; i <= n_stretches; ++i)
+    {
+      evaluate(t, std::max(static_cast<double>(i) / n_stretches, small));
+      balance.first  = std::fmax(balance.first, -force_.N[0] / force_.k[0]);
+      balance.second = std::fmax(balance.second, -force_.N[1] / force_.k[1]);
       if (balance.first > 0. && balance.second > 0.)
         break;
     }
@@ -167,7 +173,7 @@ namespace crawler
   void
   EndStretches::evaluate(const double t, const double w)
   {
-    const std::vector<double> stretch(2, w), strain(2, w - 1.);
+    const std::array<double, 2> stretch{w, w}, strain{w - 1., w - 1.};
     force_.evaluate(t, strain, {stretch, {}, {}, {}});
   }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/equation/general_laws.h>
 #include <crawler/lanes/host_laws.h>
 #include <crawler/lanes/lane_stepper.h>
 #include <crawler/run/batch.h>
@@ -65,8 +66,10 @@ namespace crawler
       {
         if (!watch_.is_calm(step.time - step.size, step.time))
           return false;
-        if (feedback_)
-          return !ends_.are_known() || ends_.smallest(step.time) > 0.;
+        if (feedback_) // at the times of Simulation::end_inverts
+          return !ends_.are_known() || std::ranges::all_of(std::array{0.75, 0.5, 0.25, 0.}, [&](const double part) {
+            return ends_.smallest(step.time - part * step.size) > 0.;
+          });
         double smallest = stretch_at_start_;
         for (const Stress &m : in_stages_)
           smallest = std::min(smallest, stretch(m));

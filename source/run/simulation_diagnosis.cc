@@ -53,7 +53,7 @@ namespace crawler
     return mesh_.position != nullptr ? lost_in_position : lost_in_stretch_form(scene_.friction_exponent());
   }
 
-  /// True if the stretch 1 - m/k of the end conditions has become 0 since @p from; sets the diagnosis then.
+  /// True if the stretch of the end conditions (EndStretches) has become 0 since @p from; sets the diagnosis then.
   bool
   Simulation::end_inverts(const double from, const double to)
   {

@@ -96,6 +96,8 @@ namespace crawler
     if (!stress_ || !(t < thin_until_))
       return std::nullopt;
     const std::vector<double> w = balanced_at(t);
+    if (!std::isfinite(w[0]) || !std::isfinite(w[1]))
+      return std::nullopt;
     const Extreme at_left{w[0], 0., t}, at_right{w[1], 1., t};
     return w[0] < w[1] ? std::pair(at_left, at_right) : std::pair(at_right, at_left);
   }

@@ -186,6 +186,7 @@ TEST(Extremes, InversionAtAnEnd)
     expect_inversion(test::set("p = {}; strain feedback; Active stress = 2*t-0.5*(w-1)", p), 0.25);
   }
   expect_inversion(test::set("p = -1; strain feedback; Active stress = 1.1*(1-s)-0.5*(w-1)"), 0.);
+  expect_inversion(test::set("p = -1; strain feedback; Active stress = 2*t+0.1*w*log(w)"), 0.5);
   // The force is positive without stretch, too, but 0 at w = 0.93.
   EXPECT_EQ(test::answer_to(test::set("p = -1; strain feedback; Active stress = 1.2*exp(-3*w)*(1+s/5)")).time.status,
             Status::finished);

@@ -8,9 +8,7 @@
 #include <crawler/scene/scene.h>
 
 #include <functional>
-#include <memory>
 #include <optional>
-#include <utility>
 
 namespace crawler
 {

@@ -76,7 +76,7 @@ namespace crawler
     std::unique_ptr<FeedbackAtPoints> feedback_;
   };
 
-  /// Stretches that the end conditions prescribe: 1 - m/k at s = 0 and s = L, as no force acts on the ends.
+  /// End conditions at s = 0 and s = L, where no force acts: the stretch is 1 - m/k, or with feedback what balances.
   class EndStretches
   {
   public:
@@ -86,7 +86,8 @@ namespace crawler
     bool
     are_known() const;
 
-    /// With feedback, numbers that are positive only if some stretch w > 0 balances: m(w) + k (w - 1) = 0.
+    /// Needs are_known(), like the others. With feedback, numbers that are positive only if some stretch w > 0
+    /// balances: m(w) + k (w - 1) = 0.
     std::pair<double, double>
     at(double t);
 

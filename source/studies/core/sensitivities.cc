@@ -185,7 +185,7 @@ namespace crawler
          const std::string &entry,
          const double step,
          const std::array<int, 4> &both_sides,
-         const bool may_differ = false)
+         const bool may_differ)
     {
       const double value = *to_number(form.declarations.value(entry)), d = value != 0. ? step * std::abs(value) : step;
       Varied one{{entry, value, {}, {}, ""}};
@@ -310,11 +310,11 @@ namespace crawler
     const double D               = std::abs(result.displacement);
     const double accuracy =
       choice.is_users && result.error ? result.error->total / std::max(D, 1e-300) : parameters.accuracy;
-    const auto varied_by = [&](const double step, const std::array<int, 4> &both_sides) {
+    const auto varied_by = [&](const double step, const std::array<int, 4> &both_sides, const bool may_differ) {
       std::vector<Varied> varied;
       for (const SensitivityEntry &entry : entries)
       {
-        varied.push_back(vary(form, scene, entry.path, step, both_sides));
+        varied.push_back(vary(form, scene, entry.path, step, both_sides, may_differ));
         varied.back().sensitivity.standard_deviation = entry.standard_deviation(varied.back().sensitivity.at);
       }
       return varied;
@@ -326,7 +326,7 @@ namespace crawler
     if (has_adjoint)
       try
       {
-        varied = varied_by(step, {{-2, -1, 1, 2}});
+        varied = varied_by(step, {{-2, -1, 1, 2}}, /*may_differ=*/false);
         local  = differentiate_by_adjoint(varied, parameters.time, scene, choice, result, accuracy, keep_going);
       }
       catch (const std::exception &) // e.g. the engine gave up a step
@@ -335,20 +335,27 @@ namespace crawler
         local       = {};
       }
     const double apart = step_of_differences(accuracy);
-    if (!has_adjoint)
-      varied = varied_by(apart, around_answer);
     // Kinks of a continuous active stress that enter or leave at the start or the end mislead the adjoint only.
-    const bool is_continuous = stress_scales(scene).sudden_later < continuous;
+    bool is_continuous = false;
+    if (!has_adjoint || !std::ranges::all_of(varied, [](const Varied &one) { return one.sensitivity.value; }))
+    {
+      const StressScales scales = stress_scales(scene);
+      is_continuous             = scales.sudden_later < continuous && !scales.jumps_move;
+    }
+    if (!has_adjoint)
+      varied = varied_by(apart, around_answer, is_continuous);
     for (Varied &one : varied)
     {
-      EntrySensitivity &entry = one.sensitivity;
-      bool is_known           = has_adjoint && (entry.value || !is_continuous);
+      EntrySensitivity entry = one.sensitivity;
+      bool is_known          = has_adjoint && (entry.value || !is_continuous);
       for (const double closer : {1., closer_answers, closer_answers * closer_answers})
         if (!is_known)
         {
-          const Varied around = vary(form, scene, entry.entry, closer * apart, around_answer, is_continuous);
-          entry.reason        = around.sensitivity.reason;
-          is_known            = around.scenes.empty() || differentiate_answers(around, result, entry, keep_going);
+          if (has_adjoint || closer < 1.)
+            one = vary(form, scene, entry.entry, closer * apart, around_answer, is_continuous);
+          entry.reason   = one.sensitivity.reason;
+          entry.may_vary = one.sensitivity.may_vary;
+          is_known       = one.scenes.empty() || differentiate_answers(one, result, entry, keep_going);
         }
       if (!is_known)
         entry.reason = "the displacement has a kink there, or changes a lot between nearby values";
