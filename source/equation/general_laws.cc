@@ -173,7 +173,7 @@ namespace crawler
   void
   EndStretches::evaluate(const double t, const double w)
   {
-    const std::array<double, 2> stretch{w, w}, strain{w - 1., w - 1.};
+    const std::array<double, 2> stretch{{w, w}}, strain{{w - 1., w - 1.}};
     force_.evaluate(t, strain, {stretch, {}, {}, {}});
   }
 

@@ -67,9 +67,10 @@ namespace crawler
         if (!watch_.is_calm(step.time - step.size, step.time))
           return false;
         if (feedback_) // at the times of Simulation::end_inverts
-          return !ends_.are_known() || std::ranges::all_of(std::array{0.75, 0.5, 0.25, 0.}, [&](const double part) {
-            return ends_.smallest(step.time - part * step.size) > 0.;
-          });
+          return !ends_.are_known() ||
+                 std::ranges::all_of(std::array<double, 4>{{0.75, 0.5, 0.25, 0.}}, [&](const double part) {
+                   return ends_.smallest(step.time - part * step.size) > 0.;
+                 });
         double smallest = stretch_at_start_;
         for (const Stress &m : in_stages_)
           smallest = std::min(smallest, stretch(m));

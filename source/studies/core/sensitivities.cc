@@ -337,7 +337,8 @@ namespace crawler
     const double apart = step_of_differences(accuracy);
     // Kinks of a continuous active stress that enter or leave at the start or the end mislead the adjoint only.
     bool is_continuous = false;
-    if (!has_adjoint || !std::ranges::all_of(varied, [](const Varied &one) { return one.sensitivity.value; }))
+    if (!has_adjoint ||
+        !std::ranges::all_of(varied, [](const Varied &one) { return one.sensitivity.value.has_value(); }))
     {
       const StressScales scales = stress_scales(scene);
       is_continuous             = scales.sudden_later < continuous && !scales.jumps_move;
