@@ -29,11 +29,11 @@ namespace crawler
     , cell_(smallest_cell)
     , a_(scene.friction_exponent())
     , k_(scene.body.elastic_modulus / units.force)
-    , ends_(scene)
-    , has_feedback_(scene.active_stress->feedback() != nullptr)
   {
     if (!are_known(scene))
       return;
+    if (scene.active_stress->feedback() != nullptr)
+      ends_.emplace(scene);
     starts_ = TimeSegments(*scene.active_stress, scene.end_time).breaks();
     starts_.insert(starts_.begin(), 0.);
     std::vector<double> places = {0., units.length};
@@ -49,8 +49,8 @@ namespace crawler
   std::vector<double>
   SuddenChanges::balanced_at(const double t)
   {
-    if (has_feedback_)
-      return ends_.balanced(t * units_.time);
+    if (ends_)
+      return ends_->balanced(t * units_.time);
     std::vector<double> w(moduli_.size());
     stress_->values(t * units_.time, w);
     std::ranges::transform(w, moduli_, w.begin(), [](const double m, const double k) { return 1. - m / k; });
@@ -82,10 +82,10 @@ namespace crawler
       see(change, 1. - 0.5 * change);
     }
     keeps_stretch_ = start == 0. && smallest > 0.;
+    const double k = k_ * (ends_ ? ends_->stiffening() : 1.);
     if (largest > sudden)
       thin_until_ =
-        std::max(thin_until_,
-                 start + std::min(longest, cell_ * cell_ * seen * seen * resistance / (4. * k_ * ends_.stiffening())));
+        std::max(thin_until_, start + std::min(longest, cell_ * cell_ * seen * seen * resistance / (4. * k)));
   }
 
   std::optional<std::pair<Extreme, Extreme>>

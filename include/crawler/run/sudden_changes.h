@@ -63,7 +63,6 @@ namespace crawler
     bool keeps_stretch_ = false;                   ///< no jump in space of the last start can invert the body
     std::vector<double> initial_;                  ///< stretch at the start there
     std::unique_ptr<ActiveStressAtPoints> stress_; ///< stress there; nothing if stretches are not known
-    EndStretches ends_;                            ///< used with feedback
-    const bool has_feedback_;
+    std::optional<EndStretches> ends_;             ///< with feedback
   };
 } // namespace crawler
